@@ -1,0 +1,34 @@
+#include "bindings.hpp"
+#include "brushsvg/brush.hpp"
+
+void bind_brush(py::module_& m) {
+    using brushsvg::Brush;
+    py::class_<Brush>(m, "Brush", "Four laws against depth and the footprints; all lengths in mm.")
+        .def(py::init<>())
+        .def_readwrite("name", &Brush::name)
+        .def_readwrite("kind", &Brush::kind)
+        .def_readwrite("depth_range_mm", &Brush::depth_range_mm)
+        .def_readwrite("lag", &Brush::lag)
+        .def_readwrite("tip_gap", &Brush::tip_gap)
+        .def_readwrite("tip_to_widest", &Brush::tip_to_widest)
+        .def_readwrite("half_width", &Brush::half_width)
+        .def_readwrite("footprints", &Brush::footprints)
+        .def_readwrite("covariance", &Brush::covariance)
+        .def_readwrite("max_speed_mm_s", &Brush::max_speed_mm_s)
+        .def_readwrite("paint_depth_mm", &Brush::paint_depth_mm)
+        .def_readwrite("sha256", &Brush::sha256)
+        .def_readwrite("extra", &Brush::extra)
+        .def("is_rigid", &Brush::is_rigid)
+        .def("width_follows_depth", &Brush::width_follows_depth)
+        .def("half_width_range_mm", &Brush::half_width_range_mm)
+        .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
+             "Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.")
+        .def("lever_to_widest", &Brush::lever_to_widest, py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.");
+    m.def("check", [](const Brush& brush) { brushsvg::check(brush); }, py::arg("brush"),
+          "Error when the brush would lead a robot astray (negative lag, laws and outlines that disagree, ...).");
+    m.def("remarks", [](const Brush& brush) {
+        std::vector<std::pair<std::string, std::string>> out;
+        for (const auto& w : brushsvg::remarks(brush)) out.emplace_back(w.where, w.sentence);
+        return out;
+    }, py::arg("brush"), "What is odd about an admissible brush: [(law, sentence)].");
+}

@@ -1,0 +1,39 @@
+#include <pybind11/numpy.h>
+
+#include "bindings.hpp"
+#include "brushsvg/marks.hpp"
+
+namespace {
+
+template <class T>
+auto column(std::vector<T> brushsvg::PassMarks::* member) {
+    return [member](const brushsvg::PassMarks& marks) {
+        const auto& values = marks.*member;
+        return py::array_t<T>(py::ssize_t(values.size()), values.data());
+    };
+}
+
+}  // namespace
+
+void bind_marks(py::module_& m) {
+    using namespace brushsvg;
+    py::class_<PassMarks>(m, "PassMarks", "What the patch does during one pass; parallel rows (mm, rad).")
+        .def(py::init<>())
+        .def_readwrite("stroke", &PassMarks::stroke)
+        .def_property_readonly("pose", column(&PassMarks::pose))
+        .def_property_readonly("tcp_mm", [](const PassMarks& p) { return p.tcp_mm; })
+        .def_property_readonly("contact_mm", [](const PassMarks& p) { return p.contact_mm; })
+        .def_property_readonly("heading_rad", column(&PassMarks::heading_rad))
+        .def_property_readonly("depth_mm", column(&PassMarks::depth_mm))
+        .def_property_readonly("taut", [](const PassMarks& p) {
+            py::array_t<bool> out(py::ssize_t(p.taut.size()));
+            std::copy(p.taut.begin(), p.taut.end(), out.mutable_data());
+            return out;
+        })
+        .def_property_readonly("pull", column(&PassMarks::pull))
+        .def_readwrite("outline_mm", &PassMarks::outline_mm);
+    py::class_<Marks>(m, "Marks")
+        .def(py::init<>())
+        .def_readwrite("passes", &Marks::passes)
+        .def_readwrite("outline_mm", &Marks::outline_mm);
+}

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <utility>
+
+namespace py = pybind11;
+
+void bind_profile(py::module_& m);
+void bind_footprint(py::module_& m);
+void bind_brush(py::module_& m);
+void bind_stroke(py::module_& m);
+void bind_plan(py::module_& m);
+void bind_marks(py::module_& m);
+void bind_lag(py::module_& m);
+void bind_bristle(py::module_& m);
+void bind_simulate(py::module_& m);
+void bind_region(py::module_& m);
+void bind_coverage(py::module_& m);
+void bind_compensate(py::module_& m);
+void bind_io(py::module_& m);
+
+/// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which Ctrl-C is heard and
+/// `progress(done, n)` is called where one is given.
+template <class Work>
+void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
+    for (std::size_t begin = 0; begin < n; begin += chunk) {
+        {
+            py::gil_scoped_release unlocked;
+            for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) work(i);
+        }
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (!progress.is_none()) progress(std::min(n, begin + chunk), n);
+    }
+}

@@ -1,0 +1,33 @@
+// Table of contents of brushsvg._core: one bind_<stem>.cpp per header.
+#include "bindings.hpp"
+#include "brushsvg/error.hpp"
+
+PYBIND11_MODULE(_core, m) {
+    m.doc() = "The brush: simulation, inverse, marks. Millimetres, radians, paper frame.";
+    m.attr("__version__") = BRUSHSVG_VERSION;
+
+    py::register_local_exception_translator([](std::exception_ptr p) {
+        try {
+            if (p) std::rethrow_exception(p);
+        } catch (const brushsvg::Error& e) {
+            const py::object type = py::module_::import("brushsvg.errors").attr("Error");
+            const py::object error = type(e.what(), py::arg("where") = e.where(), py::arg("value") = e.value(),
+                                          py::arg("range") = e.range());
+            PyErr_SetObject(type.ptr(), error.ptr());
+        }
+    });
+
+    bind_profile(m);
+    bind_footprint(m);
+    bind_brush(m);
+    bind_stroke(m);
+    bind_plan(m);
+    bind_marks(m);
+    bind_lag(m);
+    bind_bristle(m);
+    bind_simulate(m);
+    bind_region(m);
+    bind_coverage(m);
+    bind_compensate(m);
+    bind_io(m);
+}

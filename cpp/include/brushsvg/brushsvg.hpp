@@ -1,0 +1,16 @@
+#pragma once
+
+#include "brushsvg/bristle.hpp"
+#include "brushsvg/brush.hpp"
+#include "brushsvg/compensate.hpp"
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/footprint.hpp"
+#include "brushsvg/lag.hpp"
+#include "brushsvg/marks.hpp"
+#include "brushsvg/plan.hpp"
+#include "brushsvg/profile.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/simulate.hpp"
+#include "brushsvg/stroke.hpp"
+#include "brushsvg/wanted.hpp"

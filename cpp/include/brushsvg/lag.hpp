@@ -1,0 +1,175 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <vector>
+
+#include "brushsvg/profile.hpp"
+
+// How the contact patch trails the handle. Everything is a template on the scalar T: double, or a dual number with
+// the value in a member `a` (a solver's jet). Angles in radians, lengths in mm.
+namespace brushsvg {
+
+template <class T>
+using Vec2 = Eigen::Matrix<T, 2, 1>;
+
+inline double value_of(double x) { return x; }
+template <class Jet>
+auto value_of(const Jet& x) -> decltype(x.a) {
+    return x.a;
+}
+
+inline constexpr int kMaxLawDegree = 8;
+
+/// A lever's length against depth on [lo, hi], a polynomial, with what the quadrature of its reciprocal and the
+/// search for events need to know of it.
+template <class T>
+struct LawPiece {
+    double lo = 0.0, hi = 0.0;
+    int degree = 0;
+    std::array<T, kMaxLawDegree + 1> coefficients{};
+    std::vector<std::complex<double>> roots;  ///< of the polynomial, all of them
+    double steepest = 0.0;                    ///< bound of |dr/dd| on [lo, hi]
+    double most_curved = 0.0;                 ///< bound of |d2r/dd2| on [lo, hi]
+
+    T at(const T& depth) const {
+        T r = coefficients[degree];
+        for (int i = degree; i-- > 0;) r = r * depth + coefficients[i];
+        return r;
+    }
+    T slope(const T& depth) const {
+        T r(0.0);
+        for (int i = degree; i > 0; --i) r = r * depth + double(i) * coefficients[i];
+        return r;
+    }
+    T curvature(const T& depth) const {
+        T r(0.0);
+        for (int i = degree; i > 1; --i) r = r * depth + double(i) * double(i - 1) * coefficients[i];
+        return r;
+    }
+};
+
+/// A lever r(d) >= 0 over a range of depths.
+template <class T>
+struct LagLaw {
+    std::vector<LawPiece<T>> pieces;
+    bool rigid = false;  ///< r identically 0
+
+    const LawPiece<T>& piece(double depth) const {
+        for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
+            if (depth < pieces[i].hi) return pieces[i];
+        return pieces.back();
+    }
+    T at(const T& depth) const { return piece(value_of(depth)).at(depth); }
+};
+
+/// Law from polynomial pieces; `sign` -1 turns a lever that points the other way.
+LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign = 1.0);
+
+
+/// Integral of ds / r over a straight move of `length` [mm] with depth linear along it: length * mean(1/r), the
+/// exponent of article (7). The rule, or a split of the move, is chosen by the distance of the nearest complex root of
+/// r from the depths passed (error of n nodes ~ rho^(-2n) on the Bernstein ellipse), so that it is good to 1e-13.
+/// Grows without bound where r -> 0: from 50 on the heading is the direction of motion, and it stops counting.
+template <class T>
+T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T& length, int splits_left = 48);
+
+/// Heading after the decay E = exp(-integral ds/r) of a drag in direction `along` (article (7), in vector form):
+///     tan(psi1/2) = E tan(psi0/2),  psi = angle from the direction of motion to the heading.
+/// The result has unit length whatever the rounding of the heading given.
+template <class T>
+Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay) {
+    const T a = heading.dot(along);
+    const T b = along.x() * heading.y() - along.y() * heading.x();
+    T x, y;  // cos(psi/2), sin(psi/2) up to a common factor; the form without cancellation on either side
+    if (a >= T(0.0)) {
+        x = T(1.0) + a;
+        y = decay * b;
+    } else {
+        x = b;
+        y = decay * (T(1.0) - a);
+    }
+    const T norm = x * x + y * y;
+    if (!(norm > T(std::numeric_limits<double>::min()))) return along;  // psi = pi and E = 0: no lag left
+    const T c = (x * x - y * y) / norm;
+    const T s = T(2.0) * x * y / norm;
+    return Vec2<T>(c * along.x() - s * along.y(), c * along.y() + s * along.x());
+}
+
+/// psi after an arc of the TCP of signed curvature k [1/mm] and length s [mm] at constant lag r [mm]:
+/// d(psi)/ds = -sin(psi)/r - k, solved on the half-angle vector by exp(s A), A = [[1/(2r), k/2], [-k/2, -1/(2r)]].
+/// Taut only: valid while |psi| <= 90 degrees.
+template <class T>
+T drag_arc(const T& psi0, const T& curvature_per_mm, const T& lag_mm, const T& length_mm);
+
+/// beta, article (11) and (12): direction of the tip's displacement against the direction of motion, for constant lag,
+/// after psi went from alpha0 to alpha1 over s [mm]. In (0, pi) for alpha0 > 0.
+template <class T>
+T tip_direction(const T& alpha0, const T& alpha1, const T& s, const T& lag_mm, const T& tip_gap_mm) {
+    using std::atan2;
+    using std::cos;
+    using std::sin;
+    const T reach = lag_mm + tip_gap_mm;
+    return atan2(reach * (sin(alpha0) - sin(alpha1)), s - reach * (cos(alpha1) - cos(alpha0)));
+}
+
+/// The brush on the paper. The state is (contact, tcp, last heading), never psi alone.
+template <class T>
+struct LagState {
+    Vec2<T> contact = Vec2<T>::Zero();          ///< p [mm]
+    Vec2<T> heading = Vec2<T>(T(1.0), T(0.0));  ///< u, unit vector from p to q
+    bool taut = false;
+    bool heading_known = false;  ///< false from touch-down to the first motion
+};
+
+/// A straight move of the TCP: position and depth linear in t from 0 to 1. All depths >= 0.
+template <class T>
+struct Move {
+    Vec2<T> from, by, along;  ///< start, displacement, unit direction (x axis for a move in place)
+    T length, depth_from, depth_by;
+
+    Move(const Vec2<T>& q0, const Vec2<T>& q1, const T& d0, const T& d1)
+        : from(q0), by(q1 - q0), depth_from(d0), depth_by(d1 - d0) {
+        using std::sqrt;
+        const T squared = by.squaredNorm();
+        length = squared > T(0.0) ? sqrt(squared) : T(0.0);
+        along = length > T(0.0) ? Vec2<T>(by / length) : Vec2<T>(T(1.0), T(0.0));
+    }
+    Vec2<T> tcp(const T& t) const { return from + by * t; }
+    T depth(const T& t) const { return depth_from + depth_by * t; }
+};
+
+/// State at t of an event-free phase that began in state `start` at t = begin.
+template <class T>
+LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
+                         const T& t);
+
+/// Carries the state over one move, phase by phase. `phase(law, move, start, begin, end)` is called for every event-free
+/// stretch with the state at its beginning; `start.taut` tells which rule holds in it.
+///
+/// Taut: the lever drags the patch, which never slips sideways (article (4), (7)), until moving on would push it
+/// backwards: g = cos(psi) - dr/ds < 0. Loose: the patch rests and the heading points from it to the TCP (article 2.2),
+/// until f = |q - p| - r comes up through 0.
+template <class T, class PhaseSink>
+void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state, PhaseSink&& phase);
+
+template <class T>
+void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state) {
+    advance(law, move, state, [](const auto&, const auto&, const auto&, const T&, const T&) {});
+}
+
+/// The brush meets the paper at q: p = q, nothing drawn out yet.
+template <class T>
+LagState<T> touch_down(const Vec2<T>& tcp) {
+    LagState<T> state;
+    state.contact = tcp;
+    return state;
+}
+
+}  // namespace brushsvg
+
+#include "brushsvg/lag_impl.hpp"

@@ -1,0 +1,311 @@
+#pragma once
+
+// Definitions of the templates declared in lag.hpp; include that one.
+#include "brushsvg/lag.hpp"
+
+namespace brushsvg {
+namespace detail {
+
+template <int N>
+struct Gauss;
+template <>
+struct Gauss<3> {
+    static constexpr double x[3] = {-0.7745966692414834, 0.0, 0.7745966692414834};
+    static constexpr double w[3] = {0.2777777777777778, 0.4444444444444444, 0.2777777777777778};
+};
+template <>
+struct Gauss<5> {
+    static constexpr double x[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                    0.9061798459386640};
+    static constexpr double w[5] = {0.1184634425280945, 0.2393143352496832, 0.2844444444444444, 0.2393143352496832,
+                                    0.1184634425280945};
+};
+template <>
+struct Gauss<12> {
+    static constexpr double x[12] = {-0.9815606342467193, -0.9041172563704749, -0.7699026741943047,
+                                     -0.5873179542866175, -0.3678314989981802, -0.1252334085114689,
+                                     0.1252334085114689,  0.3678314989981802,  0.5873179542866175,
+                                     0.7699026741943047,  0.9041172563704749,  0.9815606342467193};
+    static constexpr double w[12] = {0.0235876681932559, 0.0534696629976592, 0.0800391642716731, 0.1015837133615330,
+                                     0.1167462682691774, 0.1245735229067014, 0.1245735229067014, 0.1167462682691774,
+                                     0.1015837133615330, 0.0800391642716731, 0.0534696629976592, 0.0235876681932559};
+};
+
+template <int N, class T>
+T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
+    T sum(0.0);
+    for (int i = 0; i < N; ++i) sum += T(Gauss<N>::w[i]) / law.at(middle + half * Gauss<N>::x[i]);
+    return sum;
+}
+
+/// Smallest t in [begin, end] from where a function bounded below by `lower(a, b)` on [a, b] is negative; 1 + end when
+/// there is none. `value(t)` is exact.
+template <class Lower, class Value>
+double first_negative(double begin, double end, Lower&& lower, Value&& value) {
+    struct Span {
+        double a, b;
+    };
+    std::array<Span, 128> stack;
+    int top = 0;
+    stack[top++] = {begin, end};
+    while (top > 0) {
+        const auto [a, b] = stack[--top];
+        if (lower(a, b) >= 0.0) continue;
+        const double middle = 0.5 * (a + b);
+        if (b - a < 1e-15 || !(a < middle && middle < b) || top + 2 > int(stack.size())) {
+            if (value(b) < 0.0) return b;
+            continue;
+        }
+        stack[top++] = {middle, b};
+        stack[top++] = {a, middle};
+    }
+    return end + 1.0;
+}
+
+/// Smallest x in [0, 1] from where the polynomial (ascending coefficients) is positive; 2 when there is none.
+/// Bernstein coefficients bound it on each half, so no pair of roots is overlooked.
+double first_positive(std::vector<double> polynomial);
+
+template <class T>
+double cosine_after(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, double begin, double t) {
+    const LagState<T> s = within_phase(law, move, start, T(begin), T(t));
+    return value_of(s.heading.dot(move.along));
+}
+
+/// t in [begin, 1] where a taut brush goes loose, 2 when it does not.
+template <class T>
+double first_loosening(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, double begin,
+                       double end) {
+    const double length = value_of(move.length), depth_by = value_of(move.depth_by);
+    const double cosine0 = value_of(start.heading.dot(move.along));
+    const double pull = std::abs(depth_by) * law.steepest;
+    // psi shrinks while taut, so g >= cos(psi0) - max|dr/ds|: most moves end here
+    if (length * cosine0 >= pull) return 2.0;
+    const double noise = 1e-13 * (length + pull);
+    const auto g = [&](double t) {
+        return length * cosine_after(law, move, start, begin, t) - depth_by * value_of(law.slope(move.depth(T(t))));
+    };
+    if (g(begin) < -noise) return begin;
+    const double bend = 0.5 * depth_by * depth_by * law.most_curved;
+    const double t = first_negative(
+        begin, end,
+        [&](double a, double b) {
+            const double slope = depth_by * value_of(law.slope(move.depth(T(0.5 * (a + b)))));
+            return length * cosine_after(law, move, start, begin, a) - slope - bend * (b - a) + noise;
+        },
+        [&](double t) { return g(t) + noise; });
+    return t <= end ? t : 2.0;
+}
+
+/// Coefficients in x of r(d0 + x dd)^2.
+template <class T>
+std::vector<T> squared_lever(const LawPiece<T>& law, const T& d0, const T& dd) {
+    const int n = law.degree;
+    std::vector<T> c(law.coefficients.begin(), law.coefficients.begin() + n + 1);
+    for (int i = 0; i < n; ++i)
+        for (int j = n - 1; j >= i; --j) c[j] += d0 * c[j + 1];
+    T power(1.0);
+    for (int i = 0; i <= n; ++i, power *= dd) c[i] *= power;
+    std::vector<T> square(2 * n + 1, T(0.0));
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) square[i + j] += c[i] * c[j];
+    return square;
+}
+
+}  // namespace detail
+
+template <class T>
+T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T& length, int splits_left) {
+    if (law.degree == 0) return length / law.coefficients[0];
+    const T half = 0.5 * (depth1 - depth0), middle = 0.5 * (depth0 + depth1);
+    const double h = value_of(half), m = value_of(middle);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& root : law.roots) {
+        const double dx = root.real() - m, dy = root.imag();
+        nearest = std::min(nearest, dx * dx + dy * dy);
+    }
+    const double h2 = h * h;
+    if (nearest > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
+    if (nearest > 10.0 * 10.0 * h2) return length * detail::mean_reciprocal<5>(law, middle, half);
+    if (nearest > 1.9 * 1.9 * h2 || splits_left == 0) return length * detail::mean_reciprocal<12>(law, middle, half);
+    // the end with the shorter lever first: where it is nearly 0 the sum is soon large enough
+    const T half_length = 0.5 * length;
+    const bool first = value_of(law.at(depth0)) < value_of(law.at(depth1));
+    const T shorter = lag_exponent(law, first ? depth0 : middle, first ? middle : depth1, half_length, splits_left - 1);
+    if (shorter > T(50.0)) return shorter;
+    return shorter + lag_exponent(law, first ? middle : depth0, first ? depth1 : middle, half_length, splits_left - 1);
+}
+
+template <class T>
+T drag_arc(const T& psi0, const T& k, const T& r, const T& s) {
+    using std::atan2;
+    using std::cos;
+    using std::cosh;
+    using std::sin;
+    using std::sinh;
+    using std::sqrt;
+    // exp(sA) = C I + S A with C = cosh(ws/2), S = sinh(ws/2) / (w/2), w^2 = 1/r^2 - k^2
+    const T w2 = T(1.0) / (r * r) - k * k;
+    T c(1.0), S = s;
+    if (w2 > T(0.0)) {
+        const T w = sqrt(w2);
+        c = cosh(0.5 * w * s);
+        S = sinh(0.5 * w * s) / (0.5 * w);
+    } else if (w2 < T(0.0)) {
+        const T w = sqrt(-w2);
+        c = cos(0.5 * w * s);
+        S = sin(0.5 * w * s) / (0.5 * w);
+    }
+    const T x = cos(0.5 * psi0), y = sin(0.5 * psi0);
+    const T x1 = c * x + S * (x / (2.0 * r) + 0.5 * k * y);
+    const T y1 = c * y + S * (-0.5 * k * x - y / (2.0 * r));
+    const T psi = 2.0 * atan2(y1, x1);
+    constexpr double pi = 3.14159265358979323846;
+    if (psi > T(pi)) return psi - T(2.0 * pi);
+    if (psi <= T(-pi)) return psi + T(2.0 * pi);
+    return psi;
+}
+
+template <class T>
+LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
+                         const T& t) {
+    using std::exp;
+    using std::sqrt;
+    LagState<T> state = start;
+    const Vec2<T> tcp = move.tcp(t);
+    if (start.taut) {
+        const T depth = move.depth(t);
+        if (move.length > T(0.0)) {
+            const T x = lag_exponent(law, move.depth(begin), depth, T(move.length * (t - begin)));
+            state.heading = drag_heading(start.heading, move.along, T(exp(-x)));
+        }
+        state.contact = tcp - law.at(depth) * state.heading;  // article (5), (6)
+        return state;
+    }
+    const Vec2<T> reach = tcp - start.contact;
+    const T squared = reach.squaredNorm();
+    if (squared > T(0.0)) {
+        state.heading = reach / sqrt(squared);
+        state.heading_known = true;
+    }
+    return state;
+}
+
+namespace detail {
+
+enum class Loosened { before, by_jump, by_crossing };
+
+/// x in [0, 1] over [begin, end] where the loose brush pulls tight again, 2 when it does not; `polynomial` receives f.
+template <class T>
+double first_tightening(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
+                        const T& end, Loosened loosened, std::vector<T>& polynomial) {
+    const T span = end - begin;
+    polynomial = squared_lever(law, move.depth(begin), T(move.depth_by * span));
+    for (T& c : polynomial) c = -c;
+    if (polynomial.size() < 3) polynomial.resize(3, T(0.0));
+    const Vec2<T> reach = move.tcp(begin) - start.contact, by = move.by * span;
+    polynomial[0] += reach.squaredNorm();
+    polynomial[1] += T(2.0) * reach.dot(by);
+    polynomial[2] += by.squaredNorm();
+    std::vector<double> f(polynomial.size());
+    std::transform(polynomial.begin(), polynomial.end(), f.begin(), [](const T& c) { return value_of(c); });
+    // just loosened: f = 0 there (and f' = 0 when g came down through 0), so look at f/x or f/x^2
+    if (loosened != Loosened::before) f.erase(f.begin());
+    if (loosened == Loosened::by_crossing) f.erase(f.begin());
+    return first_positive(std::move(f));
+}
+
+template <class T>
+T polished(const std::vector<T>& f, double x) {
+    T value(0.0), slope(0.0);
+    for (std::size_t i = f.size(); i-- > 0;) {
+        slope = slope * x + value;
+        value = value * x + f[i];
+    }
+    // one Newton step: carries the derivatives of a dual number through the event
+    const double s = value_of(slope);
+    if (!(s > 0.0)) return T(x);
+    const T root = T(x) - value / slope;
+    return value_of(root) < 0.0 ? T(0.0) : value_of(root) > 1.0 ? T(1.0) : root;
+}
+
+template <class T, class PhaseSink>
+void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& state, T begin, const T& end,
+                      PhaseSink&& phase) {
+    Loosened loosened = Loosened::before;
+    // a move has at most as many events as its polynomials have roots; the bound only guards against rounding
+    for (int events = 0; events < 64 && value_of(begin) < value_of(end); ++events) {
+        if (state.taut) {
+            const double t = first_loosening(law, move, state, value_of(begin), value_of(end));
+            if (t > value_of(begin)) {
+                T until = end;
+                if (t < value_of(end)) until = T(t);
+                phase(law, move, state, begin, until);
+                state = within_phase(law, move, state, begin, until);
+                loosened = Loosened::by_crossing;
+                begin = until;
+            } else {
+                loosened = Loosened::by_jump;
+            }
+            if (t > value_of(end)) return;
+            state.taut = false;
+            continue;
+        }
+        std::vector<T> f;
+        const double x = first_tightening(law, move, state, begin, end, loosened, f);
+        loosened = Loosened::before;
+        T until = end;
+        if (x <= 1.0) until = begin + (end - begin) * polished(f, x);
+        if (value_of(until) > value_of(begin)) phase(law, move, state, begin, until);
+        state = within_phase(law, move, state, begin, until);
+        begin = until;
+        if (x > 1.0) return;
+        state.taut = true;
+        state.contact = move.tcp(until) - law.at(move.depth(until)) * state.heading;
+    }
+    if (value_of(begin) < value_of(end)) {
+        phase(law, move, state, begin, end);
+        state = within_phase(law, move, state, begin, end);
+    }
+}
+
+}  // namespace detail
+
+template <class T, class PhaseSink>
+void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state, PhaseSink&& phase) {
+    if (law.rigid) {
+        // a pen: p = q, the heading is the direction of motion
+        if (move.length > T(0.0)) {
+            state.heading = move.along;
+            state.heading_known = true;
+        }
+        state.taut = true;
+        state.contact = move.from;
+        phase(law.pieces.front(), move, state, T(0.0), T(1.0));
+        state.contact = move.from + move.by;
+        return;
+    }
+    const double d0 = value_of(move.depth_from), dd = value_of(move.depth_by);
+    if (law.pieces.size() == 1) {
+        detail::advance_on_piece(law.pieces.front(), move, state, T(0.0), T(1.0), phase);
+        return;
+    }
+    double begin = 0.0;
+    while (begin < 1.0) {
+        // depths at a joint belong to the piece the move is heading for
+        const double depth = d0 + dd * begin;
+        std::size_t i = 0;
+        while (i + 1 < law.pieces.size() &&
+               (dd >= 0.0 ? depth >= law.pieces[i].hi - 1e-12 : depth > law.pieces[i].hi + 1e-12))
+            ++i;
+        const LawPiece<T>& piece = law.pieces[i];
+        double end = 1.0;
+        if (dd > 0.0 && i + 1 < law.pieces.size()) end = std::min(1.0, (piece.hi - d0) / dd);
+        if (dd < 0.0 && i > 0) end = std::min(1.0, (piece.lo - d0) / dd);
+        if (!(end > begin)) end = 1.0;
+        detail::advance_on_piece(piece, move, state, T(begin), T(end), phase);
+        begin = end;
+    }
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "brushsvg/marks.hpp"
+
+namespace brushsvg {
+
+/// Union of shapes: each counter-clockwise ring fills, the clockwise rings behind it are its holes. Coordinates are
+/// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross.
+Rings unite(const Rings& rings);
+
+/// Area [mm^2] of rings in marks.json orientation (outer positive, holes negative).
+double area(const Rings& rings);
+
+/// Area of the intersection over area of the union; 1 when both are empty.
+double overlap(const Rings& a, const Rings& b);
+
+/// Convex hull of points, counter-clockwise.
+Ring convex_hull(const Ring& points);
+
+}  // namespace brushsvg

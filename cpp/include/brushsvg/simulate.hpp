@@ -1,0 +1,19 @@
+#pragma once
+
+#include "brushsvg/brush.hpp"
+#include "brushsvg/marks.hpp"
+#include "brushsvg/plan.hpp"
+
+namespace brushsvg {
+
+/// Forward: what the brush does when the TCP follows a pass. Rows stand at every pose, at every event (loosening,
+/// tightening, touching, lifting) and in between as closely as `tolerance_mm` asks: half way between two
+/// rows no point of the footprint is farther than it from the straight line between them.
+/// Throws Error when a pose is deeper than the brush allows or not finite.
+PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm = 0.02);
+Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm = 0.02);
+
+/// Centre of the widest section at every row [mm]: m = p + e(d) u.
+Ring widest_points(const PassMarks& marks, const Brush& brush);
+
+}  // namespace brushsvg

@@ -1,0 +1,193 @@
+#pragma once
+
+// Private to brushsvg::io: from a text to a JSON document that is well formed, of the right format and version.
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "brushsvg/error.hpp"
+#include "json_fields.hpp"
+
+namespace brushsvg::io {
+
+/// Rows of numbers under passes[i].key, taken out of the document while it is parsed: a table of ten million
+/// poses as JSON values would fill gigabytes. Row k of pass i is values[i][k * width] and on.
+struct PassRows {
+    std::string key;
+    std::size_t width;
+    std::vector<std::vector<double>> values;
+
+    /// The rows of one pass as a matrix; `left` is what parsing has left of the array: rows of another shape.
+    template <class Matrix>
+    Matrix of_pass(std::size_t pass, const Field& left, const std::string& shape) const;
+};
+
+/// Follows the parser through the document: knows the key path, refuses keys that stand twice in one object,
+/// and collects the rows of passes.
+class Watcher {
+   public:
+    explicit Watcher(PassRows* rows) : rows_(rows) {}
+
+    Json parse(const std::string& text) {
+        return Json::parse(text, [this](int, Json::parse_event_t event, Json& parsed) { return see(event, parsed); });
+    }
+
+    std::string path() const {
+        std::string path;
+        for (const Level& level : levels_) {
+            if (level.is_array) {
+                path += "[" + std::to_string(level.index) + "]";
+            } else if (!level.key.empty()) {
+                path += (path.empty() ? "" : ".") + level.key;
+            }
+        }
+        return path;
+    }
+
+   private:
+    struct Level {
+        bool is_array;
+        std::size_t index;  ///< of the member being read, in an array
+        std::string key;    ///< of the member being read, in an object
+        std::set<std::string> keys;
+    };
+
+    /// False: the value just read is dropped from the document.
+    bool see(Json::parse_event_t event, const Json& parsed) {
+        using Event = Json::parse_event_t;
+        switch (event) {
+            case Event::object_start:
+            case Event::array_start:
+                // Printing nested values recurses; no file of ours is deeper than seven.
+                if (levels_.size() == 100) throw Error("the file is nested deeper than 100 levels", levels_.front().key);
+                levels_.push_back({event == Event::array_start, 0, {}, {}});
+                return true;
+            case Event::key:
+                levels_.back().key = parsed.get_ref<const std::string&>();
+                if (!levels_.back().keys.insert(levels_.back().key).second) {
+                    throw Error("the key " + levels_.back().key + " stands twice in one object", path());
+                }
+                return true;
+            case Event::object_end:
+            case Event::array_end: {
+                levels_.pop_back();
+                const bool keep = event == Event::object_end || !collect(parsed);
+                count();
+                return keep;
+            }
+            case Event::value: count(); return true;
+        }
+        return true;
+    }
+
+    void count() {
+        if (!levels_.empty() && levels_.back().is_array) ++levels_.back().index;
+    }
+
+    bool collect(const Json& row) {
+        if (rows_ == nullptr || levels_.size() != 4 || levels_[0].key != "passes" || !levels_[1].is_array ||
+            levels_[2].key != rows_->key || !levels_[3].is_array) {
+            return false;
+        }
+        const std::size_t pass = levels_[1].index;
+        if (rows_->values.size() <= pass) rows_->values.resize(pass + 1);
+        std::vector<double>& values = rows_->values[pass];
+        // Rows after a misshapen one stay too, so that it keeps its number.
+        if (row.size() != rows_->width || values.size() != levels_[3].index * rows_->width) return false;
+        for (const Json& value : row) {
+            if (!value.is_number()) return false;
+        }
+        for (const Json& value : row) values.push_back(value.get<double>());
+        return true;
+    }
+
+    PassRows* rows_;
+    std::vector<Level> levels_;
+};
+
+template <class Matrix>
+Matrix PassRows::of_pass(std::size_t pass, const Field& left, const std::string& shape) const {
+    static const std::vector<double> none;
+    const std::vector<double>& flat = pass < values.size() ? values[pass] : none;
+    const std::size_t count = flat.size() / width;
+    if (!left.value.is_array()) {
+        left.refuse(left.name() + " must be an array of rows of " + shape + ", not " + in_words(left.value));
+    }
+    if (!left.value.empty()) {
+        const Json& fault = left.value[0];
+        const std::string path = left.path + "[" + std::to_string(count) + "]";
+        if (fault.is_array() && fault.size() == width) require_numbers(fault, path);
+        throw Error("each row of " + left.name() + " must be " + shape + ", not " + in_words(fault) +
+                        (fault.is_array() ? " of " + std::to_string(fault.size()) : ""),
+                    path);
+    }
+    return Eigen::Map<const Matrix>(flat.data(), static_cast<Eigen::Index>(count),
+                                    static_cast<Eigen::Index>(width));
+}
+
+/// "line 3, column 7" of a byte (counted from 1) of the text.
+inline std::string line_and_column(const std::string& text, std::size_t byte) {
+    std::size_t line = 1;
+    std::size_t column = 1;
+    for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
+        column = text[i] == '\n' ? 1 : column + 1;
+        line += text[i] == '\n' ? 1 : 0;
+    }
+    return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+/// The reason in the library's message "...syntax error while parsing X - REASON; last read: '...'; expected Y".
+inline std::string reason_of(const std::string& message) {
+    const std::size_t dash = message.find(" - ");
+    std::string reason = dash == std::string::npos ? "it breaks off" : message.substr(dash + 3);
+    return reason.substr(0, reason.find("; last read"));
+}
+
+/// Parses a text that must be one JSON object with this format and version 1.
+inline Fields parse_document(const std::string& text, const std::string& format, PassRows* rows = nullptr) {
+    Watcher watcher(rows);
+    Json document;
+    try {
+        document = watcher.parse(text);
+    } catch (const Json::parse_error& fault) {
+        throw Error("the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " +
+                        reason_of(fault.what()),
+                    watcher.path());
+    } catch (const Json::out_of_range& fault) {  // 1e400
+        throw Error("the file holds a number that is too large to be finite", watcher.path());
+    }
+    Fields fields(Field{std::move(document), ""});
+    const Field found = fields.take("format");
+    if (io::text(found) != format) {
+        found.refuse("the file calls itself " + found.value.dump() + ", where \"" + format + "\" is needed");
+    }
+    const Field version = fields.take("version");
+    if (number(version) != 1.0) {
+        throw Error("version " + version.value.dump() + " of " + format +
+                        " is not known; this program reads version 1",
+                    version.path, number(version));
+    }
+    return fields;
+}
+
+/// The JSON object in a value type's `extra` or `settings`; none of its keys may be one the writer itself writes.
+inline Json parse_object(const std::string& text, const std::string& path,
+                         const std::set<std::string>& own_keys = {}) {
+    Watcher watcher(nullptr);
+    Json object;
+    try {
+        object = watcher.parse(text);
+    } catch (const Json::exception&) {
+        object = nullptr;
+    }
+    if (!object.is_object()) throw Error(Field{nullptr, path}.name() + " must be the text of a JSON object", path);
+    for (const auto& [key, value] : object.items()) {
+        if (own_keys.count(key) > 0) throw Error("the key " + key + " may not be among the unknown keys", path);
+    }
+    return object;
+}
+
+}  // namespace brushsvg::io

@@ -1,0 +1,159 @@
+#pragma once
+
+// Private to brushsvg::io: values of a JSON document read as what they must be, with their key path.
+
+#include <array>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "brushsvg/error.hpp"
+#include "brushsvg/marks.hpp"
+
+namespace brushsvg::io {
+
+using Json = nlohmann::ordered_json;  // keeps the order of unknown keys
+
+/// A value and where it stands in its file ("lag.coefficients").
+struct Field {
+    Json value;
+    std::string path;
+
+    [[noreturn]] void refuse(const std::string& sentence) const { throw Error(sentence, path); }
+    /// "coefficients": what a sentence calls this value.
+    std::string name() const { return path.empty() ? "the file" : path.substr(path.find_last_of('.') + 1); }
+};
+
+inline std::string in_words(const Json& value) {
+    switch (value.type()) {
+        case Json::value_t::null: return "null";
+        case Json::value_t::boolean: return value.get<bool>() ? "true" : "false";
+        case Json::value_t::string: return "a string";
+        case Json::value_t::array: return "an array";
+        case Json::value_t::object: return "an object";
+        default: return value.dump();
+    }
+}
+
+inline double number(const Field& field) {
+    if (!field.value.is_number()) field.refuse(field.name() + " must be a number, not " + in_words(field.value));
+    return field.value.get<double>();
+}
+
+inline double positive(const Field& field) {
+    const double value = number(field);
+    if (!(value > 0.0)) {
+        throw Error(field.name() + " must be greater than 0, not " + in_words(field.value), field.path, value);
+    }
+    return value;
+}
+
+inline std::string text(const Field& field) {
+    if (!field.value.is_string()) field.refuse(field.name() + " must be a string, not " + in_words(field.value));
+    return field.value.get<std::string>();
+}
+
+inline bool truth(const Field& field) {
+    if (!field.value.is_boolean()) {
+        field.refuse(field.name() + " must be true or false, not " + in_words(field.value));
+    }
+    return field.value.get<bool>();
+}
+
+/// Members of an array as fields of their own, with the index in their path.
+inline std::vector<Field> members(Field field) {
+    if (!field.value.is_array()) field.refuse(field.name() + " must be an array, not " + in_words(field.value));
+    std::vector<Field> fields;
+    fields.reserve(field.value.size());
+    for (std::size_t i = 0; i < field.value.size(); ++i) {
+        fields.push_back({std::move(field.value[i]), field.path + "[" + std::to_string(i) + "]"});
+    }
+    return fields;
+}
+
+inline void require_numbers(const Json& row, const std::string& path) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        if (row[i].is_number()) continue;
+        const Field fault{row[i], path + "[" + std::to_string(i) + "]"};
+        number(fault);
+    }
+}
+
+inline std::vector<double> numbers(const Field& field) {
+    if (!field.value.is_array()) {
+        field.refuse(field.name() + " must be an array of numbers, not " + in_words(field.value));
+    }
+    require_numbers(field.value, field.path);
+    return field.value.get<std::vector<double>>();
+}
+
+inline std::array<double, 2> pair(const Field& field) {
+    const std::vector<double> values = numbers(field);
+    if (values.size() != 2) {
+        field.refuse(field.name() + " must hold two numbers, not " + std::to_string(values.size()));
+    }
+    return {values[0], values[1]};
+}
+
+/// [least, greatest].
+inline std::array<double, 2> interval(const Field& field) {
+    const std::array<double, 2> ends = pair(field);
+    if (ends[0] > ends[1]) field.refuse(field.name() + " must name the smaller number first");
+    return ends;
+}
+
+/// [[x, y], ...]
+inline Ring points(const Field& field) {
+    if (!field.value.is_array()) {
+        field.refuse(field.name() + " must be an array of points [x, y], not " + in_words(field.value));
+    }
+    Ring ring(static_cast<Eigen::Index>(field.value.size()), 2);
+    for (std::size_t i = 0; i < field.value.size(); ++i) {
+        const Json& point = field.value[i];
+        const auto path = [&] { return field.path + "[" + std::to_string(i) + "]"; };
+        if (!point.is_array() || point.size() != 2) {
+            throw Error("a point must be two numbers [x, y], not " + in_words(point), path());
+        }
+        if (!point[0].is_number() || !point[1].is_number()) require_numbers(point, path());
+        ring.row(static_cast<Eigen::Index>(i)) << point[0].get<double>(), point[1].get<double>();
+    }
+    return ring;
+}
+
+/// An object whose known keys are taken out one by one; what then is left are the unknown ones.
+class Fields {
+   public:
+    explicit Fields(Field object) : object_(std::move(object)) {
+        if (!object_.value.is_object()) {
+            object_.refuse(object_.name() + " must be an object, not " + in_words(object_.value));
+        }
+    }
+
+    std::optional<Field> find(const std::string& key) {
+        const auto found = object_.value.find(key);
+        if (found == object_.value.end()) return std::nullopt;
+        Field field{std::move(*found), path_of(key)};
+        object_.value.erase(found);
+        return field;
+    }
+
+    Field take(const std::string& key) {
+        std::optional<Field> field = find(key);
+        if (!field) throw Error("the key " + key + " is missing", path_of(key));
+        return std::move(*field);
+    }
+
+    Json& rest() { return object_.value; }
+    std::string extra() const { return object_.value.dump(); }
+
+   private:
+    std::string path_of(const std::string& key) const {
+        return object_.path.empty() ? key : object_.path + "." + key;
+    }
+    Field object_;
+};
+
+}  // namespace brushsvg::io

@@ -1,0 +1,107 @@
+#include "marks_json.hpp"
+
+#include <utility>
+
+#include "json_document.hpp"
+#include "json_fields.hpp"
+#include "json_text.hpp"
+
+namespace brushsvg::io {
+namespace {
+
+constexpr const char* kFormat = "brushsvg/marks";
+
+/// Rows are parallel, read or about to be written. `path`: of the pass.
+void require_parallel(const PassMarks& pass, const std::string& path) {
+    const auto require = [&](const char* key, std::size_t rows) {
+        if (rows == pass.pose.size()) return;
+        throw Error(std::string(key) + " of stroke " + pass.stroke + " has " + std::to_string(rows) +
+                        " rows where pose has " + std::to_string(pass.pose.size()),
+                    path + "." + key);
+    };
+    require("contact_mm", static_cast<std::size_t>(pass.contact_mm.rows()));
+    require("heading_rad", pass.heading_rad.size());
+    require("depth_mm", pass.depth_mm.size());
+    require("taut", pass.taut.size());
+}
+
+Rings read_rings(Fields& fields) {
+    Rings rings;
+    if (auto field = fields.find("outline_mm")) {
+        for (const Field& ring : members(std::move(*field))) rings.push_back(points(ring));
+    }
+    return rings;
+}
+
+PassMarks read_pass(Field field, std::size_t index, const PassRows& rows) {
+    const std::string path = field.path;
+    Fields fields(std::move(field));
+    PassMarks pass;
+    pass.stroke = text(fields.take("stroke"));
+    pass.pose = numbers(fields.take("pose"));
+    pass.contact_mm = rows.of_pass<Ring>(index, fields.take("contact_mm"), "two numbers [x, y]");
+    pass.heading_rad = numbers(fields.take("heading_rad"));
+    pass.depth_mm = numbers(fields.take("depth_mm"));
+    for (const Field& value : members(fields.take("taut"))) pass.taut.push_back(truth(value) ? 1 : 0);
+    pass.outline_mm = read_rings(fields);
+    pass.pull.assign(pass.pose.size(), 1.0);
+    require_parallel(pass, path);
+    return pass;
+}
+
+void append_column(std::string& out, const char* key, const std::vector<double>& values) {
+    out += std::string(",\n     \"") + key + "\": ";
+    append_array(out, values.size(), 7, [&](std::size_t i) { append_rounded(out, values[i], key); });
+}
+
+void append_rings(std::string& out, const Rings& rings, std::size_t indent) {
+    out += '[';
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        out += (i == 0 ? "\n" : ",\n") + std::string(indent, ' ');
+        append_rows(out, rings[i], indent + 2, "outline_mm");
+    }
+    out += ']';
+}
+
+void append_pass(std::string& out, const PassMarks& pass, const std::string& path) {
+    require_parallel(pass, path);
+    out += "    {\"stroke\": ";
+    append_string(out, pass.stroke, path + ".stroke");
+    append_column(out, "pose", pass.pose);
+    out += ",\n     \"contact_mm\": ";
+    append_rows(out, pass.contact_mm, 7, "contact_mm");
+    append_column(out, "heading_rad", pass.heading_rad);
+    append_column(out, "depth_mm", pass.depth_mm);
+    out += ",\n     \"taut\": ";
+    append_array(out, pass.taut.size(), 7, [&](std::size_t i) { out += pass.taut[i] != 0 ? "true" : "false"; });
+    out += ",\n     \"outline_mm\": ";
+    append_rings(out, pass.outline_mm, 7);
+    out += '}';
+}
+
+}  // namespace
+
+Marks read_marks(const std::string& text) {
+    PassRows rows{"contact_mm", 2, {}};
+    Fields fields = parse_document(text, kFormat, &rows);
+    Marks marks;
+    marks.outline_mm = read_rings(fields);
+    for (Field& pass : members(fields.take("passes"))) {
+        marks.passes.push_back(read_pass(std::move(pass), marks.passes.size(), rows));
+    }
+    return marks;
+}
+
+std::string write_marks(const Marks& marks) {
+    std::string out = std::string("{\n  \"format\": \"") + kFormat + "\",\n  \"version\": 1,\n  \"outline_mm\": ";
+    append_rings(out, marks.outline_mm, 4);
+    out += ",\n  \"passes\": [";
+    for (std::size_t i = 0; i < marks.passes.size(); ++i) {
+        out += i == 0 ? "\n" : ",\n";
+        append_pass(out, marks.passes[i], "passes[" + std::to_string(i) + "]");
+    }
+    out += marks.passes.empty() ? "]\n}\n" : "\n  ]\n}\n";
+    return out;
+}
+
+}  // namespace brushsvg::io

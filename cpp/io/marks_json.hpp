@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "brushsvg/marks.hpp"
+
+namespace brushsvg::io {
+
+/// Reads a marks.json. The file has neither the TCP nor the pull: tcp_mm comes back empty, pull all 1. Throws
+/// Error with `where` = key path.
+Marks read_marks(const std::string& text);
+
+/// Marks as text, numbers in plain decimals rounded to 1e-7. Throws Error for rows that are not parallel or
+/// numbers that are not finite.
+std::string write_marks(const Marks& marks);
+
+}  // namespace brushsvg::io

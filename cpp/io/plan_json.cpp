@@ -1,0 +1,115 @@
+#include "plan_json.hpp"
+
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "json_document.hpp"
+#include "json_fields.hpp"
+#include "json_text.hpp"
+
+namespace brushsvg::io {
+namespace {
+
+constexpr const char* kFormat = "brushsvg/plan";
+const std::set<std::string> kPlanKeys{"format", "version", "brush", "brush_sha256", "sheet_mm", "passes"};
+const std::set<std::string> kPassKeys{"stroke", "poses_mm", "speed_mm_s", "layer", "colour", "settings"};
+
+/// What holds for every pass, read or about to be written. `path`: of the pass; `slack_mm`: how far above the
+/// paper still counts as on it.
+void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
+    const auto where = [&](Eigen::Index i) { return path + ".poses_mm[" + std::to_string(i) + "]"; };
+    if (pass.poses_mm.rows() == 0) throw Error("stroke " + pass.stroke + " has no poses", path + ".poses_mm");
+    for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
+        const auto sentence = [&](const std::string& fault) {
+            return "pose " + std::to_string(i) + " of stroke " + pass.stroke + " " + fault;
+        };
+        if (!pass.poses_mm.row(i).allFinite()) throw Error(sentence("is not finite"), where(i));
+        const double z_mm = pass.poses_mm(i, 2);
+        if (z_mm > slack_mm) {
+            throw Error(sentence("has z = " + in_words(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
+                        z_mm, std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
+        }
+    }
+    if (!(pass.speed_mm_s > 0.0) || !std::isfinite(pass.speed_mm_s)) {
+        throw Error("speed_mm_s of stroke " + pass.stroke + " must be greater than 0, not " +
+                        in_words(pass.speed_mm_s),
+                    path + ".speed_mm_s", pass.speed_mm_s);
+    }
+}
+
+void require_sound(const std::array<double, 2>& sheet_mm) {
+    for (const double side_mm : sheet_mm) {
+        if (side_mm > 0.0) continue;
+        throw Error("both sides of the sheet must be greater than 0, not " + in_words(side_mm), "sheet_mm", side_mm);
+    }
+}
+
+Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
+    const std::string path = field.path;
+    Fields fields(std::move(field));
+    Pass pass;
+    pass.stroke = text(fields.take("stroke"));
+    pass.poses_mm = rows.of_pass<Poses>(index, fields.take("poses_mm"), "three numbers [x, y, z]");
+    if (const auto speed = fields.find("speed_mm_s")) pass.speed_mm_s = number(*speed);
+    if (const auto layer = fields.find("layer")) pass.layer = text(*layer);
+    if (const auto colour = fields.find("colour")) pass.colour = text(*colour);
+    if (auto settings = fields.find("settings")) pass.settings = Fields(std::move(*settings)).extra();
+    pass.extra = fields.extra();
+    require_sound(pass, path, 0.0);
+    return pass;
+}
+
+void append_pass(std::string& out, const Pass& pass, const std::string& path) {
+    require_sound(pass, path, 0.5e-7);  // what is written as 0
+    out += "    {\"stroke\": ";
+    append_string(out, pass.stroke, path + ".stroke");
+    out += ", \"speed_mm_s\": ";
+    append_exact(out, pass.speed_mm_s, "speed_mm_s");
+    out += ", \"layer\": ";
+    append_string(out, pass.layer, path + ".layer");
+    out += ", \"colour\": ";
+    append_string(out, pass.colour, path + ".colour");
+    out += ", \"settings\": " + parse_object(pass.settings, path + ".settings").dump();
+    append_extra(out, parse_object(pass.extra, path + ".extra", kPassKeys), 5);
+    out += ",\n     \"poses_mm\": ";
+    append_rows(out, pass.poses_mm, 7, "poses_mm");
+    out += '}';
+}
+
+}  // namespace
+
+Plan read_plan(const std::string& text) {
+    PassRows rows{"poses_mm", 3, {}};
+    Fields fields = parse_document(text, kFormat, &rows);
+    Plan plan;
+    plan.brush = io::text(fields.take("brush"));
+    if (const auto digest = fields.find("brush_sha256")) plan.brush_sha256 = io::text(*digest);
+    plan.sheet_mm = pair(fields.take("sheet_mm"));
+    require_sound(plan.sheet_mm);
+    for (Field& pass : members(fields.take("passes"))) {
+        plan.passes.push_back(read_pass(std::move(pass), plan.passes.size(), rows));
+    }
+    plan.extra = fields.extra();
+    return plan;
+}
+
+std::string write_plan(const Plan& plan) {
+    std::string out = std::string("{\n  \"format\": \"") + kFormat + "\",\n  \"version\": 1,\n  \"brush\": ";
+    append_string(out, plan.brush, "brush");
+    out += ",\n  \"brush_sha256\": ";
+    append_string(out, plan.brush_sha256, "brush_sha256");
+    require_sound(plan.sheet_mm);
+    out += ",\n  \"sheet_mm\": ";
+    append_numbers(out, {plan.sheet_mm[0], plan.sheet_mm[1]}, 4, "sheet_mm");
+    append_extra(out, parse_object(plan.extra, "extra", kPlanKeys), 2);
+    out += ",\n  \"passes\": [";
+    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+        out += i == 0 ? "\n" : ",\n";
+        append_pass(out, plan.passes[i], "passes[" + std::to_string(i) + "]");
+    }
+    out += plan.passes.empty() ? "]\n}\n" : "\n  ]\n}\n";
+    return out;
+}
+
+}  // namespace brushsvg::io

@@ -1,0 +1,224 @@
+#include "brushsvg/brush.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "brushsvg/error.hpp"
+#include "brushsvg/lag.hpp"
+
+namespace brushsvg {
+namespace {
+
+std::string format(const char* pattern, double a = 0.0, double b = 0.0, double c = 0.0) {
+    char text[256];
+    std::snprintf(text, sizeof text, pattern, a, b, c);
+    return text;
+}
+
+constexpr double kLawAgainstOutlineMm = 0.5;  // contract: outlines rule the mark, laws the inverse; they must agree
+
+/// Least value of a profile over the depth range and where it stands.
+struct Least {
+    double depth, value;
+};
+Least least(const Profile& profile, double lo, double hi) {
+    Least found{lo, profile(lo)};
+    for (const PolynomialPiece& piece : pieces(profile, lo, hi)) {
+        std::vector<double> slope;
+        for (std::size_t i = 1; i < piece.coefficients.size(); ++i) slope.push_back(double(i) * piece.coefficients[i]);
+        std::vector<double> candidates = real_roots(slope, piece.lo, piece.hi);
+        candidates.push_back(piece.lo);
+        candidates.push_back(piece.hi);
+        for (double d : candidates)
+            if (profile(d) < found.value) found = {d, profile(d)};
+    }
+    return found;
+}
+
+void check_lag(const Brush& brush) {
+    const auto [lo, hi] = brush.depth_range_mm;
+    if (brush.is_rigid()) return;
+    const Least worst = least(brush.lag, lo, hi);
+    if (worst.value < 0.0)
+        throw Error(format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths %.2f and ",
+                           worst.value, worst.depth, lo) +
+                        format("%.2f mm", hi),
+                    "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
+    // zero at depth 0 alone is admissible: the lever grows out of nothing
+    const Least inside = least(brush.lag, lo + 1e-3 * (hi - lo), hi);
+    if (!(inside.value > 0.0))
+        throw Error(format("the lag is zero at depth %.2f mm but not everywhere: a brush lags over its whole range, a "
+                           "rigid pen nowhere",
+                           inside.depth),
+                    "lag", 0.0, std::array<double, 2>{0.0, INFINITY});
+}
+
+void check_rising(const Brush& brush) {
+    const auto [lo, hi] = brush.depth_range_mm;
+    double before = brush.half_width(lo);
+    if (before < 0.0) throw Error(format("the half width is %.3f mm at depth %.2f mm; it must not be negative", before, lo), "half_width");
+    constexpr int n = 1000;
+    for (int i = 1; i <= n; ++i) {
+        const double d = lo + (hi - lo) * i / n, now = brush.half_width(d);
+        if (now < before - 1e-9)
+            throw Error(format("the half width falls at depth %.2f mm; it must not fall as the brush is pressed", d),
+                        "half_width", d, brush.depth_range_mm);
+        before = now;
+    }
+    if (!(before > 0.0)) throw Error("the half width is zero over the whole depth range", "half_width");
+}
+
+double signed_area(const Ring& ring) {
+    double twice = 0.0;
+    for (Eigen::Index i = 0, n = ring.rows(); i < n; ++i) {
+        const Eigen::Index j = (i + 1) % n;
+        twice += ring(i, 0) * ring(j, 1) - ring(j, 0) * ring(i, 1);
+    }
+    return 0.5 * twice;
+}
+
+bool crosses_itself(const Ring& p) {
+    const Eigen::Index n = p.rows();
+    const auto side = [&](Eigen::Index a, Eigen::Index b, Eigen::Index c) {
+        return (p(b, 0) - p(a, 0)) * (p(c, 1) - p(a, 1)) - (p(b, 1) - p(a, 1)) * (p(c, 0) - p(a, 0));
+    };
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = i + 2; j < n; ++j) {
+            if (i == 0 && j == n - 1) continue;
+            const Eigen::Index i1 = (i + 1) % n, j1 = (j + 1) % n;
+            if (side(i, i1, j) * side(i, i1, j1) < 0.0 && side(j, j1, i) * side(j, j1, i1) < 0.0) return true;
+        }
+    return false;
+}
+
+void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, const std::string& where) {
+    double depth_before = 0.0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const Footprint& shape = shapes[i];
+        const std::string here = where + "[" + std::to_string(i) + "]";
+        const double d = shape.depth_mm;
+        if (!std::isfinite(d) || !(d > depth_before))
+            throw Error(format("depth %.3f mm is not greater than the one before, %.3f mm", d, depth_before), here, d);
+        depth_before = d;
+        if (!shape.outline_mm.allFinite()) throw Error("the outline has a coordinate that is not finite", here);
+        if (shape.outline_mm.rows() < 3) throw Error("the outline needs at least 3 vertices", here);
+        if (shape.outline_mm.rows() != brush.footprints.vertex_count())
+            throw Error(format("the outline has %.0f vertices where the first one has %.0f; all depths need the same",
+                               double(shape.outline_mm.rows()), double(brush.footprints.vertex_count())),
+                        here);
+        if (shape.outline_mm.row(0).norm() > 1e-9) throw Error("the outline's first vertex is not the tip at (0, 0)", here);
+        if (!(signed_area(shape.outline_mm) > 0.0)) throw Error("the outline does not run counter-clockwise", here);
+        if (crosses_itself(shape.outline_mm)) throw Error("the outline crosses itself", here);
+        if (d > brush.depth_range_mm[1]) continue;
+        const WidestSection seen = widest_section(shape.outline_mm);
+        // several sections may be equally wide: the law must lie on one of them
+        const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
+        if (std::abs(seen.half_width_mm - h_law) > kLawAgainstOutlineMm)
+            throw Error(format("at depth %.2f mm the outline is %.2f mm wide on each side but half_width says %.2f mm; they "
+                               "must agree to 0.5 mm",
+                               d, seen.half_width_mm, h_law),
+                        here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
+        if (std::abs(seen.from_tip_mm - x_law) > kLawAgainstOutlineMm)
+            throw Error(format("at depth %.2f mm the outline is widest %.2f mm from the tip but tip_to_widest says %.2f mm; "
+                               "they must agree to 0.5 mm",
+                               d, seen.from_tip_mm, x_law),
+                        here, seen.from_tip_mm, std::array<double, 2>{x_law - 0.5, x_law + 0.5});
+    }
+}
+
+}  // namespace
+
+bool Brush::is_rigid() const {
+    return std::all_of(lag.coefficients.begin(), lag.coefficients.end(), [](double c) { return c == 0.0; }) &&
+           (std::isinf(lag.floor) || (lag.floor == 0.0 && lag.floor_slope == 0.0));
+}
+
+std::array<double, 2> Brush::half_width_range_mm() const {
+    return {half_width(depth_range_mm[0]), half_width(depth_range_mm[1])};
+}
+
+bool Brush::width_follows_depth() const {
+    const auto [narrow, wide] = half_width_range_mm();
+    return wide - narrow > 1e-9;
+}
+
+double Brush::depth_for_half_width(double half_width_mm, const std::string& where) const {
+    if (!width_follows_depth()) return paint_depth_mm;
+    const auto [narrow, wide] = half_width_range_mm();
+    const double rounding = 1e-9 * wide;  // a width that came through text and units
+    if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding) || !(half_width_mm > 0.0))
+        throw Error(format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
+                           2.0 * wide) +
+                        " that brush " + name + " can paint",
+                    where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
+    double a = depth_range_mm[0], b = depth_range_mm[1];
+    if (half_width.coefficients.size() == 2 && std::isinf(half_width.floor))
+        return std::clamp((half_width_mm - half_width.coefficients[0]) / half_width.coefficients[1], a, b);
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (a + b);
+        if (!(a < middle && middle < b)) break;
+        (half_width(middle) < half_width_mm ? a : b) = middle;
+    }
+    return b;
+}
+
+void check(const Brush& brush) {
+    const auto [lo, hi] = brush.depth_range_mm;
+    if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo))
+        throw Error(format("the depth range [%.2f, %.2f] mm must rise from 0 or more", lo, hi), "depth_range_mm");
+    for (const auto& [profile, where] : {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
+                                         std::pair{&brush.tip_to_widest, "tip_to_widest"},
+                                         std::pair{&brush.half_width, "half_width"}}) {
+        if (profile->coefficients.empty()) throw Error("the law has no coefficients", where);
+        if (int(profile->coefficients.size()) > kMaxLawDegree + 1)
+            throw Error(format("the law has %.0f coefficients; at most 9 are read", double(profile->coefficients.size())), where);
+        for (double c : profile->coefficients)
+            if (!std::isfinite(c)) throw Error("a coefficient is not finite", where);
+    }
+    check_lag(brush);
+    check_rising(brush);
+    if (brush.footprints.dragged.empty()) throw Error("there is no outline", "footprints.dragged");
+    check_shapes(brush, brush.footprints.dragged, "footprints.dragged");
+    check_shapes(brush, brush.footprints.pressed, "footprints.pressed");
+    if (!(brush.max_speed_mm_s > 0.0))
+        throw Error(format("the speed limit %.2f mm/s must be positive", brush.max_speed_mm_s), "max_speed_mm_s");
+    if (!brush.width_follows_depth() && !(brush.paint_depth_mm >= lo && brush.paint_depth_mm <= hi))
+        throw Error(format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", brush.paint_depth_mm, lo, hi),
+                    "paint_depth_mm", brush.paint_depth_mm, brush.depth_range_mm);
+}
+
+std::vector<Warning> remarks(const Brush& brush) {
+    std::vector<Warning> out;
+    const auto [lo, hi] = brush.depth_range_mm;
+    for (const auto& [profile, where] : {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
+                                         std::pair{&brush.tip_to_widest, "tip_to_widest"},
+                                         std::pair{&brush.half_width, "half_width"}}) {
+        if (profile->assumed) out.push_back({where, "the law is assumed, not measured"});
+        if (profile->calibrated_mm && ((*profile->calibrated_mm)[0] > lo || (*profile->calibrated_mm)[1] < hi))
+            out.push_back({where, format("the law was measured between depths %.2f and %.2f mm, the brush may be used ",
+                                         (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1]) +
+                                      format("from %.2f to %.2f mm", lo, hi)});
+    }
+    if (!brush.is_rigid()) {
+        bool falls = true, gap = true;
+        for (int i = 1; i <= 200; ++i) {
+            const double d = lo + (hi - lo) * i / 200, before = lo + (hi - lo) * (i - 0.5) / 200;
+            falls = falls && brush.lag(d) * before <= brush.lag(before) * d + 1e-12;
+            gap = gap && brush.tip_gap(d) >= 0.0;
+        }
+        if (!falls)
+            out.push_back({"lag", "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
+                                  "so the brush is pressed down on the spot before it runs"});
+        if (!gap) out.push_back({"tip_gap", "the centre of friction lies outside the footprint at some depths"});
+    }
+    if (!brush.width_follows_depth())
+        out.push_back({"half_width", format("the width does not depend on depth: drawn widths are ignored and every stroke is "
+                                            "%.2f mm wide",
+                                            2.0 * brush.half_width(hi))});
+    if (brush.footprints.pressed.empty())
+        out.push_back({"footprints.pressed", "no outline for a brush pressed straight down: the dragged one is used"});
+    return out;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,576 @@
+#include "brushsvg/compensate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "brushsvg/error.hpp"
+#include "brushsvg/lag.hpp"
+#include "brushsvg/simulate.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// A chord of a turn in place: at most this angle, so that the heading between poses is never far from what it says.
+constexpr double kTurnStepRad = 0.2;
+/// How far inside q = P + r u a lift stays: 0 slips on straight moves (0.25 mm from depth 10), much more lets the patch
+/// relax towards its pressed shape.
+constexpr double kLiftSlackMm = 0.05;
+
+/// A place on the middle line and what the inverse finds there.
+struct Sample {
+    Place place;
+    double s;         ///< arc length from the start [mm]
+    Vector2d middle;  ///< m
+    double depth;
+    Vector2d contact;  ///< P
+    Vector2d heading;  ///< u
+    Vector2d tcp;      ///< q
+    bool taut = true;      ///< the lever from P to m; loose where the line turns too sharply for it
+    bool settled = false;  ///< the chord to the next sample is close enough
+};
+using Samples = std::vector<Sample>;
+
+double depth_of(const Stroke& stroke, const Brush& brush, double fraction) {
+    return brush.depth_for_half_width(half_width_at(stroke, fraction), stroke.id);
+}
+
+/// The middle line with its arc length, and the depth along it.
+class Line {
+   public:
+    Line(const Stroke& stroke, const Brush& brush) : stroke_(stroke), brush_(brush) {
+        start_.push_back(0.0);
+        for (Index i = 0; i < stroke.middle_mm.rows(); ++i)
+            start_.push_back(start_.back() + arc_length(stroke.middle_mm, i, 0.0, 1.0));
+    }
+    double length() const { return start_.back(); }
+
+    Sample at(const Place& place, double s) const {
+        Sample sample;
+        sample.place = place;
+        sample.s = s;
+        sample.middle = point_at(stroke_.middle_mm, place);
+        sample.depth = depth_of(stroke_, brush_, length() > 0.0 ? s / length() : 0.0);
+        return sample;
+    }
+    Sample at(double s) const {
+        Index i = std::upper_bound(start_.begin(), start_.end(), s) - start_.begin() - 1;
+        i = std::clamp<Index>(i, 0, stroke_.middle_mm.rows() - 1);
+        const double target = s - start_[i], whole = start_[i + 1] - start_[i];
+        double a = 0.0, b = 1.0;
+        if (target <= 0.0) return at({i, 0.0}, start_[i]);
+        if (target >= whole) return at({i, 1.0}, start_[i + 1]);
+        for (int k = 0; k < 60 && b - a > 1e-14; ++k) {
+            const double t = 0.5 * (a + b);
+            (arc_length(stroke_.middle_mm, i, 0.0, t) < target ? a : b) = t;
+        }
+        return at({i, b}, s);
+    }
+    Sample between(const Sample& a, const Sample& b, double c) const {
+        const Place place{a.place.cubic, a.place.t + c * (b.place.t - a.place.t)};
+        return at(place, a.s + arc_length(stroke_.middle_mm, place.cubic, a.place.t, place.t));
+    }
+    Vector2d tangent(const Sample& sample) const { return tangent_at(stroke_.middle_mm, sample.place); }
+
+    /// Samples at both ends of every cubic and at the given arc lengths, between s0 and s1. Neighbours share a cubic,
+    /// or stand on the same point where one cubic ends and the next begins.
+    Samples coarse(double s0, double s1, std::vector<double> extra) const {
+        extra.push_back(s0);
+        extra.push_back(s1);
+        std::sort(extra.begin(), extra.end());
+        Samples samples;
+        for (Index i = 0; i < stroke_.middle_mm.rows(); ++i) {
+            if (start_[i + 1] < s0 || start_[i] > s1 || start_[i + 1] == start_[i]) continue;
+            const auto push = [&](const Sample& sample) {
+                if (samples.empty() || samples.back().place.cubic != sample.place.cubic ||
+                    samples.back().place.t < sample.place.t)
+                    samples.push_back(sample);
+            };
+            if (start_[i] >= s0) push(at({i, 0.0}, start_[i]));
+            for (double s : extra) {
+                if (!(s > start_[i] && s < start_[i + 1] && s >= s0 && s <= s1)) continue;
+                Sample sample = at(s);
+                sample.place.cubic = i;
+                push(sample);
+            }
+            if (start_[i + 1] <= s1) push(at({i, 1.0}, start_[i + 1]));
+        }
+        if (samples.size() > 1 && samples[0].place.cubic != samples[1].place.cubic) samples.erase(samples.begin());
+        while (samples.size() > 1 && samples[samples.size() - 2].place.cubic != samples.back().place.cubic)
+            samples.pop_back();
+        return samples;
+    }
+
+   private:
+    const Stroke& stroke_;
+    const Brush& brush_;
+    std::vector<double> start_;
+};
+
+double angle_between(const Vector2d& from, const Vector2d& to) {
+    return std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+}
+
+Vector2d turned(const Vector2d& u, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * u.x() - s * u.y(), s * u.x() + c * u.y()};
+}
+
+double distance_to_chord(const Sample& a, const Sample& b, const Sample& between, double& depth_on_chord) {
+    const Vector2d chord = b.tcp - a.tcp;
+    const double squared = chord.squaredNorm();
+    const double t = squared > 0.0 ? std::clamp((between.tcp - a.tcp).dot(chord) / squared, 0.0, 1.0) : 0.5;
+    depth_on_chord = a.depth + t * (b.depth - a.depth);
+    return (between.tcp - (a.tcp + t * chord)).norm();
+}
+
+/// Splits the steps along the line until no chord of the TCP's path is farther than `tolerance` from it, depth included.
+/// Looks at both thirds of a step: the middle of an S lies on its chord. `solve` fills contact, heading and tcp of all
+/// samples.
+template <class Solve>
+void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {
+    const double least = std::min(1e-3, 0.1 * tolerance);
+    for (bool done = false; !done;) {
+        Samples finer;
+        std::vector<bool> trial;
+        done = true;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            finer.push_back(samples[i]);
+            trial.push_back(false);
+            if (i + 1 == samples.size() || samples[i].settled || samples[i].place.cubic != samples[i + 1].place.cubic)
+                continue;
+            if (samples[i + 1].s - samples[i].s < least) continue;
+            for (double c : {1.0 / 3.0, 2.0 / 3.0}) {
+                finer.push_back(line.between(samples[i], samples[i + 1], c));
+                trial.push_back(true);
+            }
+            done = false;
+        }
+        solve(finer);
+        samples.clear();
+        for (std::size_t i = 0; i < finer.size(); ++i) {
+            samples.push_back(finer[i]);
+            if (i + 3 >= finer.size() || !trial[i + 1]) continue;
+            const Sample &a = finer[i], &b = finer[i + 3];
+            bool close = std::abs(angle_between(a.heading, b.heading)) <= kTurnStepRad;
+            for (std::size_t k : {i + 1, i + 2}) {
+                double depth = 0.0;
+                const double off = distance_to_chord(a, b, finer[k], depth);
+                close = close && off + 0.5 * std::abs(depth - finer[k].depth) <= tolerance;
+            }
+            if (close) {
+                samples.back().settled = true;
+            } else {
+                samples.push_back(finer[i + 1]);
+                samples.push_back(finer[i + 2]);
+            }
+            i += 2;
+        }
+    }
+}
+
+struct PoseList {
+    std::vector<std::array<double, 3>> poses;
+    void add(const Vector2d& q, double depth) {
+        const std::array<double, 3> pose{q.x(), q.y(), depth > 0.0 ? -depth : 0.0};
+        if (poses.empty() || poses.back() != pose) poses.push_back(pose);
+    }
+    Poses matrix() const {
+        Poses out(Index(poses.size()), 3);
+        for (Index i = 0; i < out.rows(); ++i) out.row(i) << poses[i][0], poses[i][1], poses[i][2];
+        return out;
+    }
+};
+
+/// Chords of the circle about the contact from one heading to the other. Inscribed chords leave the lever loose, so the
+/// patch rests; tangent ones would drag it.
+void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, PoseList& out) {
+    const double angle = angle_between(from.heading, to.heading);
+    const int n = int(std::ceil(std::abs(angle) / kTurnStepRad));
+    for (int k = 1; k < n; ++k) {
+        const double c = double(k) / n, depth = from.depth + c * (to.depth - from.depth);
+        out.add(from.contact + brush.lag(depth) * turned(from.heading, c * angle), depth);
+    }
+}
+
+/// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
+bool may_press_while_running(const Brush& brush, double depth) {
+    const double reach = brush.lag(depth);
+    for (int i = 1; i < 64; ++i) {
+        const double t = i / 64.0;
+        if (t * reach > brush.lag(t * depth) + 1e-12) return false;
+    }
+    return true;
+}
+
+void land(const Sample& first, const Brush& brush, PoseList& out) {
+    out.add(first.contact, 0.0);
+    if (!may_press_while_running(brush, first.depth)) out.add(first.contact, first.depth);
+    out.add(first.contact + brush.lag(first.depth) * first.heading, first.depth);
+}
+
+/// Holds P and comes back along q = P + r(depth) u, a little inside: no tail.
+void lift(const Sample& last, const Brush& brush, PoseList& out) {
+    const auto back = [&](double depth) {
+        return Vector2d(last.contact + std::max(0.0, brush.lag(depth) - kLiftSlackMm) * last.heading);
+    };
+    if (!brush.is_rigid()) {
+        out.add(back(last.depth), last.depth);
+        // straight moves must not leave the curve by more than the slack: |r''| dd^2 / 8
+        const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+        double curved = 0.0;
+        for (const auto& piece : law.pieces) curved = std::max(curved, piece.most_curved);
+        const double step = curved > 0.0 ? std::sqrt(8.0 * 0.6 * kLiftSlackMm / curved) : last.depth;
+        std::vector<double> depths;
+        const int n = std::max(1, int(std::ceil(last.depth / step)));
+        for (int k = n - 1; k >= 0; --k) depths.push_back(last.depth * k / n);
+        for (const auto& piece : law.pieces)
+            if (piece.hi < last.depth) depths.push_back(piece.hi);
+        std::sort(depths.rbegin(), depths.rend());
+        for (double depth : depths) out.add(back(depth), depth);
+        return;
+    }
+    out.add(last.tcp, 0.0);
+}
+
+/// q = m + (r - e) u with P dragged by m on the lever e (article's law read backwards).
+class Inverse {
+   public:
+    Inverse(const Line& line, const Brush& brush) : line_(line), brush_(brush) {
+        const auto [lo, hi] = brush.depth_range_mm;
+        const auto e = difference(brush.tip_to_widest, brush.tip_gap, lo, hi);
+        ahead_ = make_law(e);
+        behind_ = make_law(e, -1.0);
+        for (const PolynomialPiece& piece : e)
+            for (double root : real_roots(piece.coefficients, piece.lo, piece.hi))
+                if (root > lo && root < hi) crossings_.push_back(root);
+    }
+    /// Depths where the widest section stands over the centre of friction.
+    const std::vector<double>& crossings() const { return crossings_; }
+
+    void operator()(Samples& samples) const {
+        std::size_t begin = 0;
+        while (begin + 1 < samples.size()) {
+            const int sign = sign_of(samples, begin);
+            std::size_t end = begin + 1;
+            while (end + 1 < samples.size() && sign_of(samples, end) == sign) ++end;
+            if (sign == 0)
+                follow_tangent(samples, begin, end);
+            else if (sign > 0)
+                forwards(samples, begin, end);
+            else
+                backwards(samples, begin, end);
+            begin = end;
+        }
+        if (samples.size() == 1) {
+            Sample& only = samples[0];
+            only.contact = only.middle - brush_.lever_to_widest(only.depth) * only.heading;
+        }
+        for (Sample& sample : samples) sample.tcp = sample.contact + brush_.lag(sample.depth) * sample.heading;
+    }
+
+   private:
+    int sign_of(const Samples& samples, std::size_t i) const {
+        if (ahead_.rigid) return 0;
+        const double e = brush_.lever_to_widest(0.5 * (samples[i].depth + samples[i + 1].depth));
+        return e > 0.0 ? 1 : e < 0.0 ? -1 : 0;
+    }
+    void follow_tangent(Samples& samples, std::size_t begin, std::size_t end) const {
+        for (std::size_t i = begin; i <= end; ++i) {
+            samples[i].heading = line_.tangent(samples[i]);
+            samples[i].contact = samples[i].middle;
+        }
+    }
+    /// The widest section leads: the forward law with lever e, from the stretch's beginning.
+    void forwards(Samples& samples, std::size_t begin, std::size_t end) const {
+        LagState<double> state;
+        state.heading = line_.tangent(samples[begin]);
+        start(samples, begin, ahead_, 1.0, state);
+        for (std::size_t i = begin + 1; i <= end; ++i) step(samples, i - 1, i, ahead_, 1.0, state);
+    }
+    /// The widest section trails: unstable forwards, stable from the stretch's end to its beginning.
+    void backwards(Samples& samples, std::size_t begin, std::size_t end) const {
+        LagState<double> state;
+        state.heading = -line_.tangent(samples[end]);
+        start(samples, end, behind_, -1.0, state);
+        for (std::size_t i = end; i > begin; --i) step(samples, i, i - 1, behind_, -1.0, state);
+    }
+    void start(Samples& samples, std::size_t i, const LagLaw<double>& law, double sign, LagState<double>& state) const {
+        state.taut = state.heading_known = true;
+        state.contact = samples[i].middle - std::max(0.0, law.at(samples[i].depth)) * state.heading;
+        store(samples[i], sign, state);
+    }
+    void step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,
+              LagState<double>& state) const {
+        advance(law, Move<double>(samples[from].middle, samples[to].middle, samples[from].depth, samples[to].depth), state);
+        store(samples[to], sign, state);
+    }
+    static void store(Sample& sample, double sign, const LagState<double>& state) {
+        sample.contact = state.contact;
+        sample.heading = sign * state.heading;
+        sample.taut = state.taut;
+    }
+
+    const Line& line_;
+    const Brush& brush_;
+    LagLaw<double> ahead_, behind_;
+    std::vector<double> crossings_;
+};
+
+/// How far the footprint reaches in front of its widest section [mm].
+double front_of_widest(const Brush& brush, double depth) {
+    return footprint_at(brush.footprints, depth, 1.0).col(0).maxCoeff() - brush.tip_to_widest(depth);
+}
+
+/// Arc lengths where the depth passes a given one: samples must stand there.
+std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length, const std::vector<double>& depths) {
+    std::vector<double> out;
+    for (std::size_t k = 0; k < stroke.half_width.size(); ++k) {
+        const WidthKnot& knot = stroke.half_width[k];
+        if (knot.at > 0.0 && knot.at < 1.0) out.push_back(knot.at * length);
+        if (k == 0) continue;
+        const WidthKnot& before = stroke.half_width[k - 1];
+        for (double depth : depths) {
+            const double h = brush.half_width(depth), rise = knot.half_width_mm - before.half_width_mm;
+            if ((before.half_width_mm - h) * (knot.half_width_mm - h) < 0.0)
+                out.push_back((before.at + (knot.at - before.at) * (h - before.half_width_mm) / rise) * length);
+        }
+    }
+    return out;
+}
+
+/// Where along the line the widest section starts and stops: the tip begins the mark and the footprint's front ends it,
+/// half a width beyond the path's ends.
+std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, double length) {
+    if (stroke.closed) return {0.0, length};
+    const double h0 = half_width_at(stroke, 0.0), h1 = half_width_at(stroke, 1.0);
+    constexpr int n = 400;
+    double s0 = 0.0, s1 = length;
+    for (int i = 0; i <= n; ++i) {
+        s0 = length * i / n;
+        if (s0 - brush.tip_to_widest(depth_of(stroke, brush, s0 / std::max(length, 1e-300))) + h0 >= 0.0) break;
+    }
+    if (s0 > 0.0) {  // the crossing lies in the last step
+        double a = std::max(0.0, s0 - length / n), b = s0;
+        for (int i = 0; i < 60; ++i) {
+            const double s = 0.5 * (a + b);
+            (s - brush.tip_to_widest(depth_of(stroke, brush, s / length)) + h0 >= 0.0 ? b : a) = s;
+        }
+        s0 = b;
+    }
+    const double beyond = front_of_widest(brush, depth_of(stroke, brush, 1.0)) - h1;
+    if (beyond > 0.0) s1 = length - beyond;
+    return {s0, s1};
+}
+
+/// A mark no longer than a footprint: one landing that leaves the widest section at the path's end.
+Samples dab(const Stroke& stroke, const Line& line) {
+    Sample sample = line.at(line.length());
+    const Vector2d across = point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0}) - point_at(stroke.middle_mm, {0, 0.0});
+    // a point has no direction: left to right, as one writes
+    sample.heading = line.length() > 0.0 ? line.tangent(sample) : Vector2d(1.0, 0.0);
+    if (across.norm() > 0.5 * line.length() && line.length() > 0.0) sample.heading = across.normalized();
+    return {sample};
+}
+
+PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, double step_tolerance, bool& turns) {
+    const auto [s0, s1] = painted_stretch(stroke, brush, line.length());
+    const Inverse inverse(line, brush);
+    Samples samples;
+    if (line.length() > 0.0 && s1 - s0 > 1e-6)
+        samples = line.coarse(s0, s1, places_of_depths(stroke, brush, line.length(), inverse.crossings()));
+    if (samples.size() < 2) {
+        samples = dab(stroke, line);
+        inverse(samples);
+    } else {
+        refine_steps(line, samples, step_tolerance, inverse);
+    }
+    PoseList out;
+    land(samples.front(), brush, out);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        turns = turns || !samples[i].taut;
+        if (i > 0 && !brush.is_rigid()) {
+            const double moved = (samples[i].contact - samples[i - 1].contact).norm();
+            if (std::abs(angle_between(samples[i - 1].heading, samples[i].heading)) > kTurnStepRad &&
+                moved < 0.1 * brush.lag(samples[i].depth)) {
+                turn_in_place(samples[i - 1], samples[i], brush, out);
+            }
+        }
+        out.add(samples[i].tcp, samples[i].depth);
+    }
+    lift(samples.back(), brush, out);
+    return out;
+}
+
+/// TCP at m + r0 T: r0 = 0 is no compensation.
+PoseList offset(const Stroke& stroke, const Brush& brush, const Line& line, double r0, double step_tolerance) {
+    Samples samples;
+    if (line.length() > 0.0)
+        samples = line.coarse(0.0, line.length(), places_of_depths(stroke, brush, line.length(), {}));
+    if (samples.size() < 2) {
+        samples = {line.at(0.0)};
+        samples[0].heading = Vector2d(1.0, 0.0);
+        samples[0].contact = samples[0].middle;
+        samples[0].tcp = samples[0].middle + r0 * samples[0].heading;
+    } else {
+        refine_steps(line, samples, step_tolerance, [&](Samples& all) {
+            for (Sample& sample : all) {
+                sample.heading = line.tangent(sample);
+                sample.contact = sample.middle;
+                sample.tcp = sample.middle + r0 * sample.heading;
+            }
+        });
+    }
+    PoseList out;
+    out.add(samples.front().middle, 0.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (i > 0 && r0 > 0.0 && (samples[i].middle - samples[i - 1].middle).norm() <= 1e-9) {
+            const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
+            const double sagitta = std::max(1e-3, 1.0 - step_tolerance / r0);
+            const int n = int(std::ceil(std::abs(angle) / std::min(kTurnStepRad, 2.0 * std::acos(sagitta))));
+            for (int k = 1; k < n; ++k)
+                out.add(samples[i].middle + r0 * turned(samples[i - 1].heading, angle * k / n), samples[i].depth);
+        }
+        out.add(samples[i].tcp, samples[i].depth);
+    }
+    out.add(samples.back().tcp, 0.0);
+    return out;
+}
+
+double median_depth(const Stroke& stroke, const Brush& brush) {
+    std::vector<double> depths;
+    for (int i = 0; i <= 200; ++i) depths.push_back(depth_of(stroke, brush, i / 200.0));
+    std::nth_element(depths.begin(), depths.begin() + 100, depths.end());
+    return depths[100];
+}
+
+void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnings) {
+    double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+    for (const WidthKnot& knot : stroke.half_width) {
+        const double depth = brush.depth_for_half_width(knot.half_width_mm, stroke.id);
+        least = std::min(least, depth);
+        greatest = std::max(greatest, depth);
+    }
+    double lo = brush.depth_range_mm[0], hi = brush.depth_range_mm[1];
+    for (const Profile* profile : {&brush.lag, &brush.tip_gap, &brush.tip_to_widest, &brush.half_width}) {
+        if (!profile->calibrated_mm) continue;
+        lo = std::max(lo, (*profile->calibrated_mm)[0]);
+        hi = std::min(hi, (*profile->calibrated_mm)[1]);
+    }
+    if (least >= lo - 1e-9 && greatest <= hi + 1e-9) return;
+    char text[200];
+    std::snprintf(text, sizeof text, "depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
+                  least < lo - 1e-9 ? least : greatest, lo, hi);
+    warnings.push_back({stroke.id, text + brush.name + " was measured"});
+}
+
+/// Distance to a polyline, block by block; successive queries lie close to each other.
+class Nearest {
+   public:
+    explicit Nearest(const MiddlePolyline& line) : line_(line) {
+        for (Index i = 0; i < std::max<Index>(1, line.rows() - 1); i += kBlock) {
+            const Index n = std::min<Index>(kBlock + 1, line.rows() - i);
+            const Vector2d lo = line.block(i, 0, n, 2).colwise().minCoeff().transpose();
+            const Vector2d hi = line.block(i, 0, n, 2).colwise().maxCoeff().transpose();
+            blocks_.push_back({0.5 * (lo + hi), 0.5 * (hi - lo).norm()});
+        }
+    }
+    double distance(const Vector2d& p) {
+        double best = in_block(last_, p);
+        for (std::size_t k = 0; k < blocks_.size(); ++k) {
+            if ((p - blocks_[k].centre).norm() - blocks_[k].radius >= best) continue;
+            const double d = in_block(k, p);
+            if (d < best) {
+                best = d;
+                last_ = k;
+            }
+        }
+        return best;
+    }
+
+   private:
+    static constexpr Index kBlock = 16;
+    struct Block {
+        Vector2d centre;
+        double radius;
+    };
+    double in_block(std::size_t k, const Vector2d& p) const {
+        const Index first = Index(k) * kBlock, last = std::min<Index>(first + kBlock, line_.rows() - 1);
+        double best = (p - line_.row(first).head<2>().transpose()).squaredNorm();
+        for (Index i = first; i < last; ++i) {
+            const Vector2d a = line_.row(i).head<2>().transpose(), d = line_.row(i + 1).head<2>().transpose() - a;
+            const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+            best = std::min(best, (p - a - t * d).squaredNorm());
+        }
+        return std::sqrt(best);
+    }
+    const MiddlePolyline& line_;
+    std::vector<Block> blocks_;
+    std::size_t last_ = 0;
+};
+
+}  // namespace
+
+Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
+    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.25 * tolerance_mm));
+    const Ring widest = widest_points(marks, brush);
+    const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
+    Nearest nearest(line);
+    // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does
+    std::size_t begin = 0, end = marks.taut.size();
+    while (begin < end && !marks.taut[begin]) ++begin;
+    while (end > begin && !marks.taut[end - 1]) --end;
+    Miss miss;
+    for (std::size_t i = begin; i < end; ++i) {
+        const double d = nearest.distance(widest.row(i).transpose());
+        miss.largest_mm = std::max(miss.largest_mm, d);
+        miss.mean_mm += d / double(end - begin);
+    }
+    miss.within_tolerance = miss.largest_mm <= tolerance_mm;
+    return miss;
+}
+
+CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+    check(stroke);
+    if (!(options.tolerance_mm > 0.0)) throw Error("the tolerance must be greater than 0 mm", stroke.id, options.tolerance_mm);
+    const Line line(stroke, brush);
+    CompensatedPass result;
+    warn(stroke, brush, result.warnings);
+    Pass& pass = result.pass;
+    pass.stroke = stroke.id;
+    pass.speed_mm_s = std::min(options.speed_mm_s, brush.max_speed_mm_s);
+    pass.layer = stroke.layer;
+    pass.colour = stroke.colour;
+    pass.settings = stroke.settings;
+
+    double step_tolerance = 0.5 * options.tolerance_mm;
+    if (options.method != Compensation::closed) {
+        double r0 = 0.0;
+        if (options.method == Compensation::constant) r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
+        pass.poses_mm = offset(stroke, brush, line, r0, step_tolerance).matrix();
+        result.miss = miss_of(pass, stroke, brush, options.tolerance_mm);
+        return result;
+    }
+    // the plan is simulated before it is handed over; finer steps as long as they help
+    for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
+        bool turns = false;
+        const Poses poses = closed_form(stroke, brush, line, step_tolerance, turns).matrix();
+        Pass trial = pass;
+        trial.poses_mm = poses;
+        Miss miss = miss_of(trial, stroke, brush, options.tolerance_mm);
+        miss.has_turn_in_place = turns;
+        const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
+        if (better) {
+            result.miss = miss;
+            pass.poses_mm = poses;
+        }
+        if (miss.within_tolerance || (turns && !better)) break;
+    }
+    return result;
+}
+
+}  // namespace brushsvg

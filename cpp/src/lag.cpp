@@ -1,0 +1,108 @@
+#include "brushsvg/lag.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include "brushsvg/error.hpp"
+
+namespace brushsvg {
+namespace {
+
+std::vector<std::complex<double>> all_roots(const std::vector<double>& coefficients) {
+    const int n = int(coefficients.size()) - 1;
+    if (n < 1) return {};
+    Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
+    for (int i = 0; i + 1 < n; ++i) companion(i + 1, i) = 1.0;
+    for (int i = 0; i < n; ++i) companion(i, n - 1) = -coefficients[i] / coefficients[n];
+    const Eigen::VectorXcd roots = companion.eigenvalues();
+    return {roots.data(), roots.data() + n};
+}
+
+/// Bound of the absolute value of a polynomial's k-th derivative on [lo, hi]: the largest Bernstein coefficient.
+double bound_of_derivative(std::vector<double> c, int order, double lo, double hi) {
+    for (; order > 0; --order) {
+        for (std::size_t i = 1; i < c.size(); ++i) c[i - 1] = double(i) * c[i];
+        if (!c.empty()) c.pop_back();
+    }
+    if (c.empty()) return 0.0;
+    const int n = int(c.size()) - 1;
+    for (int i = 0; i < n; ++i)
+        for (int j = n - 1; j >= i; --j) c[j] += lo * c[j + 1];
+    double power = 1.0, largest = 0.0;
+    for (int i = 0; i <= n; ++i, power *= hi - lo) c[i] *= power;
+    for (int i = 0; i <= n; ++i) {
+        double sum = 0.0, ratio = 1.0;
+        for (int j = 0; j <= i; ++j) {
+            sum += ratio * c[j];
+            if (j < n) ratio *= double(i - j) / double(n - j);
+        }
+        largest = std::max(largest, std::abs(sum));
+    }
+    return largest;
+}
+
+}  // namespace
+
+LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign) {
+    LagLaw<double> law;
+    law.rigid = true;
+    for (const PolynomialPiece& from : pieces) {
+        std::vector<double> c = from.coefficients;
+        while (c.size() > 1 && c.back() == 0.0) c.pop_back();
+        if (c.empty()) c.push_back(0.0);
+        for (double& x : c) x *= sign;
+        if (int(c.size()) > kMaxLawDegree + 1)
+            throw Error("a law of degree " + std::to_string(c.size() - 1) + " is beyond the greatest degree, 8");
+        LawPiece<double> piece;
+        piece.lo = from.lo;
+        piece.hi = from.hi;
+        piece.degree = int(c.size()) - 1;
+        std::copy(c.begin(), c.end(), piece.coefficients.begin());
+        piece.roots = all_roots(c);
+        piece.steepest = bound_of_derivative(c, 1, from.lo, from.hi);
+        piece.most_curved = bound_of_derivative(c, 2, from.lo, from.hi);
+        law.rigid = law.rigid && c.size() == 1 && c[0] == 0.0;
+        law.pieces.push_back(std::move(piece));
+    }
+    return law;
+}
+
+namespace detail {
+
+double first_positive(std::vector<double> f) {
+    while (f.size() > 1 && f.back() == 0.0) f.pop_back();
+    const int n = int(f.size()) - 1;
+    // power to Bernstein on [0, 1]
+    std::vector<double> bernstein(n + 1);
+    for (int i = 0; i <= n; ++i) {
+        double sum = 0.0, ratio = 1.0;
+        for (int j = 0; j <= i; ++j) {
+            sum += ratio * f[j];
+            if (j < n) ratio *= double(i - j) / double(n - j);
+        }
+        bernstein[i] = sum;
+    }
+    struct Span {
+        double a, b;
+        std::vector<double> c;
+    };
+    std::vector<Span> stack{{0.0, 1.0, std::move(bernstein)}};
+    while (!stack.empty()) {
+        Span span = std::move(stack.back());
+        stack.pop_back();
+        if (std::all_of(span.c.begin(), span.c.end(), [](double c) { return c <= 0.0; })) continue;
+        const double middle = 0.5 * (span.a + span.b);
+        if (span.c.front() > 0.0) return span.a;
+        if (span.b - span.a < 1e-16 || !(span.a < middle && middle < span.b)) return span.b;
+        Span left{span.a, middle, std::vector<double>(n + 1)}, right{middle, span.b, std::move(span.c)};
+        for (int i = 0; i <= n; ++i) {
+            left.c[i] = right.c[0];
+            for (int j = 0; j < n - i; ++j) right.c[j] = 0.5 * (right.c[j] + right.c[j + 1]);
+        }
+        stack.push_back(std::move(right));
+        stack.push_back(std::move(left));
+    }
+    return 2.0;
+}
+
+}  // namespace detail
+}  // namespace brushsvg

@@ -1,0 +1,83 @@
+#include "brushsvg/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brushsvg {
+namespace {
+
+double evaluate(const std::vector<double>& c, double x) {
+    double y = 0.0;
+    for (std::size_t i = c.size(); i-- > 0;) y = y * x + c[i];
+    return y;
+}
+
+}  // namespace
+
+std::vector<double> real_roots(const std::vector<double>& coefficients, double lo, double hi) {
+    std::vector<double> c = coefficients;
+    while (!c.empty() && c.back() == 0.0) c.pop_back();
+    if (c.size() < 2) return {};
+    // between the roots of its derivative a polynomial is monotone
+    std::vector<double> slope(c.size() - 1);
+    for (std::size_t i = 1; i < c.size(); ++i) slope[i - 1] = double(i) * c[i];
+    std::vector<double> ends = real_roots(slope, lo, hi);
+    ends.insert(ends.begin(), lo);
+    ends.push_back(hi);
+    std::vector<double> roots;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        double a = ends[i], b = ends[i + 1];
+        const double fa = evaluate(c, a), fb = evaluate(c, b);
+        if (fa == 0.0) {
+            roots.push_back(a);
+            continue;
+        }
+        if (fb == 0.0 || (fa < 0.0) == (fb < 0.0)) continue;
+        while (true) {
+            const double middle = 0.5 * (a + b);
+            if (!(a < middle && middle < b)) break;
+            ((evaluate(c, middle) < 0.0) == (fa < 0.0) ? a : b) = middle;
+        }
+        roots.push_back(b);
+    }
+    if (evaluate(c, hi) == 0.0) roots.push_back(hi);
+    roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+    return roots;
+}
+
+std::vector<PolynomialPiece> pieces(const Profile& profile, double lo, double hi) {
+    if (std::isinf(profile.floor)) return {{lo, hi, profile.coefficients}};
+    std::vector<double> above = profile.coefficients;
+    if (above.size() < 2) above.resize(2, 0.0);
+    above[0] -= profile.floor;
+    above[1] -= profile.floor_slope;
+    std::vector<double> ends = real_roots(above, lo, hi);
+    ends.insert(ends.begin(), lo);
+    ends.push_back(hi);
+    std::vector<PolynomialPiece> out;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        if (!(ends[i] < ends[i + 1])) continue;
+        const bool floored = evaluate(above, 0.5 * (ends[i] + ends[i + 1])) < 0.0;
+        out.push_back({ends[i], ends[i + 1],
+                       floored ? std::vector<double>{profile.floor, profile.floor_slope} : profile.coefficients});
+    }
+    if (out.empty()) out.push_back({lo, hi, {profile(lo)}});
+    return out;
+}
+
+std::vector<PolynomialPiece> difference(const Profile& a, const Profile& b, double lo, double hi) {
+    const auto as = pieces(a, lo, hi), bs = pieces(b, lo, hi);
+    std::vector<PolynomialPiece> out;
+    for (std::size_t i = 0, j = 0; i < as.size() && j < bs.size();) {
+        PolynomialPiece piece{std::max(as[i].lo, bs[j].lo), std::min(as[i].hi, bs[j].hi), as[i].coefficients};
+        piece.coefficients.resize(std::max(piece.coefficients.size(), bs[j].coefficients.size()), 0.0);
+        for (std::size_t k = 0; k < bs[j].coefficients.size(); ++k) piece.coefficients[k] -= bs[j].coefficients[k];
+        if (piece.lo < piece.hi || out.empty()) out.push_back(piece);
+        const double a_end = as[i].hi, b_end = bs[j].hi;
+        if (a_end <= b_end) ++i;
+        if (b_end <= a_end) ++j;
+    }
+    return out;
+}
+
+}  // namespace brushsvg

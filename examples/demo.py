@@ -1,0 +1,67 @@
+"""All that brushsvg makes of one drawing: python demo.py DRAWING.svg DIRECTORY"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import brushsvg
+from brushsvg import convert, report
+from brushsvg.cell import load_cell
+from brushsvg.console import RefusedError, about, say, warn
+from brushsvg.describe import one_line
+from brushsvg.files import write_atomically
+from brushsvg.render import MIDDLE_LINE, Panel, panels_png
+
+
+def main(drawing: Path, directory: Path) -> None:
+    cell = load_cell()
+    works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ("none", "closed")}
+    work = works["closed"]
+    marks = {how: convert.predict(works[how]) for how in works}
+    problems = convert.problems(work.plan, work.brush, marks["closed"], cell)
+    if problems:
+        raise RefusedError([(str(drawing), *problem) for problem in problems])
+    warn(str(drawing), [(notice.where, notice.sentence) for notice in work.notices])
+
+    directory.mkdir(parents=True, exist_ok=True)
+    files = {
+        ".plan.json": convert.encode(".json", work.plan, work.brush, work.title),
+        ".ngc": convert.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
+        ".marks.svg": convert.picture(".svg", work, marks["closed"]),
+        ".report.txt": convert.report_text(".txt", work, marks["closed"], cell),
+        ".png": comparison(works, marks),
+    }
+    for ending, data in files.items():
+        write_atomically(directory / (drawing.stem + ending), data)
+        print(directory / (drawing.stem + ending))
+
+
+def comparison(works, marks) -> bytes:
+    """Three panels: what was drawn, what is painted without and with compensation."""
+    work = works["closed"]
+    wanted = brushsvg.unite([ring for s in work.strokes for ring in brushsvg.wanted_outline(s, 0.01)])
+    middle = [brushsvg.flatten(stroke, 0.01)[:, :2] for stroke in work.strokes]
+    width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
+    size = (f"{width_mm:.0f} x {height_mm:.0f} mm",)
+    panels = [Panel("What was drawn", (str(len(work.strokes)), "strokes"), size, wanted, [], middle, MIDDLE_LINE)]
+    for how, title in (("none", "Tool follows the drawing"), ("closed", "With compensation")):
+        plan, painted = works[how].plan, marks[how]
+        _, total = report.measure(plan, painted, work.brush, work.strokes)
+        score = (f"{total.overlap:.2f}", "overlap with the drawing")
+        off = f"{total.centre_mean_mm:.2f} mm mean, {total.centre_largest_mm:.2f} mm at most"
+        paths = [a_pass.poses_mm[:, :2] for a_pass in plan.passes]
+        panels.append(Panel(title, score, ("centre-line error", off), wanted, painted.outline_mm, paths))
+    return panels_png(panels, work.title, f"with brush {work.brush.name}. {one_line(work.brush)}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    try:
+        with about(sys.argv[1]):
+            main(Path(sys.argv[1]), Path(sys.argv[2]))
+    except RefusedError as refused:
+        for line in refused.lines:
+            say(*line)
+        sys.exit(1)

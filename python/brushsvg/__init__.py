@@ -1,0 +1,133 @@
+"""brushsvg: vector lettering to brush strokes that a robot can paint.
+
+The public names are those of __all__. Each is imported when it is first used: importing the package costs
+nothing, and no more is loaded than what is asked for.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import types
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # what the table below resolves to, for editors and type checkers
+    from ._core import (
+        Brush,
+        Marks,
+        Pass,
+        Plan,
+        Stroke,
+        area,
+        compensate,
+        coverage,
+        flatten,
+        overlap,
+        read_marks,
+        read_plan,
+        simulate,
+        trace_outlines,
+        unite,
+        wanted_outline,
+        write_marks,
+        write_plan,
+    )
+    from .brushes import brush_names, find_brush
+    from .convert import write_program
+    from .errors import Error
+    from .importers import read_drawing
+    from .render import marks_png, marks_svg
+    from .strokes import strokes
+
+    __version__: str
+
+_HOME = {
+    "Error": "errors",
+    "read_drawing": "importers",
+    "strokes": "strokes",
+    "brush_names": "brushes",
+    "find_brush": "brushes",
+    "write_program": "convert",
+    "marks_png": "render",
+    "marks_svg": "render",
+} | dict.fromkeys(
+    [
+        "Brush",
+        "Marks",
+        "Pass",
+        "Plan",
+        "Stroke",
+        "area",
+        "compensate",
+        "coverage",
+        "flatten",
+        "overlap",
+        "read_marks",
+        "read_plan",
+        "simulate",
+        "trace_outlines",
+        "unite",
+        "wanted_outline",
+        "write_marks",
+        "write_plan",
+    ],
+    "_core",
+)
+
+__all__ = [
+    "Brush",
+    "Error",
+    "Marks",
+    "Pass",
+    "Plan",
+    "Stroke",
+    "__version__",
+    "area",
+    "brush_names",
+    "compensate",
+    "coverage",
+    "find_brush",
+    "flatten",
+    "marks_png",
+    "marks_svg",
+    "overlap",
+    "read_drawing",
+    "read_marks",
+    "read_plan",
+    "simulate",
+    "strokes",
+    "trace_outlines",
+    "unite",
+    "wanted_outline",
+    "write_marks",
+    "write_plan",
+    "write_program",
+]
+
+
+class _Package(types.ModuleType):
+    def __setattr__(self, name: str, value) -> None:
+        # Importing the module brushsvg.strokes must not hide the function of the same name.
+        if name in _HOME and isinstance(value, types.ModuleType):
+            return
+        super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
+
+
+def __getattr__(name: str):
+    if name == "__version__":
+        from importlib.metadata import version
+
+        value = version("brushsvg")
+    elif name in _HOME:
+        value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,130 @@
+"""What the commands do: call the steps in order, warn, refuse, write everything or nothing."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from . import convert
+from ._core import remarks
+from .brushes import brush_names, find_brush
+from .cell import load_cell
+from .console import RefusedError, about, clear_stage, say, stage, warn
+from .describe import one_line, page
+from .files import write_atomically
+
+
+def convert_file(args) -> None:
+    _check_places(args.output, args.preview, args.report)
+    work = _prepare(args)
+    cell = load_cell()
+    damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
+    warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
+    with about(args.input):
+        marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
+        problems = [(n.where, n.sentence) for n in damaged]
+        problems += convert.problems(work.plan, work.brush, marks, cell)
+        if problems:
+            raise RefusedError([(args.input, *problem) for problem in problems])
+        program = convert.encode(
+            _suffix(args.output), work.plan, work.brush, work.title, convert.notes(work), cell
+        )
+        files = [(args.output, program)]
+        if args.preview:
+            files.append((args.preview, convert.picture(_suffix(args.preview), work, marks)))
+        if args.report:
+            files.append((args.report, convert.report_text(_suffix(args.report), work, marks, cell)))
+    _write(files)
+
+
+def predict_file(args) -> None:
+    _check_places(args.output)
+    work, marks, _ = _look(args, outlines=_suffix(args.output) != ".png")
+    with about(args.input):
+        picture = convert.picture(_suffix(args.output), work, marks)
+    _write([(args.output, picture)])
+
+
+def report_file(args) -> None:
+    work, marks, warnings = _look(args, outlines=True)
+    with about(args.input):
+        text = convert.report_text(".json" if args.json else ".txt", work, marks, load_cell(), warnings)
+    clear_stage()
+    sys.stdout.write(text)
+
+
+def _look(args, outlines: bool):
+    """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
+    work = _prepare(args)
+    with about(args.input):
+        marks = convert.predict(work, outlines, stage)
+        warnings = [(n.where, n.sentence) for n in work.notices]
+        warnings += convert.problems(work.plan, work.brush, marks, load_cell())
+    warn(args.input, warnings)
+    return work, marks, warnings
+
+
+def _prepare(args) -> convert.Work:
+    if _suffix(args.input) == ".json":
+        for flag in ("sheet", "compensation", "lag", "tolerance"):
+            if getattr(args, flag) is not None:
+                say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
+    with about(args.brush or ""):
+        brush = find_brush(args.brush) if args.brush is not None else None
+    options = convert.Options(
+        brush=brush,
+        sheet_mm=args.sheet,
+        compensation=args.compensation or convert.Options.compensation,
+        lag_mm=args.lag,
+        tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
+    )
+    with about(args.input):
+        return convert.prepare(args.input, options, stage)
+
+
+def _suffix(path: str | None) -> str:
+    return os.path.splitext(path or "")[1].lower()
+
+
+def _check_places(*paths: str | None) -> None:
+    """Before any work is done, and so that a refusal of one output leaves none of the others behind."""
+    for path in filter(None, paths):
+        folder = os.path.dirname(os.path.realpath(path))
+        reason = None
+        if os.path.isdir(path):
+            reason = "it is a directory"
+        elif not os.path.isdir(folder):
+            reason = "its directory does not exist"
+        elif not os.access(folder, os.W_OK | os.X_OK):
+            reason = "its directory is not writable"
+        if reason:
+            raise RefusedError([(path, "", f"the file cannot be written: {reason}")])
+
+
+def _write(files) -> None:
+    stage("writing")
+    for path, data in files:
+        with about(path):
+            write_atomically(path, data)
+    clear_stage()
+
+
+def brush_list(args) -> None:
+    names = brush_names()
+    width = max(map(len, names))
+    for name in names:
+        with about(name):
+            print(f"{name.ljust(width)}  {one_line(find_brush(name))}")
+
+
+def brush_show(args) -> None:
+    with about(args.input):
+        print(page(find_brush(args.input)))
+
+
+def brush_check(args) -> None:
+    with about(args.input):
+        brush = find_brush(args.input)
+        odd = remarks(brush)
+    warn(args.input, odd)
+    print(f"{args.input}: brush {brush.name} can be used")

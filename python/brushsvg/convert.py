@@ -1,0 +1,218 @@
+"""The way from a file to a plan, its marks and its program, put together once."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from . import _core, report
+from .brushes import find_brush
+from .cell import Cell, load_cell
+from .design import Notice
+from .errors import Error
+from .files import write_atomically
+from .importers import read_drawing
+from .posts.gcode import gcode
+from .program import broken_limits, duration_s, program
+from .strokes import strokes as strokes_of
+
+DEFAULT_BRUSH = "round-6"
+
+
+@dataclass(frozen=True)
+class Options:
+    """What may be chosen. brush None: round-6, or the one a plan names; the rest has no effect on a plan."""
+
+    brush: object | None = None
+    sheet_mm: tuple[float, float] | None = None
+    compensation: str = "closed"
+    lag_mm: float | None = None
+    tolerance_mm: float = 0.05
+
+
+@dataclass(frozen=True)
+class Work:
+    """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
+
+    misses: one per pass of the plan, () for a plan read from a file.
+    """
+
+    title: str
+    brush: object
+    plan: object
+    strokes: list | None
+    misses: tuple
+    options: Options
+    notices: tuple[Notice, ...]
+
+
+def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda text: None) -> Work:
+    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted."""
+    if Path(path).suffix.lower() == ".json":
+        return _prepare_plan(path, options)
+    stage("reading")
+    brush = options.brush or find_brush(DEFAULT_BRUSH)
+    design = read_drawing(path, options.sheet_mm)
+    strokes, notices = strokes_of(design)
+    done = _core.compensate(
+        strokes,
+        brush,
+        design.sheet_mm,
+        options.compensation,
+        options.tolerance_mm,
+        options.lag_mm,
+        progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
+    )
+    notices = [*design.notices, *notices, *(Notice(where, sentence) for where, sentence in done.warnings)]
+    if options.compensation == "closed":
+        notices += _misses(strokes, done.misses, options.tolerance_mm)
+    return Work(design.title, brush, done.plan, strokes, tuple(done.misses), options, tuple(notices))
+
+
+def _misses(strokes, misses, tolerance_mm: float) -> list[Notice]:
+    return [
+        Notice(
+            stroke.id,
+            f"the widest point stays up to {miss.largest_mm:.3g} mm off the middle line, tolerance "
+            f"{tolerance_mm:g} mm" + (": it turns too sharply there" if miss.has_turn_in_place else ""),
+        )
+        for stroke, miss in zip(strokes, misses, strict=True)
+        if not miss.within_tolerance
+    ]
+
+
+def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
+    try:
+        text = Path(path).read_bytes().decode("utf-8")
+    except OSError as problem:
+        raise Error(f"the file cannot be read: {(problem.strerror or str(problem)).lower()}") from None
+    except UnicodeDecodeError:
+        raise Error("the file is not a plan: it is not text in UTF-8") from None
+    plan = _core.read_plan(text)
+    brush = options.brush or find_brush(plan.brush)
+    notices = []
+    if brush.name != plan.brush:
+        notices.append(Notice("brush", f"the plan was made for brush {plan.brush}, not for {brush.name}"))
+    elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
+        notices.append(Notice("brush_sha256", f"the plan was made with another file of brush {brush.name}"))
+    return Work("", brush, plan, None, (), options, tuple(notices))
+
+
+def predict(work: Work, outlines: bool = True, stage=lambda text: None):
+    """The marks of the plan; outlines: trace their rings too."""
+
+    def progress(doing: str):
+        return lambda now, all_: stage(f"{doing} {now} of {all_} strokes")
+
+    marks = _core.simulate(work.plan, work.brush, progress=progress("simulated"))
+    if outlines:
+        _core.trace_outlines(marks, work.brush, progress=progress("outlined"))
+    return marks
+
+
+def problems(plan, brush, marks, cell: Cell) -> list[tuple[str, str]]:
+    """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
+    found = broken_limits(plan, cell)
+    limit = brush.max_speed_mm_s
+    found += [
+        (
+            a_pass.stroke,
+            f"speed {a_pass.speed_mm_s:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s "
+            f"of brush {brush.name}",
+        )
+        for a_pass in plan.passes
+        if a_pass.speed_mm_s > limit
+    ]
+    return found + off_sheet(marks, brush, plan.sheet_mm)
+
+
+def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
+    """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
+    found = []
+    for trace in marks.passes:
+        left, bottom, right, top = _core.painted_bounds(trace, brush)
+        if not np.isfinite([left, bottom, right, top]).all():
+            continue  # nothing touches the paper
+        width, height = sheet_mm
+        beyond_mm = {"left": -left, "right": right - width, "lower": -bottom, "upper": top - height}
+        found += [
+            (trace.stroke, f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet")
+            for side, beyond in beyond_mm.items()
+            if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
+        ]
+    return found
+
+
+def encode(suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None) -> bytes:
+    """The plan as the bytes of a .json or .ngc file. Error where a limit of the cell is broken."""
+    if suffix == ".json":
+        return _core.write_plan(plan).encode()
+    if suffix != ".ngc":
+        raise Error(f"there is no robot program with the extension {suffix!r}: it is one of .json, .ngc")
+    header = (
+        f"title: {title or 'untitled'}",
+        f"brush: {plan.brush}, {len(plan.passes)} strokes",
+        *notes,
+        "frame: origin at the lower left corner of the sheet, mm; z 0: the brush just touches",
+    )
+    return gcode(program(plan, cell or load_cell(), header)).encode("ascii")
+
+
+def notes(work: Work) -> tuple[str, ...]:
+    """Lines for a program's header: how it was made, and how much there is to know about it."""
+    options = work.options
+    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm"
+    damaged = sum(notice.damaged for notice in work.notices)
+    count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
+    return (made, count) if work.strokes is not None else (count,)
+
+
+def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
+    """Write a plan as plan.json or G-code, by the extension of path, after checking every limit.
+
+    Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
+    """
+    cell = cell or load_cell()
+    for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell):
+        raise Error(sentence, where=where)
+    write_atomically(path, encode(Path(path).suffix.lower(), plan, brush, title, cell=cell))
+
+
+def without_compensation(work: Work) -> Work:
+    """The same strokes with the TCP on their middle lines: what to compare with."""
+    options = replace(work.options, compensation="none", lag_mm=None)
+    done = _core.compensate(work.strokes, work.brush, work.plan.sheet_mm, "none", options.tolerance_mm)
+    return replace(work, plan=done.plan, misses=tuple(done.misses), options=options)
+
+
+def picture(suffix: str, work: Work, marks) -> bytes:
+    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines."""
+    if suffix == ".json":
+        return _core.write_marks(marks).encode()
+    from . import render  # brings OpenCV, which a program does not need
+
+    colours = [a_pass.colour for a_pass in work.plan.passes]
+    if suffix == ".svg":
+        return render.marks_svg(marks, work.plan.sheet_mm, colours, work.title).encode()
+    return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
+
+
+def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None) -> str:
+    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work."""
+    known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
+    drawn = work.strokes is not None
+    rows, total = report.measure(work.plan, marks, work.brush, work.strokes, work.options.tolerance_mm)
+    result = report.Report(
+        title=work.title,
+        brush=work.plan.brush,
+        compensation=work.options.compensation if drawn else "",
+        tolerance_mm=work.options.tolerance_mm if drawn else None,
+        strokes=rows,
+        total=total,
+        time_s=duration_s(work.plan, cell),
+        warnings=tuple(known),
+    )
+    return report.to_json(result) if suffix == ".json" else report.to_text(result)

@@ -1,0 +1,96 @@
+"""A brush in words and numbers."""
+
+from __future__ import annotations
+
+import json
+import math
+import textwrap
+
+LAWS = (
+    ("lag", "lever from the centre of friction to the TCP"),
+    ("tip_gap", "from the tip of the mark to the centre of friction"),
+    ("tip_to_widest", "from the tip to the widest section"),
+    ("half_width", "half of the greatest width"),
+)
+
+
+def one_line(brush) -> str:
+    """For a list of brushes: what the file says about itself, else what follows from its laws."""
+    about = json.loads(brush.extra).get("about")
+    return about if isinstance(about, str) and about else reach(brush)
+
+
+def reach(brush) -> str:
+    """Kind, depth, what it paints and how far it trails."""
+    least, greatest = brush.depth_range_mm
+    trail = "no lag" if brush.is_rigid() else f"lag {brush.lag(least):.1f} to {brush.lag(greatest):.1f} mm"
+    return f"{brush.kind or 'brush'}, {_lines(brush)}, depth {least:g} to {greatest:g} mm, {trail}"
+
+
+def _lines(brush) -> str:
+    least, greatest = (2 * half for half in brush.half_width_range_mm())
+    if not brush.width_follows_depth():
+        return f"lines {greatest:g} mm wide"
+    return f"lines {least:.1f} to {greatest:.1f} mm wide"
+
+
+def page(brush) -> str:
+    """All there is to know of a brush: limits, laws with their source, footprints, a table of values."""
+    least, greatest = brush.depth_range_mm
+    lines = [
+        f"{brush.name}: {one_line(brush)}",
+        reach(brush),
+        f"at most {brush.max_speed_mm_s:g} mm/s",
+        "",
+        "laws, mm against depth d in mm",
+    ]
+    for name, meaning in LAWS:
+        lines += _law(name, meaning, getattr(brush, name))
+    lines += ["", *_footprints(brush), "", *_table(brush, least, greatest)]
+    return "\n".join(lines)
+
+
+def _law(name: str, meaning: str, law) -> list[str]:
+    formula = _polynomial(law.coefficients)
+    if math.isfinite(law.floor):
+        formula = f"max({_polynomial([law.floor, law.floor_slope])}, {formula})"
+    known = ["assumed"] if law.assumed else []
+    if law.calibrated_mm:
+        known.append("measured at depths {:g} to {:g} mm".format(*law.calibrated_mm))
+    if law.rmse_mm is not None:
+        known.append(f"RMSE {law.rmse_mm:g} mm")
+    source = ". ".join(part for part in (", ".join(known), law.source) if part)
+    lines = [f"  {name}: {meaning}", f"      {formula}"]
+    return lines + textwrap.wrap(source, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
+
+
+def _polynomial(coefficients) -> str:
+    text = ""
+    for power, c in enumerate(coefficients):
+        if c == 0:
+            continue
+        factor = f"{abs(c):g}" + ("" if power == 0 else " d" if power == 1 else f" d^{power}")
+        text += (" - " if c < 0 else " + ") + factor if text else ("-" if c < 0 else "") + factor
+    return text or "0"
+
+
+def _footprints(brush) -> list[str]:
+    def depths(shapes):
+        return ", ".join(f"{shape.depth_mm:g}" for shape in shapes)
+
+    dragged, pressed = brush.footprints.dragged, brush.footprints.pressed
+    count = len(dragged[0].outline_mm)
+    straight_down = f"at depths {depths(pressed)} mm" if pressed else "the same shapes"
+    return [
+        f"footprints of {count} points, dragged: at depths {depths(dragged)} mm",
+        f"pressed straight down: {straight_down}",
+    ]
+
+
+def _table(brush, least: float, greatest: float) -> list[str]:
+    lines = ["depth".rjust(7) + "".join(name.rjust(15) for name, _ in LAWS)]
+    for step in range(6):
+        depth = least + (greatest - least) * step / 5
+        values = (getattr(brush, name)(depth) for name, _ in LAWS)
+        lines.append(f"{depth:7.2f}" + "".join(f"{value:15.2f}" for value in values))
+    return lines

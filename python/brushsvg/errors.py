@@ -1,0 +1,25 @@
+"""The one error a user can cause; everything else is a bug."""
+
+from __future__ import annotations
+
+
+class Error(ValueError):
+    """A refusal in one full sentence.
+
+    sentence: what is wrong, with the number and the admissible range; str(error) is this sentence.
+    where: the element, stroke or key it concerns, "" if none.
+    value, range: the offending number and (least, greatest), None where there are none.
+    """
+
+    def __init__(
+        self,
+        sentence: str,
+        where: str = "",
+        value: float | None = None,
+        range: tuple[float, float] | None = None,
+    ):
+        super().__init__(sentence)
+        self.sentence = sentence
+        self.where = where
+        self.value = value
+        self.range = range

@@ -1,0 +1,165 @@
+"""Where SVG's user units lie on paper: viewport, viewBox, preserveAspectRatio and transforms.
+
+A matrix (a, b, c, d, e, f) maps (x, y) to (a x + c y + e, b x + d y + f), as in SVG.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from ..design import Notice
+from ..errors import Error
+from ..units import MM_PER, length_mm
+from .svg_path import numbers, snippet
+from .svg_trace import LARGEST_MM
+
+Matrix = tuple[float, float, float, float, float, float]
+IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Page:
+    """sheet_mm: (w, h); paper_from_user: user units to mm, y up; viewport: (w, h) in user units."""
+
+    sheet_mm: tuple[float, float]
+    paper_from_user: Matrix
+    viewport: tuple[float, float]
+    notices: tuple[Notice, ...]
+
+
+def multiply(outer: Matrix, inner: Matrix) -> Matrix:
+    """The map that applies inner first."""
+    a, b, c, d, e, f = outer
+    g, h, i, j, k, m = inner
+    return (
+        a * g + c * h,
+        b * g + d * h,
+        a * i + c * j,
+        b * i + d * j,
+        a * k + c * m + e,
+        b * k + d * m + f,
+    )
+
+
+def scales(matrix: Matrix) -> tuple[float, float]:
+    """Greatest and least stretch of a matrix (its singular values)."""
+    a, b, c, d = matrix[:4]
+    turning, mirroring = math.hypot(a + d, b - c), math.hypot(a - d, b + c)
+    return (turning + mirroring) / 2, abs(turning - mirroring) / 2
+
+
+def _rotation(degrees: float, x: float = 0.0, y: float = 0.0) -> Matrix:
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    if degrees % 90 == 0:
+        cos, sin = round(cos), round(sin)
+    return (cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y)
+
+
+_FUNCTIONS = {
+    "matrix": ((6,), lambda *v: v),
+    "translate": ((1, 2), lambda x, y=0.0: (1.0, 0.0, 0.0, 1.0, x, y)),
+    "scale": ((1, 2), lambda x, y=None: (x, 0.0, 0.0, x if y is None else y, 0.0, 0.0)),
+    "rotate": ((1, 3), _rotation),
+    "skewX": ((1,), lambda angle: (1.0, 0.0, math.tan(math.radians(angle)), 1.0, 0.0, 0.0)),
+    "skewY": ((1,), lambda angle: (1.0, math.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)),
+}
+_SEPARATOR = re.compile(r"[\s,]*+")
+_CALL = re.compile(r"([a-zA-Z]++)\s*+\(([^()]*+)\)")
+
+
+def parse_transform(text: str) -> Matrix:
+    """The matrix of a transform attribute. Error names the character where it stops making sense."""
+    matrix = IDENTITY
+    if text.strip() == "none":
+        return matrix
+    position = _SEPARATOR.match(text).end()
+    while position < len(text):
+        call = _CALL.match(text, position)
+        counts, make = _FUNCTIONS.get(call[1], ((), None)) if call else ((), None)
+        values = numbers(call[2].strip()) if call else None
+        if values is None or len(values) not in counts or not all(map(math.isfinite, values)):
+            raise Error(f"transform is damaged at character {position + 1}: found {snippet(text, position)}")
+        matrix = multiply(matrix, make(*values))
+        position = _SEPARATOR.match(text, call.end()).end()
+    return matrix
+
+
+def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None = None) -> Page:
+    """The page of a root element. A given sheet replaces the drawing's; the upper left corners stay together.
+
+    Error if neither the drawing nor the caller says how large it is.
+    """
+    notices: list[Notice] = []
+    box = _view_box(attributes.get("viewBox"))
+    width, height = (_extent(attributes.get(name), name) for name in ("width", "height"))
+    if box is None and sheet_mm is not None:
+        width, height = width or sheet_mm[0], height or sheet_mm[1]
+    if width is None or height is None:
+        if box is None:
+            raise Error("the drawing says neither width and height nor a viewBox, so its size is unknown")
+        if width is None and height is None:
+            width, height = box[2] * MM_PER["px"], box[3] * MM_PER["px"]
+            reason = "no width and height in absolute units: its viewBox is read in px at 96 to the inch"
+        else:
+            lacking = "width" if width is None else "height"
+            reason = f"no {lacking} in absolute units: it follows from the viewBox"
+            width, height = width or height * box[2] / box[3], height or width * box[3] / box[2]
+        notices.append(Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm"))
+    for name, value in (("width", width), ("height", height)):
+        if not 0 < value <= LARGEST_MM:
+            raise Error(
+                f"the page's {name} {value:.6g} mm is outside the range (0, {LARGEST_MM:.0f}] mm",
+                where="svg",
+                value=value,
+                range=(0.0, LARGEST_MM),
+            )
+    if box is None:
+        px = MM_PER["px"]
+        page_from_user, viewport = (px, 0.0, 0.0, px, 0.0, 0.0), (width / px, height / px)
+    else:
+        page_from_user = _fit(box, width, height, attributes.get("preserveAspectRatio"), notices)
+        viewport = box[2:]
+    sheet = sheet_mm or (width, height)
+    flip = (1.0, 0.0, 0.0, -1.0, 0.0, sheet[1])
+    return Page(sheet, multiply(flip, page_from_user), viewport, tuple(notices))
+
+
+def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
+    if text is None:
+        return None
+    values = numbers(text.strip())
+    if values is None or len(values) != 4 or not all(map(math.isfinite, values)):
+        raise Error(f"viewBox {snippet(text, 0, 40)} is not four numbers", where="svg")
+    if values[2] <= 0 or values[3] <= 0:
+        raise Error(f"viewBox {snippet(text, 0, 40)} has no area", where="svg")
+    return tuple(values)
+
+
+def _extent(text: str | None, name: str) -> float | None:
+    if text is None or text.strip() == "auto" or text.strip().endswith("%"):
+        return None
+    try:
+        return length_mm(text, "px")
+    except Error as error:
+        raise Error(f"the page's {name}: {error}", where="svg") from None
+
+
+_ALIGN = re.compile(r"(?:defer )?(?:(none)|x(Min|Mid|Max)Y(Min|Mid|Max))(?: (meet|slice))?")
+_SHARE = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+
+
+def _fit(box, width: float, height: float, text: str | None, notices: list[Notice]) -> Matrix:
+    x, y, box_width, box_height = box
+    sx, sy = width / box_width, height / box_height
+    align = _ALIGN.fullmatch(" ".join((text or "xMidYMid").split()))
+    if not align:
+        unknown = snippet(text, 0, 40)
+        notices.append(Notice("svg", f"preserveAspectRatio {unknown} is not known: read as xMidYMid meet"))
+        align = _ALIGN.fullmatch("xMidYMid")
+    if align[1]:
+        return (sx, 0.0, 0.0, sy, -x * sx, -y * sy)
+    s = max(sx, sy) if align[4] == "slice" else min(sx, sy)
+    left, top = (width - s * box_width) * _SHARE[align[2]], (height - s * box_height) * _SHARE[align[3]]
+    return (s, 0.0, 0.0, s, left - x * s, top - y * s)

@@ -1,0 +1,99 @@
+"""SVG path data: text to commands.
+
+The grammar is walked by hand and to the letter: what it does not allow ends the path there, with the place.
+"""
+
+from __future__ import annotations
+
+import re
+
+from ..units import NUMBER as _NUMBER
+
+_SPACE = r"[ \t\n\r\f]*+"
+_GAP = rf"{_SPACE}(?:,{_SPACE})?+"
+NUMBER, SPACE, GAP, FLAG = (re.compile(text) for text in (_NUMBER, _SPACE, _GAP, "[01]"))
+_RUN = re.compile(rf"{_NUMBER}(?:{_GAP}{_NUMBER})*+")
+_ARC_ARGUMENTS = (NUMBER, NUMBER, NUMBER, FLAG, FLAG, NUMBER, NUMBER)
+
+_COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
+
+# Where the command's arguments begin in the text, its letter, its numbers.
+Command = tuple[int, str, tuple[float, ...]]
+
+
+def numbers(text: str) -> list[float] | None:
+    """A list of numbers separated as SVG allows, [] for no text; None if it is anything else."""
+    if not text:
+        return []
+    return [float(token) for token in NUMBER.findall(text)] if _RUN.fullmatch(text) else None
+
+
+def snippet(text: str, position: int, length: int = 16) -> str:
+    """What stands at a position, quoted and shortened, for a sentence."""
+    found = text[position : position + length].strip()
+    return repr(found + ("..." if position + length < len(text) else "")) if found else "the end"
+
+
+def parse_path(d: str) -> tuple[list[Command], int | None]:
+    """Commands up to the first error, and where that is (None if there is none)."""
+    commands: list[Command] = []
+    at = SPACE.match(d).end()
+    while at < len(d):
+        begin, letter = at, d[at]
+        if letter not in "MmLlHhVvCcSsQqTtAaZz" or not (commands or letter in "Mm"):
+            return commands, at
+        at = SPACE.match(d, at + 1).end()
+        if letter in "Zz":
+            commands.append((begin, letter, ()))
+            continue
+        if letter in "Aa":
+            at, error = _arcs(d, begin, at, letter, commands)
+        else:
+            run = _RUN.match(d, at)
+            if not run:
+                return commands, at
+            at, error = run.end(), _sets(d, begin, run, letter, commands)
+        if error is not None:
+            return commands, error
+        at = SPACE.match(d, at).end()
+    return commands, None
+
+
+def parse_points(text: str) -> tuple[list[Command], int | None]:
+    """A list of points as moveto and linetos up to the first error, and where that is."""
+    at = SPACE.match(text).end()
+    run = _RUN.match(text, at)
+    if not run:
+        return [], at
+    commands: list[Command] = []
+    error = _sets(text, at, run, "M", commands)
+    end = SPACE.match(text, run.end()).end()
+    return commands, end if error is None and end < len(text) else error
+
+
+def _sets(d: str, begin: int, run: re.Match, letter: str, commands: list[Command]) -> int | None:
+    tokens = list(NUMBER.finditer(d, run.start(), run.end()))
+    values = [float(token[0]) for token in tokens]
+    count = _COUNT[letter.upper()]
+    for first in range(0, len(values) - count + 1, count):
+        place = tokens[first].start() if first else begin
+        commands.append((place, letter, tuple(values[first : first + count])))
+        if letter in "Mm":
+            letter = "L" if letter == "M" else "l"
+    return GAP.match(d, run.end()).end() if len(values) % count else None
+
+
+def _arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
+    while True:
+        values = []
+        for pattern in _ARC_ARGUMENTS:
+            found = pattern.match(d, at)
+            if not found:
+                return at, at
+            values.append(float(found[0]))
+            end = found.end()
+            at = GAP.match(d, end).end()
+        commands.append((begin, letter, tuple(values)))
+        if not NUMBER.match(d, at):
+            return end, None
+        begin = at

@@ -1,0 +1,1 @@
+"""One robot language per file: moves -> text."""

@@ -1,0 +1,54 @@
+"""Moves -> G-code for LinuxCNC (RS274/NGC), 7-bit text, the same bytes for the same moves."""
+
+from __future__ import annotations
+
+import unicodedata
+
+import numpy as np
+
+from ..program import SAFE_MEANINGS, Move, Program
+
+LINE_LIMIT = 120  # LinuxCNC reads 255 characters; this also fits a screen
+
+
+def gcode(program: Program) -> str:
+    """The whole program as text: header, one commented section per stroke, M2."""
+    decimals = program.decimals
+    lines = [_comment(line) for line in program.header]
+    # G64 P, not G61: exact path stops the machine at the joint of any two moves, and a brush that stands
+    # still bleeds. Rounding the joints by a fraction of the plan's tolerance keeps the speed even.
+    lines += ["G21 G90 G94 G17 G40 G80", f"G64 P{_number(program.path_tolerance_mm, decimals)}"]
+    lines.append(f"G0 Z{_number(program.safe_height_mm, decimals)}")
+    feed = ""
+    for number, section in enumerate(program.sections, 1):
+        lines += ["", _comment(f"stroke {number} of {len(program.sections)}: {section.stroke}")]
+        for move in section.moves:
+            points = _lines(move, decimals)
+            if move.meaning not in SAFE_MEANINGS:
+                wanted = f" F{_number(60.0 * move.speed_mm_s, 1)}"
+                points[0] += wanted if wanted != feed else ""
+                feed = wanted
+            lines += points
+    return "\n".join([*lines, "", "M2", ""])
+
+
+def _lines(move: Move, decimals: int) -> list[str]:
+    word = "G0" if move.meaning in SAFE_MEANINGS else "G1"
+    pattern = f"{word} X%.{decimals}f Y%.{decimals}f Z%.{decimals}f"
+    rounded = np.round(move.points_mm, decimals) + 0.0  # -0.0 + 0.0 is 0.0: no minus sign before a zero
+    return ("\n".join([pattern] * len(rounded)) % tuple(rounded.ravel().tolist())).split("\n")
+
+
+def _number(value: float, decimals: int) -> str:
+    return f"{round(value, decimals) + 0.0:.{decimals}f}"
+
+
+def _comment(text: str) -> str:
+    """One line of comment. LinuxCNC acts on comments that start with MSG, DEBUG, LOG, PRINT and the like, so
+    callers begin with a word of their own; brackets, line ends and letters beyond ASCII cannot stay."""
+    plain = unicodedata.normalize("NFKD", text)
+    plain = "".join(letter for letter in plain if not unicodedata.combining(letter))
+    plain = plain.translate({ord("("): "[", ord(")"): "]", ord("\n"): " ", ord("\r"): " ", ord("\t"): " "})
+    plain = "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
+    room = LINE_LIMIT - 2
+    return f"({plain if len(plain) <= room else plain[: room - 3] + '...'})"

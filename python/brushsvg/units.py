@@ -1,0 +1,67 @@
+"""The only reader of lengths written by people and drawing programs: "0.5in", "10mm", "5", "25%"."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import lru_cache
+
+from .errors import Error
+
+MM_PER = {"mm": 1.0, "cm": 10.0, "q": 0.25, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "px": 25.4 / 96}
+PX_PER = {"mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "in": 96.0, "pt": 96 / 72, "pc": 16.0, "px": 1.0}
+
+# Digits are spelled out, for \d and float() read other alphabets' digits too; possessive, so that no text is
+# read twice.
+NUMBER = r"[+-]?+(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
+_LENGTH = re.compile(rf"({NUMBER})\s*([a-zA-Z]+|%|)")
+_SIZE = re.compile(rf"({NUMBER}) ?(mm|cm|in|pt|pc|px|q|) ?x ?({NUMBER}) ?([a-z]*)")
+
+
+def _shown(text: str) -> str:
+    text = text.strip()
+    return repr(text if len(text) <= 24 else text[:21] + "...")
+
+
+@lru_cache
+def _parts(text: str) -> tuple[float, str]:
+    found = _LENGTH.fullmatch(text.strip())
+    if not found:
+        raise Error(f"{_shown(text)} is not a length; write for example 5mm, 0.2in or 14pt")
+    value, unit = float(found[1]), found[2].lower()
+    if not math.isfinite(value):
+        raise Error(f"{_shown(text)} is too large to be a length")
+    if unit not in MM_PER and unit not in ("", "%"):
+        raise Error(f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q")
+    return value, unit
+
+
+def length_mm(text: str, default_unit: str = "mm") -> float:
+    """A length in mm; a bare number counts in default_unit. Error if it is no length or a percentage."""
+    value, unit = _parts(text)
+    if unit == "%":
+        raise Error(f"{_shown(text)} is a percentage, but there is nothing to take it of")
+    return value * MM_PER[unit or default_unit]
+
+
+def length_px(text: str, percent_of: float) -> float:
+    """A length in px (SVG user units, 96 to the inch); percentages are taken of percent_of px."""
+    value, unit = _parts(text)
+    return value * percent_of / 100 if unit == "%" else value * PX_PER[unit or "px"]
+
+
+def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
+    """Width and height in mm from "210x297", "8.5x11in" or "210mm x 297mm"; a unit at the end serves both."""
+    found = _SIZE.fullmatch(" ".join(text.lower().split()))
+    if not found:
+        raise Error(f"{_shown(text)} is not a size; write for example 210x297mm or 8.5x11in")
+    height_unit = found[4]
+    size = (
+        length_mm(found[1] + (found[2] or height_unit), default_unit),
+        length_mm(found[3] + height_unit, default_unit),
+    )
+    for value in size:
+        if not 0 < value <= 1e6:
+            sentence = f"{value} mm in the size {_shown(text)} is outside the range (0, 1000000] mm"
+            raise Error(sentence, value=value, range=(0.0, 1e6))
+    return size

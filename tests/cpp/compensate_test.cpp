@@ -1,0 +1,190 @@
+#include "brushsvg/compensate.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/simulate.hpp"
+#include "brushsvg/wanted.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+using V = Eigen::Vector2d;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Stroke stroke_of(const Cubics& middle, std::vector<WidthKnot> half_width) {
+    Stroke s;
+    s.id = "s";
+    s.middle_mm = middle;
+    s.half_width = std::move(half_width);
+    return s;
+}
+
+double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
+    return overlap(outline(simulate(pass, brush, 0.01), brush), wanted_outline(stroke));
+}
+
+}  // namespace
+
+TEST_CASE("turns up to 90 degrees are exact, beyond them what remains is what geometry says") {
+    const Brush brush = shipped("round-6");
+    const double e = brush.lever_to_widest(4.0);
+    for (double degrees : {0.0, 30.0, 60.0, 89.9, 120.0, 150.0, 180.0}) {
+        const double a = degrees * kPi / 180;
+        const Stroke s = stroke_of(polyline({V(20, 20), V(60, 20), V(60 + 40 * std::cos(a), 20 + 40 * std::sin(a))}),
+                                   {{0.0, brush.half_width(4.0)}});
+        for (double tolerance : {0.5, 0.05, 1e-3, 1e-5}) {
+            const CompensatedPass c = compensate(s, brush, {Compensation::closed, tolerance});
+            const double remains = degrees > 90.0 ? e * (1.0 - std::cos(a - kPi / 2)) : 0.0;
+            CHECK(c.miss.largest_mm <= remains + tolerance);
+            CHECK(c.miss.largest_mm >= remains - tolerance);
+            CHECK(c.miss.has_turn_in_place == (degrees > 90.0));
+        }
+    }
+}
+
+TEST_CASE("tapers across the depth where the lever changes its sign, and a 0.5 mm line") {
+    const Brush brush = shipped("round-6");
+    Cubics wave(2, 8);
+    wave << 20, 40, 40, 75, 50, 70, 60, 45, 60, 45, 70, 20, 90, 15, 110, 40;
+    for (double tolerance : {0.5, 0.05, 1e-3, 1e-5}) {
+        const Stroke taper = stroke_of(wave, {{0.0, 0.125}, {0.3, 2.0}, {0.6, 0.125}, {1.0, 2.0}});
+        CHECK(compensate(taper, brush, {Compensation::closed, tolerance}).miss.largest_mm <= tolerance);
+        const Stroke hair = stroke_of(wave, {{0.0, 0.25}});
+        CHECK(compensate(hair, brush, {Compensation::closed, tolerance}).miss.largest_mm <= tolerance);
+    }
+}
+
+TEST_CASE("P comes back: on a straight line it runs e behind the middle") {
+    const Brush brush = shipped("round-6");
+    const Stroke s = stroke_of(polyline({V(20, 20), V(80, 20)}), {{0.0, brush.half_width(4.0)}});
+    const Pass pass = compensate(s, brush, {Compensation::closed, 1e-5}).pass;
+    const PassMarks m = simulate(pass, brush, 1e-3);
+    for (std::size_t i = 0; i < m.pose.size(); ++i) CHECK(std::abs(m.contact_mm(i, 1) - 20.0) < 1e-6);
+}
+
+TEST_CASE("the mark begins at the tip, half a width before the path, and ends at the footprint's front") {
+    const Brush brush = shipped("round-6");
+    const double h = brush.half_width(5.0);
+    const Stroke s = stroke_of(polyline({V(30, 20), V(90, 20)}), {{0.0, h}});
+    const Pass pass = compensate(s, brush, {}).pass;
+    CHECK(pass.poses_mm(0, 2) == 0.0);
+    CHECK(pass.poses_mm(pass.poses_mm.rows() - 1, 2) == 0.0);
+    const auto box = painted_bounds(simulate(pass, brush, 0.01), brush);
+    CHECK(std::abs(box[0] - (30.0 - h)) < 0.02);
+    CHECK(std::abs(box[2] - (90.0 + h)) < 0.02);
+    CHECK(std::abs(box[3] - (20.0 + h)) < 0.02);
+}
+
+TEST_CASE("compensation beats none and the best constant lag on a curved stroke") {
+    const Brush brush = shipped("round-6");
+    Cubics wave(2, 8);
+    wave << 20, 40, 30, 75, 50, 70, 60, 45, 60, 45, 70, 20, 90, 15, 100, 40;
+    const Stroke s = stroke_of(wave, {{0.0, 0.6}, {0.5, 2.8}, {1.0, 0.6}});
+    const double none = overlap_of(s, compensate(s, brush, {Compensation::none}).pass, brush);
+    const double closed = overlap_of(s, compensate(s, brush, {}).pass, brush);
+    double best = 0.0;
+    for (double lag = 4.0; lag < 11.0; lag += 0.25)
+        best = std::max(best, overlap_of(s, compensate(s, brush, {Compensation::constant, 0.05, lag}).pass, brush));
+    CHECK(none < 0.5);
+    CHECK(best > none);
+    CHECK(closed > best + 0.03);
+    CHECK(closed > 0.9);
+}
+
+TEST_CASE("none and constant are what they say") {
+    const Brush brush = shipped("round-6");
+    const Stroke s = stroke_of(polyline({V(20, 20), V(60, 20), V(60, 50)}), {{0.0, brush.half_width(4.0)}});
+    const Poses none = compensate(s, brush, {Compensation::none}).pass.poses_mm;
+    Poses expected(5, 3);
+    expected << 20, 20, 0, 20, 20, -4, 60, 20, -4, 60, 50, -4, 60, 50, 0;
+    CHECK((none - expected).norm() < 1e-9);
+    const Poses constant = compensate(s, brush, {Compensation::constant}).pass.poses_mm;
+    const double r0 = brush.lag(4.0);
+    CHECK((constant.row(0) - Eigen::RowVector3d(20, 20, 0)).norm() < 1e-9);
+    CHECK((constant.row(1) - Eigen::RowVector3d(20 + r0, 20, -4)).norm() < 1e-9);
+    CHECK((constant.row(2) - Eigen::RowVector3d(60 + r0, 20, -4)).norm() < 1e-9);
+    CHECK((constant.row(constant.rows() - 1) - Eigen::RowVector3d(60, 50 + r0, 0)).norm() < 1e-9);
+    for (Eigen::Index i = 2; i < constant.rows() - 2; ++i)  // an arc of r0 about the corner
+        CHECK((constant.row(i).head<2>() - Eigen::RowVector2d(60, 20)).norm() == doctest::Approx(r0));
+}
+
+TEST_CASE("a dot and a mark shorter than a footprint are one landing") {
+    const Brush brush = shipped("round-6");
+    const Stroke dot = stroke_of(polyline({V(50, 50), V(50, 50)}), {{0.0, 2.0}});
+    const CompensatedPass c = compensate(dot, brush, {});
+    CHECK(c.miss.largest_mm < 1e-9);
+    CHECK(overlap_of(dot, c.pass, brush) > 0.7);
+    const Stroke dash = stroke_of(polyline({V(50, 50), V(51, 50)}), {{0.0, 2.0}});
+    const CompensatedPass short_one = compensate(dash, brush, {});
+    CHECK(short_one.miss.largest_mm < 1e-9);
+    CHECK(std::abs(painted_bounds(simulate(short_one.pass, brush, 0.01), brush)[2] - 53.0) < 0.02);
+}
+
+TEST_CASE("a rigid pen stays on the line at its own depth") {
+    const Brush pen = shipped("rigid");
+    const Stroke s = stroke_of(polyline({V(20, 20), V(60, 20), V(20, 21)}), {{0.0, 3.0}});
+    const CompensatedPass c = compensate(s, pen, {});
+    CHECK(c.miss.largest_mm < 1e-9);
+    CHECK(c.pass.poses_mm.rows() == 5);
+    CHECK(c.pass.poses_mm(2, 2) == -pen.paint_depth_mm);
+}
+
+TEST_CASE("a brush whose lag grows as fast as its depth is pressed before it runs") {
+    Brush brush = shipped("round-6");
+    brush.lag.coefficients = {0.5, 0.0, 0.2};
+    const Stroke s = stroke_of(polyline({V(30, 30), V(80, 30)}), {{0.0, brush.half_width(5.0)}});
+    const CompensatedPass c = compensate(s, brush, {});
+    CHECK(c.miss.within_tolerance);
+    const PassMarks m = simulate(c.pass, brush, 0.01);
+    std::size_t first = 0;
+    while (!m.taut[first]) ++first;
+    CHECK((m.contact_mm.row(first) - m.contact_mm.row(0)).norm() < 1e-9);  // rested during the landing
+}
+
+TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest during landing and lift") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int k = 0; k < 40; ++k) {
+        // heading varies slowly enough for the widest section: radius of curvature above 3 mm
+        Cubics c(3, 8);
+        V p(100, 100);
+        double heading = 6.28 * unit(random);
+        for (int i = 0; i < 3; ++i) {
+            const double turn = 2.0 * unit(random) - 1.0, length = 20 + 20 * unit(random);
+            const V a(std::cos(heading), std::sin(heading)), b(std::cos(heading + turn), std::sin(heading + turn));
+            const V q = p + length * 0.5 * (a + b);
+            c.row(i) << p.transpose(), (p + length / 3 * a).transpose(), (q - length / 3 * b).transpose(), q.transpose();
+            p = q;
+            heading += turn;
+        }
+        std::vector<WidthKnot> widths;
+        for (double at : {0.0, 0.2, 0.5, 0.7, 1.0}) widths.push_back({at, 0.125 + 2.5 * unit(random)});
+        const Stroke s = stroke_of(c, widths);
+        for (double tolerance : {0.05, 1e-3}) {
+            const CompensatedPass out = compensate(s, brush, {Compensation::closed, tolerance});
+            CHECK_MESSAGE(out.miss.largest_mm <= tolerance, "stroke " << k << " misses by " << out.miss.largest_mm);
+        }
+        const PassMarks m = simulate(compensate(s, brush, {}).pass, brush, 0.01);
+        std::size_t last = m.taut.size() - 1;
+        while (!m.taut[last]) --last;
+        CHECK((m.contact_mm.row(m.contact_mm.rows() - 1) - m.contact_mm.row(last)).norm() < 1e-9);
+        CHECK(m.depth_mm[last] > 0.0);
+    }
+}
+
+TEST_CASE("what the brush cannot paint is refused, what it was not measured for is warned of once") {
+    const Brush brush = shipped("round-6");
+    const Cubics line = polyline({V(20, 20), V(60, 20)});
+    CHECK_THROWS_AS(compensate(stroke_of(line, {{0.0, 5.0}}), brush, {}), Error);
+    CHECK(compensate(stroke_of(line, {{0.0, 0.2}, {1.0, 0.3}}), brush, {}).warnings.size() == 1);
+    CHECK(compensate(stroke_of(line, {{0.0, 1.0}}), brush, {}).warnings.empty());
+    CHECK_THROWS_AS(compensate(stroke_of(line, {{0.0, 1.0}}), brush, {Compensation::closed, 0.0}), Error);
+}

@@ -1,0 +1,88 @@
+#include "brushsvg/coverage.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "brushsvg/simulate.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+Marks marks_of(const Brush& brush, double tolerance_mm) {
+    Plan plan;
+    Pass pass;
+    pass.stroke = "s";
+    pass.poses_mm.resize(6, 3);
+    pass.poses_mm << 20, 20, 0, 26, 20, -4, 60, 20, -4, 60, 50, -5, 20, 30, -3, 22, 30, 0;
+    plan.passes = {pass};
+    return simulate(plan, brush, tolerance_mm);
+}
+
+double painted_mm2(const Coverage& c, double px_per_mm) { return double(c.cast<double>().sum()) / (px_per_mm * px_per_mm); }
+
+/// A crescent that opens towards the TCP; convexity cannot be assumed of it.
+Brush crescent_brush() {
+    Brush brush = shipped("round-6");
+    brush.footprints = {};
+    for (double d : {2.0, 6.0}) {
+        Ring r(6, 2);
+        const double h = 0.42 * d, x = brush.tip_to_widest(d);
+        r << 0, 0, x, -h, x + 1.5, -0.6 * h, 0.55 * x, 0, x + 1.5, 0.6 * h, x, h;
+        brush.footprints.dragged.push_back({d, r});
+    }
+    return brush;
+}
+
+}  // namespace
+
+TEST_CASE("a box: exact coverage of edge pixels") {
+    Ring r(4, 2);
+    r << 1.25, 1.0, 3.5, 1.0, 3.5, 2.0, 1.25, 2.0;
+    const Coverage c = coverage({r}, Window{0, 0, 5, 4}, 1.0);
+    CHECK(c.rows() == 4);
+    CHECK(c.cols() == 5);
+    CHECK(c(2, 1) == doctest::Approx(0.75));
+    CHECK(c(2, 2) == doctest::Approx(1.0));
+    CHECK(c(2, 3) == doctest::Approx(0.5));
+    CHECK(c.sum() == doctest::Approx(2.25));
+}
+
+TEST_CASE("coverage and rings agree on the painted area, convex or not") {
+    for (const Brush& brush : {shipped("round-6"), crescent_brush()}) {
+        const Marks marks = marks_of(brush, 0.005);
+        const double ring_area = area(outline(marks.passes[0], brush));
+        const Coverage c = coverage(marks, brush, Window{0, 0, 80, 70}, 20.0);
+        CHECK(c.minCoeff() >= 0.0f);
+        CHECK(c.maxCoeff() <= 1.0f);
+        CHECK(painted_mm2(c, 20.0) == doctest::Approx(ring_area).epsilon(2e-4));
+    }
+}
+
+TEST_CASE("a window cuts, it does not shift") {
+    const Brush brush = shipped("round-6");
+    const Marks marks = marks_of(brush, 0.02);
+    const Coverage all = coverage(marks, brush, Window{0, 0, 80, 70}, 4.0);
+    const Coverage part = coverage(marks, brush, Window{30, 10, 20, 20}, 4.0);
+    CHECK((all.block(160, 120, 80, 80) - part).cwiseAbs().maxCoeff() < 1e-4f);
+}
+
+TEST_CASE("bounds hold every ring") {
+    const Brush brush = shipped("round-6");
+    const Marks marks = marks_of(brush, 0.02);
+    const auto [left, bottom, right, top] = painted_bounds(marks.passes[0], brush);
+    const Rings rings = outline(marks.passes[0], brush);
+    for (const Ring& ring : rings) {
+        CHECK(ring.col(0).minCoeff() >= left - 1e-4);
+        CHECK(ring.col(1).minCoeff() >= bottom - 1e-4);
+        CHECK(ring.col(0).maxCoeff() <= right + 1e-4);
+        CHECK(ring.col(1).maxCoeff() <= top + 1e-4);
+    }
+}
+
+TEST_CASE("a picture that cannot be made is refused") {
+    CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 0, 10}, 20.0), Error);
+    CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 1e6, 1e6}, 20.0), Error);
+}

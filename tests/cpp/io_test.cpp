@@ -1,0 +1,404 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "brush_json.hpp"
+#include "brushsvg/error.hpp"
+#include "marks_json.hpp"
+#include "plan_json.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, what.size(), by);
+}
+
+/// What a refused text is refused with; fails the test when it is not.
+template <class Act>
+Error refusal_of(Act act) {
+    try {
+        act();
+    } catch (const Error& error) {
+        return error;
+    }
+    FAIL("it was not refused");
+    return Error("");
+}
+
+const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name": "flat", "depth_range_mm": [0, 4],
+  "maker": {"b": 1, "a": [2e-5]},
+  "lag": {"coefficients": [1, 0.1], "half_interval_95": [0.5, 0.1], "rmse_mm": 0.3, "calibrated_mm": [1, 4],
+          "source": "ruler", "assumed": true, "note": "wet"},
+  "tip_gap": {"coefficients": [0, 0.52]},
+  "tip_to_widest": {"coefficients": [-2.35, 2.75], "floor": 0, "floor_slope": 0.126},
+  "half_width": {"coefficients": [0, 0.42]},
+  "covariance": [[1,0,0,0,0,0,0,0],[0,1,0,0,0,0,0,0],[0,0,1,0,0,0,0,0],[0,0,0,1,0,0,0,0],
+                 [0,0,0,0,1,0,0,0],[0,0,0,0,0,1,0,0],[0,0,0,0,0,0,1,0],[0,0,0,0,0,0,0,1]],
+  "footprints": {"glass": "matte",
+                 "dragged": [{"depth_mm": 1, "outline_mm": [[0, 0], [1, -0.5], [1, 0.5]]},
+                             {"depth_mm": 2, "outline_mm": [[0, 0], [2, -1], [2, 1]], "photo": "b.jpg"}],
+                 "pressed": [{"depth_mm": 2, "outline_mm": [[0, 0], [1.5, -1], [1.5, 1]], "photo": "c.jpg"}]},
+  "max_speed_mm_s": 30, "paint_depth_mm": 2})";
+
+const std::string kPlan = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50.5],
+  "author": "me", "passes": [
+    {"stroke": "a", "poses_mm": [[1, 2, 0], [3.5, 2, -1]], "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456",
+     "settings": {"dry": true}, "arcs": [[0, 1, 5, 5, -1]], "mood": "calm"},
+    {"stroke": "b", "poses_mm": [[7, 8, -2]]}]})";
+
+const std::string kMarks = R"({"format": "brushsvg/marks", "version": 1, "outline_mm": [[[0, 0], [1, 0], [0, 1]]],
+  "passes": [{"stroke": "a", "pose": [0, 0.5, 1], "contact_mm": [[1, 2], [1.5, 2], [3, 2]],
+              "heading_rad": [0, 0.25, -3], "depth_mm": [0, 1, -2], "taut": [false, true, true],
+              "outline_mm": [[[0, 0], [4, 0], [0, 4]], [[1, 1], [1, 2], [2, 1]]]}]})";
+
+struct Fault {
+    const char *what, *by, *where, *said;
+};
+
+}  // namespace
+
+TEST_CASE("brush.json: every key arrives where it belongs") {
+    const Brush brush = io::read_brush(kBrush);
+    CHECK(brush.name == "flat");
+    CHECK(brush.depth_range_mm[1] == 4.0);
+    CHECK(brush.lag.coefficients == std::vector<double>{1.0, 0.1});
+    CHECK(brush.lag.half_interval_95 == std::vector<double>{0.5, 0.1});
+    CHECK(*brush.lag.rmse_mm == 0.3);
+    CHECK((*brush.lag.calibrated_mm)[0] == 1.0);
+    CHECK(brush.lag.source == "ruler");
+    CHECK(brush.lag.assumed);
+    CHECK_FALSE(brush.tip_gap.assumed);
+    CHECK_FALSE(brush.tip_gap.rmse_mm.has_value());
+    CHECK(brush.tip_gap.floor == -std::numeric_limits<double>::infinity());
+    CHECK(brush.tip_to_widest(0.5) == doctest::Approx(0.063));  // floor + floor_slope d
+    CHECK(brush.tip_to_widest(2.0) == doctest::Approx(3.15));
+    CHECK(brush.covariance.size() == 8);
+    CHECK(brush.covariance[7][7] == 1.0);
+    REQUIRE(brush.footprints.dragged.size() == 2);
+    CHECK(brush.footprints.dragged[1].depth_mm == 2.0);
+    CHECK(brush.footprints.dragged[1].outline_mm(1, 1) == -1.0);
+    REQUIRE(brush.footprints.pressed.size() == 1);
+    CHECK(brush.max_speed_mm_s == 30.0);
+    CHECK(brush.paint_depth_mm == 2.0);
+    CHECK(brush.lag.extra == R"({"note":"wet"})");
+    CHECK(brush.extra.find(R"("maker":{"b":1,"a":[2e-05]})") != std::string::npos);
+}
+
+TEST_CASE("brush.json: optional keys have the header's defaults") {
+    std::string text = kBrush.substr(0, kBrush.find(",\n  \"max_speed")) + "}";
+    text = replaced(text, "\"maker\"", "\"covariance_of_another\": 1, \"maker\"");
+    const std::size_t from = text.find("\"covariance\""), to = text.find("\"footprints\"");
+    const Brush brush = io::read_brush(text.erase(from, to - from));
+    CHECK(brush.max_speed_mm_s == 25.0);
+    CHECK(brush.paint_depth_mm == 0.0);
+    CHECK(brush.kind.empty());
+    CHECK(brush.covariance.empty());
+}
+
+TEST_CASE("brush.json: unknown keys of every level and every double come back, the same bytes each time") {
+    Brush brush = io::read_brush(kBrush);
+    brush.lag.coefficients = {1.0 / 3.0, 5e-324, -1.7976931348623157e308, -0.0, 0.1 + 0.2};
+    brush.lag.half_interval_95 = {};
+    brush.covariance.clear();
+    const std::string written = io::write_brush(brush);
+    const Brush again = io::read_brush(written);
+    CHECK(again.lag.coefficients == brush.lag.coefficients);
+    CHECK(again.lag.source == "ruler");
+    CHECK(again.lag.assumed);
+    CHECK(*again.lag.rmse_mm == 0.3);
+    CHECK((*again.lag.calibrated_mm)[1] == 4.0);
+    CHECK(again.tip_to_widest.floor == 0.0);
+    CHECK(again.tip_to_widest.floor_slope == 0.126);
+    CHECK(again.footprints.pressed[0].outline_mm == brush.footprints.pressed[0].outline_mm);
+    CHECK(io::write_brush(io::read_brush(kBrush)).find("[0, 0, 0, 0, 0, 0, 0, 1]\n  ]") != std::string::npos);
+    CHECK(io::write_brush(again) == written);
+    CHECK(written.find("-0,") == std::string::npos);
+    CHECK(written.find("e-324") == std::string::npos);
+    for (const char* kept : {R"("note": "wet")", R"("maker": {"b":1,"a":[2e-05]})", R"("glass": "matte")",
+                             R"("depth_mm": 2, "photo": "b.jpg")", R"("depth_mm": 2, "photo": "c.jpg")"}) {
+        CAPTURE(kept);
+        CHECK(written.find(kept) != std::string::npos);
+    }
+}
+
+TEST_CASE("brush.json: each fault is named with its key") {
+    const Fault faults[] = {
+        {"\"brushsvg/brush\"", "\"brushsvg/plan\"", "format", "brushsvg/plan"},
+        {"\"brushsvg/brush\"", "7", "format", "must be a string, not 7"},
+        {"\"version\": 1", "\"version\": 2", "version", "version 2 of brushsvg/brush is not known"},
+        {"\"version\": 1", "\"version\": \"1\"", "version", "must be a number"},
+        {"\"version\": 1", "\"versiom\": 1", "version", "missing"},
+        {"\"name\"", "\"nom\"", "name", "missing"},
+        {"\"flat\"", "null", "name", "must be a string, not null"},
+        {"\"depth_range_mm\"", "\"x\"", "depth_range_mm", "missing"},
+        {"[0, 4]", "[0]", "depth_range_mm", "two numbers"},
+        {"[0, 4]", "[4, 0]", "depth_range_mm", "smaller number first"},
+        {"\"lag\"", "\"lagg\"", "lag", "missing"},
+        {"\"tip_gap\": {\"coefficients\"", "\"tip_gap\": {\"c\"", "tip_gap.coefficients", "missing"},
+        {"\"half_width\": {\"coefficients\": [0, 0.42]}", "\"half_width\": 3", "half_width", "must be an object, not 3"},
+        {"[0, 0.52]", "[]", "tip_gap.coefficients", "at least one"},
+        {"[0, 0.52]", "[0, \"x\"]", "tip_gap.coefficients[1]", "must be a number, not a string"},
+        {"[0, 0.52]", "[0, NaN]", "tip_gap.coefficients[1]", "not valid JSON at line 5, column 35"},
+        {"[0, 0.52]", "[0, 1e999]", "tip_gap.coefficients[1]", "too large"},
+        {"[0, 0.52]", "0.52", "tip_gap.coefficients", "array of numbers, not 0.52"},
+        {"\"floor\": 0, ", "", "tip_to_widest.floor_slope", "needs a floor"},
+        {"\"floor\": 0", "\"floor\": null", "tip_to_widest.floor", "must be a number, not null"},
+        {"\"assumed\": true", "\"assumed\": 1", "lag.assumed", "true or false"},
+        {"[0.5, 0.1]", "[0.5]", "lag.half_interval_95", "must hold 2 numbers"},
+        {"[[1,0,0,0,0,0,0,0]", "[[1,0,0,0,0,0,0]", "covariance[0]", "must hold 8 numbers"},
+        {"[[1,0,0,0,0,0,0,0],", "[", "covariance", "must have 8 rows, one per coefficient, not 7"},
+        {"\"dragged\"", "\"dragger\"", "footprints.dragged", "missing"},
+        {"\"depth_mm\": 1", "\"depth_mm\": 0", "footprints.dragged[0].depth_mm", "greater than 0"},
+        {"\"depth_mm\": 1", "\"depth_mm\": 2", "footprints.dragged[1].depth_mm", "ascend"},
+        {"[1, -0.5], [1, 0.5]", "[1, -0.5]", "footprints.dragged[0].outline_mm", "three points"},
+        {"[2, -1], [2, 1]", "[2, -1], [2, 0], [2, 1]", "footprints.dragged[1].outline_mm", "4 points where the first"},
+        {"[1.5, -1]", "[1.5, -1, 0]", "footprints.pressed[0].outline_mm[1]", "two numbers"},
+        {"[1.5, -1]", "[1.5, true]", "footprints.pressed[0].outline_mm[1][1]", "must be a number, not true"},
+        {"\"max_speed_mm_s\": 30", "\"max_speed_mm_s\": 0", "max_speed_mm_s", "greater than 0"},
+        {"\"name\"", "\"version\"", "version", "stands twice"},
+        {"\"paint_depth_mm\": 2}", "\"paint_depth_mm\": 2", "paint_depth_mm", "unexpected end of input"},
+    };
+    for (const Fault& fault : faults) {
+        CAPTURE(fault.by);
+        const Error error = refusal_of([&] { io::read_brush(replaced(kBrush, fault.what, fault.by)); });
+        CHECK(error.where() == fault.where);
+        CHECK(std::string(error.what()).find(fault.said) != std::string::npos);
+    }
+}
+
+TEST_CASE("brush.json: every truncation is refused") {
+    for (std::size_t length = 0; length < kBrush.size(); ++length) {
+        CAPTURE(length);
+        CHECK_THROWS_AS(io::read_brush(kBrush.substr(0, length)), Error);
+    }
+}
+
+TEST_CASE("brush.json: what cannot be read back is not written") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double infinity = std::numeric_limits<double>::infinity();
+    const auto refused = [](auto change) {
+        Brush brush = io::read_brush(kBrush);
+        change(brush);
+        return refusal_of([&] { io::write_brush(brush); }).where();
+    };
+    CHECK(refused([&](Brush& b) { b.lag.coefficients[1] = nan; }) == "lag");
+    CHECK(refused([&](Brush& b) { b.half_width.rmse_mm = infinity; }) == "half_width");
+    CHECK(refused([&](Brush& b) { b.tip_gap.floor = infinity; }) == "tip_gap");
+    CHECK(refused([&](Brush& b) { b.max_speed_mm_s = infinity; }) == "max_speed_mm_s");
+    CHECK(refused([&](Brush& b) { b.footprints.dragged[0].outline_mm(1, 1) = nan; }) == "outline_mm");
+    CHECK(refused([&](Brush& b) { b.name = "\xff"; }) == "name");
+    CHECK(refused([&](Brush& b) { b.extra = "[]"; }) == "extra");
+    CHECK(refused([&](Brush& b) { b.extra = "{\"a\": "; }) == "extra");
+    CHECK(refused([&](Brush& b) { b.extra = "{\"footprints\": 1}"; }) == "extra.footprints");
+    CHECK(refused([&](Brush& b) { b.lag.extra = "{\"rmse_mm\": 1}"; }) == "lag.extra");
+    CHECK(refused([&](Brush& b) { b.footprints.dragged.clear(); }) == "footprints.dragged");
+}
+
+TEST_CASE("plan.json: every key arrives and is written back") {
+    const Plan plan = io::read_plan(kPlan);
+    CHECK(plan.brush == "flat");
+    CHECK(plan.brush_sha256.empty());
+    CHECK(plan.sheet_mm == std::array<double, 2>{100.0, 50.5});
+    CHECK(plan.extra == R"({"author":"me"})");
+    REQUIRE(plan.passes.size() == 2);
+    const Pass& pass = plan.passes[0];
+    CHECK(pass.stroke == "a");
+    CHECK(pass.poses_mm.rows() == 2);
+    CHECK(pass.poses_mm(1, 0) == 3.5);
+    CHECK(pass.poses_mm(1, 2) == -1.0);
+    CHECK(pass.speed_mm_s == 12.5);
+    CHECK(pass.layer == "ink");
+    CHECK(pass.colour == "#123456");
+    CHECK(pass.settings == R"({"dry":true})");
+    CHECK(pass.extra == R"({"arcs":[[0,1,5,5,-1]],"mood":"calm"})");
+    CHECK(plan.passes[1].speed_mm_s == 20.0);
+    CHECK(plan.passes[1].settings == "{}");
+    CHECK(plan.passes[1].poses_mm(0, 2) == -2.0);
+    CHECK(io::write_plan(plan) == R"({
+  "format": "brushsvg/plan",
+  "version": 1,
+  "brush": "flat",
+  "brush_sha256": "",
+  "sheet_mm": [100, 50.5],
+  "author": "me",
+  "passes": [
+    {"stroke": "a", "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456", "settings": {"dry":true},
+     "arcs": [[0,1,5,5,-1]],
+     "mood": "calm",
+     "poses_mm": [[1, 2, 0], [3.5, 2, -1]]},
+    {"stroke": "b", "speed_mm_s": 20, "layer": "", "colour": "", "settings": {},
+     "poses_mm": [[7, 8, -2]]}
+  ]
+}
+)");
+}
+
+TEST_CASE("plan.json: each fault is named with its key") {
+    const Fault faults[] = {
+        {"[3.5, 2, -1]", "[3.5, 2, 1.5]", "passes[0].poses_mm[1]", "pose 1 of stroke a has z = 1.5 mm"},
+        {"[3.5, 2, -1]", "[3.5, 2, 1e-300]", "passes[0].poses_mm[1]", "0 or below"},
+        {"[3.5, 2, -1]", "[3.5, 2]", "passes[0].poses_mm[1]", "three numbers [x, y, z], not an array of 2"},
+        {"[1, 2, 0]", "[1, 2, 0, 0]", "passes[0].poses_mm[0]", "three numbers [x, y, z], not an array of 4"},
+        {"[3.5, 2, -1]", "5", "passes[0].poses_mm[1]", "three numbers [x, y, z], not 5"},
+        {"[3.5, 2, -1]", "[3.5, \"2\", -1]", "passes[0].poses_mm[1][1]", "must be a number, not a string"},
+        {"[3.5, 2, -1]", "[3.5, [[1, 2, 3]], -1]", "passes[0].poses_mm[1][1]", "must be a number, not an array"},
+        {"[3.5, 2, -1]", "[3.5, 2, -Infinity]", "passes[0].poses_mm[1][2]", "not valid JSON at line 3"},
+        {"[[7, 8, -2]]", "[]", "passes[1].poses_mm", "stroke b has no poses"},
+        {"[[7, 8, -2]]", "{}", "passes[1].poses_mm", "must be an array of rows of three numbers"},
+        {"\"poses_mm\": [[7", "\"poses\": [[7", "passes[1].poses_mm", "missing"},
+        {"\"stroke\": \"b\"", "\"id\": \"b\"", "passes[1].stroke", "missing"},
+        {"\"stroke\": \"b\"", "\"stroke\": 4", "passes[1].stroke", "must be a string, not 4"},
+        {"12.5", "0", "passes[0].speed_mm_s", "greater than 0, not 0"},
+        {"{\"dry\": true}", "[]", "passes[0].settings", "must be an object, not an array"},
+        {"[100, 50.5]", "[100, 0]", "sheet_mm", "greater than 0, not 0"},
+        {"[100, 50.5]", "[100]", "sheet_mm", "two numbers"},
+        {"\"passes\": [", "\"passes\": [3, ", "passes[0]", "must be an object, not 3"},
+        {"\"passes\"", "\"parts\"", "passes", "missing"},
+        {"\"brush\":", "\"brosse\":", "brush", "missing"},
+        {"\"mood\"", "\"poses_mm\"", "passes[0].poses_mm", "stands twice"},
+    };
+    for (const Fault& fault : faults) {
+        CAPTURE(fault.by);
+        const Error error = refusal_of([&] { io::read_plan(replaced(kPlan, fault.what, fault.by)); });
+        CHECK(error.where() == fault.where);
+        CHECK(std::string(error.what()).find(fault.said) != std::string::npos);
+    }
+    const Error high = refusal_of([&] { io::read_plan(replaced(kPlan, "[3.5, 2, -1]", "[3.5, 2, 1.5]")); });
+    CHECK(*high.value() == 1.5);
+    CHECK((*high.range())[1] == 0.0);
+}
+
+TEST_CASE("plan.json: a z of 0 or below is fine anywhere, at the ends too") {
+    CHECK(io::read_plan(replaced(kPlan, "[1, 2, 0]", "[1, 2, -3]")).passes[0].poses_mm(0, 2) == -3.0);
+    CHECK(io::read_plan(replaced(kPlan, "[3.5, 2, -1]", "[3.5, 2, -0.0]")).passes[0].poses_mm(1, 2) == 0.0);
+}
+
+TEST_CASE("plan.json: numbers are plain decimals rounded to 1e-7") {
+    Plan plan = io::read_plan(kPlan);
+    plan.passes.resize(1);
+    plan.passes[0].poses_mm.resize(3, 3);
+    plan.passes[0].poses_mm << 1.0 / 3.0, -2.77e-17, -1e-12, 1e15 / 3.0, 123.45678949, -0.1, 4e-8, -7e-8, 1e-17;
+    const std::string written = io::write_plan(plan);
+    CHECK(written.find("[[0.3333333, 0, 0], [333333333333333.3125, 123.4567895, -0.1], [0, -0.0000001, 0]]") !=
+          std::string::npos);
+    CHECK(io::write_plan(io::read_plan(written)) == written);
+}
+
+TEST_CASE("plan.json: what cannot be read back is not written") {
+    const auto refused = [](auto change) {
+        Plan plan = io::read_plan(kPlan);
+        change(plan);
+        return refusal_of([&] { io::write_plan(plan); }).where();
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CHECK(refused([&](Plan& p) { p.passes[1].poses_mm(0, 1) = nan; }) == "passes[1].poses_mm[0]");
+    CHECK(refused([&](Plan& p) { p.passes[0].poses_mm(1, 2) = 0.01; }) == "passes[0].poses_mm[1]");
+    CHECK(refused([&](Plan& p) { p.passes[0].poses_mm.resize(0, 3); }) == "passes[0].poses_mm");
+    CHECK(refused([&](Plan& p) { p.passes[0].speed_mm_s = nan; }) == "passes[0].speed_mm_s");
+    CHECK(refused([&](Plan& p) { p.passes[0].settings = "7"; }) == "passes[0].settings");
+    CHECK(refused([&](Plan& p) { p.passes[0].extra = "{\"stroke\": 1}"; }) == "passes[0].extra");
+    CHECK(refused([&](Plan& p) { p.passes[0].layer = "\xc3"; }) == "passes[0].layer");
+    CHECK(refused([&](Plan& p) { p.sheet_mm = {0.0, 10.0}; }) == "sheet_mm");
+}
+
+TEST_CASE("plan.json: long passes break into lines and come back whole") {
+    Plan plan = io::read_plan(kPlan);
+    Poses& poses = plan.passes[0].poses_mm;
+    poses.resize(20000, 3);
+    for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+        const double t = 0.01 * double(i);
+        poses.row(i) << 50.0 * std::sin(t), 20.0 * std::cos(1.7 * t), -2.0 + std::sin(3.0 * t);
+    }
+    const std::string written = io::write_plan(plan);
+    std::size_t longest = 0;
+    for (std::size_t from = 0, to; (to = written.find('\n', from)) != std::string::npos; from = to + 1) {
+        longest = std::max(longest, to - from);
+    }
+    CHECK(longest <= 120);
+    CHECK(longest >= 80);
+    const Plan again = io::read_plan(written);
+    REQUIRE(again.passes[0].poses_mm.rows() == poses.rows());
+    CHECK((again.passes[0].poses_mm - poses).cwiseAbs().maxCoeff() <= 0.5e-7 + 1e-12);
+}
+
+TEST_CASE("marks.json: rows and rings arrive and are written back") {
+    const Marks marks = io::read_marks(kMarks);
+    REQUIRE(marks.passes.size() == 1);
+    const PassMarks& pass = marks.passes[0];
+    CHECK(pass.stroke == "a");
+    CHECK(pass.pose == std::vector<double>{0.0, 0.5, 1.0});
+    CHECK(pass.contact_mm(1, 0) == 1.5);
+    CHECK(pass.heading_rad[2] == -3.0);
+    CHECK(pass.depth_mm[2] == -2.0);
+    CHECK(pass.taut == std::vector<unsigned char>{0, 1, 1});
+    CHECK(pass.tcp_mm.rows() == 0);
+    CHECK(pass.pull == std::vector<double>{1.0, 1.0, 1.0});
+    REQUIRE(pass.outline_mm.size() == 2);
+    CHECK(pass.outline_mm[1](2, 0) == 2.0);
+    CHECK(marks.outline_mm[0](1, 0) == 1.0);
+    CHECK(io::write_marks(marks) == R"({
+  "format": "brushsvg/marks",
+  "version": 1,
+  "outline_mm": [
+    [[0, 0], [1, 0], [0, 1]]],
+  "passes": [
+    {"stroke": "a",
+     "pose": [0, 0.5, 1],
+     "contact_mm": [[1, 2], [1.5, 2], [3, 2]],
+     "heading_rad": [0, 0.25, -3],
+     "depth_mm": [0, 1, -2],
+     "taut": [false, true, true],
+     "outline_mm": [
+       [[0, 0], [4, 0], [0, 4]],
+       [[1, 1], [1, 2], [2, 1]]]}
+  ]
+}
+)");
+}
+
+TEST_CASE("marks.json: each fault is named with its key") {
+    const Fault faults[] = {
+        {"[0, 0.5, 1]", "[0, 0.5]", "passes[0].contact_mm", "has 3 rows where pose has 2"},
+        {"[0, 0.25, -3]", "[0]", "passes[0].heading_rad", "has 1 rows where pose has 3"},
+        {"[0, 1, -2]", "[0, 1, -2, 3]", "passes[0].depth_mm", "has 4 rows where pose has 3"},
+        {"[false, true, true]", "[]", "passes[0].taut", "has 0 rows where pose has 3"},
+        {"[false, true, true]", "[0, 1, 1]", "passes[0].taut[0]", "true or false, not 0"},
+        {"[1.5, 2]", "[1.5]", "passes[0].contact_mm[1]", "two numbers [x, y], not an array of 1"},
+        {"[4, 0]", "[4, null]", "passes[0].outline_mm[0][1][1]", "must be a number, not null"},
+        {"[[0, 0], [1, 0], [0, 1]]", "3", "outline_mm[0]", "array of points [x, y], not 3"},
+        {"\"stroke\"", "\"s\"", "passes[0].stroke", "missing"},
+        {"\"version\": 1", "\"version\": 9", "version", "version 9 of brushsvg/marks is not known"},
+    };
+    for (const Fault& fault : faults) {
+        CAPTURE(fault.by);
+        const Error error = refusal_of([&] { io::read_marks(replaced(kMarks, fault.what, fault.by)); });
+        CHECK(error.where() == fault.where);
+        CHECK(std::string(error.what()).find(fault.said) != std::string::npos);
+    }
+    Marks marks = io::read_marks(kMarks);
+    marks.passes[0].taut.pop_back();
+    CHECK(refusal_of([&] { io::write_marks(marks); }).where() == "passes[0].taut");
+    marks = io::read_marks(kMarks);
+    marks.passes[0].heading_rad[1] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(refusal_of([&] { io::write_marks(marks); }).where() == "heading_rad");
+}
+
+TEST_CASE("any reader: not an object, not UTF-8, nested without end") {
+    CHECK(std::string(refusal_of([] { io::read_marks("[]"); }).what()).find("an object, not an array") !=
+          std::string::npos);
+    CHECK(std::string(refusal_of([] { io::read_plan("{\"format\": \"\xff\"}"); }).what()).find("UTF-8") !=
+          std::string::npos);
+    const std::string deep = "{\"a\": " + std::string(500000, '[');
+    const Error error = refusal_of([&] { io::read_plan(deep + std::string(500000, ']') + "}"); });
+    CHECK(std::string(error.what()).find("deeper than 100") != std::string::npos);
+    CHECK(error.where() == "a");
+    const std::string two_lines = "{\"format\": \"brushsvg/plan\",\n \"brush\" 1}";
+    CHECK(std::string(refusal_of([&] { io::read_plan(two_lines); }).what()).find("line 2, column 10") !=
+          std::string::npos);
+}

@@ -1,0 +1,55 @@
+#include "brushsvg/region.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace brushsvg;
+
+namespace {
+
+Ring box(double x, double y, double w, double h) {
+    Ring r(4, 2);
+    r << x, y, x + w, y, x + w, y + h, x, y + h;
+    return r;
+}
+
+}  // namespace
+
+TEST_CASE("union, area and overlap of boxes") {
+    CHECK(area(unite({box(0, 0, 4, 4), box(2, 2, 4, 4)})) == doctest::Approx(28.0));
+    CHECK(unite({box(0, 0, 1, 1), box(5, 5, 1, 1)}).size() == 2);
+    CHECK(overlap({box(0, 0, 2, 2)}, {box(1, 0, 2, 2)}) == doctest::Approx(2.0 / 6.0));
+    CHECK(overlap({}, {}) == 1.0);
+    CHECK(overlap({box(0, 0, 1, 1)}, {}) == 0.0);
+}
+
+TEST_CASE("a frame has an outer ring counter-clockwise and a hole clockwise, both unclosed") {
+    const Rings frame = unite({box(0, 0, 10, 1), box(0, 9, 10, 1), box(0, 0, 1, 10), box(9, 0, 1, 10)});
+    REQUIRE(frame.size() == 2);
+    CHECK(area({frame[0]}) == doctest::Approx(100.0));
+    CHECK(area({frame[1]}) == doctest::Approx(-64.0));
+    for (const Ring& ring : frame) CHECK((ring.row(0) - ring.row(ring.rows() - 1)).norm() > 0.5);
+}
+
+TEST_CASE("holes survive a union with what does not cover them, and are filled by what does") {
+    Ring hole = box(3, 3, 4, 4);
+    hole = hole.colwise().reverse().eval();
+    const Rings frame{box(0, 0, 10, 10), hole};
+    CHECK(area(unite({frame[0], frame[1], box(20, 0, 1, 1)})) == doctest::Approx(85.0));
+    CHECK(area(unite({frame[0], frame[1], box(2, 2, 6, 6)})) == doctest::Approx(100.0));
+    CHECK(overlap(frame, {box(0, 0, 10, 10)}) == doctest::Approx(0.84));
+}
+
+TEST_CASE("many shapes far from the origin") {
+    Rings boxes;
+    for (int i = 0; i < 300; ++i) boxes.push_back(box(5000 + 0.3 * i, 5000 + 0.1 * i, 1, 1));
+    // a staircase: one box and 299 steps of 1 - 0.7 * 0.9 each
+    CHECK(area(unite(boxes)) == doctest::Approx(1.0 + 299 * (1.0 - 0.7 * 0.9)).epsilon(1e-4));
+}
+
+TEST_CASE("convex hull") {
+    Ring points(6, 2);
+    points << 0, 0, 2, 0, 2, 2, 0, 2, 1, 1, 1, 0;
+    const Ring hull = convex_hull(points);
+    CHECK(hull.rows() == 4);
+    CHECK(area({hull}) == doctest::Approx(4.0));
+}

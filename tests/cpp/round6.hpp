@@ -1,0 +1,27 @@
+#pragma once
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "brush_json.hpp"
+#include "brushsvg/brush.hpp"
+#include "brushsvg/stroke.hpp"
+
+/// The shipped brush by name.
+inline brushsvg::Brush shipped(const std::string& name) {
+    std::ifstream file(std::string(BRUSHES_DIR) + "/" + name + ".json");
+    std::stringstream text;
+    text << file.rdbuf();
+    return brushsvg::io::read_brush(text.str());
+}
+
+/// A polyline as cubics.
+inline brushsvg::Cubics polyline(const std::vector<Eigen::Vector2d>& points) {
+    brushsvg::Cubics out(Eigen::Index(points.size()) - 1, 8);
+    for (Eigen::Index i = 0; i < out.rows(); ++i) {
+        const Eigen::Vector2d a = points[i], b = points[i + 1], third = (b - a) / 3.0;
+        out.row(i) << a.transpose(), (a + third).transpose(), (b - third).transpose(), b.transpose();
+    }
+    return out;
+}

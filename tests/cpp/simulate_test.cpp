@@ -1,0 +1,108 @@
+#include "brushsvg/simulate.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "round6.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+Pass pass_of(const std::vector<std::array<double, 3>>& poses) {
+    Pass pass;
+    pass.stroke = "s";
+    pass.poses_mm.resize(Eigen::Index(poses.size()), 3);
+    for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) pass.poses_mm.row(i) << poses[i][0], poses[i][1], poses[i][2];
+    return pass;
+}
+
+}  // namespace
+
+TEST_CASE("rows are parallel, ascend, and run from the first pose to the last") {
+    const Brush brush = shipped("round-6");
+    const PassMarks m = simulate(pass_of({{0, 0, 0}, {8, 0, -4}, {40, 0, -4}, {40, 30, -4}, {10, 5, -2}, {10, 5, 0}}), brush, 0.01);
+    const std::size_t n = m.pose.size();
+    CHECK(m.heading_rad.size() == n);
+    CHECK(m.depth_mm.size() == n);
+    CHECK(m.taut.size() == n);
+    CHECK(m.pull.size() == n);
+    CHECK(m.contact_mm.rows() == Eigen::Index(n));
+    CHECK(m.pose.front() == 0.0);
+    CHECK(m.pose.back() == 5.0);
+    for (std::size_t i = 1; i < n; ++i) CHECK(m.pose[i] >= m.pose[i - 1]);
+    for (int k = 0; k < 6; ++k) CHECK(std::count(m.pose.begin(), m.pose.end(), double(k)) >= 1);
+}
+
+TEST_CASE("rows before the first motion take the first heading there is, 0 if none") {
+    const Brush brush = shipped("round-6");
+    PassMarks m = simulate(pass_of({{0, 0, 0}, {0, 0, -4}, {0, 20, -4}, {0, 20, 0}}), brush);
+    CHECK(m.heading_rad.front() == doctest::Approx(1.5707963267948966));
+    m = simulate(pass_of({{3, 3, 0}, {3, 3, -4}, {3, 3, 0}}), brush);
+    for (double h : m.heading_rad) CHECK(h == 0.0);
+    for (double p : m.pull) CHECK(p == 0.0);
+}
+
+TEST_CASE("a pass that begins or ends below the surface is set down and lifted on the spot") {
+    const Brush brush = shipped("round-6");
+    const PassMarks with = simulate(pass_of({{0, 0, 0}, {0, 0, -4}, {30, 0, -4}, {30, 0, 0}}), brush);
+    const PassMarks without = simulate(pass_of({{0, 0, -4}, {30, 0, -4}}), brush);
+    CHECK((with.contact_mm.row(with.contact_mm.rows() - 1) - without.contact_mm.row(without.contact_mm.rows() - 1)).norm() < 1e-12);
+    CHECK(without.depth_mm.front() == 0.0);
+    CHECK(without.depth_mm.back() == 0.0);
+    CHECK(without.pose.back() == 1.0);
+}
+
+TEST_CASE("moves are split where z crosses 0") {
+    const Brush brush = shipped("round-6");
+    const PassMarks m = simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}), brush);
+    int touching = 0;
+    for (std::size_t i = 0; i < m.pose.size(); ++i) {
+        if (m.depth_mm[i] == 0.0) ++touching;
+        if (m.depth_mm[i] < 0.0) CHECK(m.contact_mm.row(i) == m.tcp_mm.row(i));
+    }
+    CHECK(touching >= 3);
+    const auto landed = std::find(m.depth_mm.begin(), m.depth_mm.end(), 0.0) - m.depth_mm.begin();
+    CHECK(m.contact_mm(landed, 0) == doctest::Approx(4.0));
+    CHECK(m.pose[landed] == doctest::Approx(0.4));
+}
+
+TEST_CASE("too deep or not finite is refused with the pose, the depth and the range") {
+    const Brush brush = shipped("round-6");
+    try {
+        simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush);
+        FAIL("accepted");
+    } catch (const Error& e) {
+        CHECK(std::string(e.what()) == "depth 12.000 mm of pose 1 is outside the range [0.0, 10.0] mm of brush round-6");
+        CHECK(e.where() == "s");
+    }
+    CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);
+}
+
+TEST_CASE("an empty pass and a pass of one pose") {
+    const Brush brush = shipped("round-6");
+    CHECK(simulate(pass_of({}), brush).pose.empty());
+    const PassMarks one = simulate(pass_of({{5, 5, -2}}), brush);
+    CHECK(one.pose.size() >= 2);
+    CHECK(one.contact_mm(0, 0) == 5.0);
+}
+
+TEST_CASE("half way between rows the footprint is where the rows' straight line says, to the tolerance") {
+    const Brush brush = shipped("round-6");
+    const Pass pass = pass_of({{0, 0, 0}, {8, 0, -5}, {30, 0, -5}, {20, 25, -3}, {-10, -5, -6}, {-10, -5, 0}});
+    const double coarse_tolerance = 0.1;
+    const PassMarks coarse = simulate(pass, brush, coarse_tolerance), fine = simulate(pass, brush, 1e-5);
+    CHECK(coarse.pose.size() < fine.pose.size());
+    const Ring a = widest_points(coarse, brush), b = widest_points(fine, brush);
+    std::size_t k = 0;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < fine.pose.size(); ++i) {
+        while (k + 2 < coarse.pose.size() && coarse.pose[k + 1] < fine.pose[i]) ++k;
+        if (std::cos(coarse.heading_rad[k] - coarse.heading_rad[k + 1]) < 0.8) continue;
+        const Eigen::Vector2d p = a.row(k), d = a.row(k + 1) - a.row(k), q = b.row(i);
+        const double t = d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, (q - p).dot(d) / d.squaredNorm())) : 0.0;
+        worst = std::max(worst, (q - p - t * d).norm());
+    }
+    CHECK(worst < 1.5 * coarse_tolerance);
+}

@@ -1,0 +1,230 @@
+"""Outline rings and coverage against a dense shapely union of footprints, and what marks.json promises of rows."""
+
+import numpy as np
+import oracle
+import pytest
+import shapely
+from conftest import LAGS, law, make_brush, make_plan, random_poses, section_6_footprints
+
+core = pytest.importorskip("brushsvg._core")
+
+LEAST = 2.0  # the crescent is measured from here on; below it is scaled
+
+
+def crescent(depth, slim=1.0):
+    """Concave in front: two horns at the widest section, the hollow between them half as deep as the patch."""
+    long, half = 0.75 * depth, 0.42 * depth * slim
+    t = np.linspace(0, 1, 8)
+    outer = np.stack([long * t**2, -half * np.sin(np.pi / 2 * t)], axis=1)
+    s = np.linspace(-1, 1, 9)[1:-1]
+    inner = np.stack([0.5 * long * (1 + s**2), half * s], axis=1)
+    return np.concatenate([outer, inner, (outer * [1, -1])[:0:-1]])
+
+
+def round_footprints():
+    """The round brush pressed straight down: rounder and shorter than dragged, same vertex count."""
+    return [(d, o * [0.7, 1.1]) for d, o in section_6_footprints()]
+
+
+BRUSHES = {
+    "round": (section_6_footprints(), []),
+    "round, pressed apart": (section_6_footprints(), round_footprints()),
+    "crescent": ([(d, crescent(d)) for d in (LEAST, 5.0, 10.0)], []),
+    "crescent, pressed apart": (
+        [(d, crescent(d)) for d in (LEAST, 5.0, 10.0)],
+        [(d, crescent(d, 0.6)) for d in (LEAST, 4.0, 8.0)],
+    ),
+}
+
+PASSES = {
+    "straight": [[0, 0, 0], [6, 0, -4], [30, 0, -4], [34, 0, 0]],
+    "press in place": [[0, 0, 0], [0, 0, -5], [25, 0, -2], [25, 0, -7], [25, 0, 0]],
+    "corner": [[0, 0, 0], [4, 0, -3], [20, 0, -5], [20, 22, -2.5], [20, 22, 0]],
+    "reversal": [[0, 0, 0], [5, 0, -4], [20, 0, -4], [4, 0.4, -4], [-8, 1, -3], [-8, 1, 0]],
+    "straight back": [[0, 0, 0], [5, 0, -4], [20, 0, -4], [-12, 0, -4], [-12, 0, 0]],
+    "circle": [*([14 * np.cos(a), 14 * np.sin(a), -3] for a in np.linspace(0, 7.2, 120)), [8, 11, 0]],
+    "small circle": [*([4 * np.cos(a), 4 * np.sin(a), -6] for a in np.linspace(0, 7.0, 90)), [4, 4, 0]],
+    "two dabs": [[0, 0, 0], [1, 0, -3], [1, 0, 2], [12, 1, 2], [12.5, 2, -4], [12, 4, 0]],
+    "straight down": [[3, 4, 0], [3, 4, -6], [3, 4, 0]],
+    "crossing": [[0, 0, 0], [4, 0, -4], [30, 0, -4], [30, 0, 2], [15, 14, 2], [15, 10, -3], [14, -18, -5], [14, -20, 0]],
+}
+
+
+def brush_of(shape, lag="round"):
+    dragged, pressed = BRUSHES[shape]
+    return make_brush(LAGS[lag], footprints=dragged, pressed=pressed)
+
+
+def dense_union(poses, shape, samples=24000, lag="round"):
+    """Region painted, from the event-driven reference and dense samples of the outline."""
+    dragged, pressed = BRUSHES[shape]
+    reference = oracle.Reference(poses, law(lag))
+    moves = len(poses) - 1
+    pose = np.unique(np.concatenate([np.linspace(0, moves, max(400, samples // len(dragged[0][1])) + 1), reference.events()]))
+    states = [reference.at(p) for p in pose]
+    headings = [s[1] for s in states if not np.isnan(s[1])]
+    runs, run, last = [], [], headings[0] if headings else 0.0
+    for p, (contact, heading, _, pull) in zip(pose, states, strict=True):
+        depth = -np.interp(p, np.arange(len(poses)), np.array(poses)[:, 2])
+        if np.isnan(heading):
+            heading = last
+        jumps = abs(np.angle(np.exp(1j * (heading - last)))) > 2
+        last = heading
+        if np.isnan(contact[0]) or jumps:
+            runs, run = [*runs, run], []
+        if not np.isnan(contact[0]):
+            outline = oracle.footprint_at(dragged, pressed, depth, 0.0 if np.isnan(pull) else pull)
+            run.append(oracle.placed(outline, contact, heading, 0.52 * depth))
+    convex = not shape.startswith("crescent")
+    regions = [oracle.swept(r, convex) for r in [*runs, run] if len(r) > 1]
+    return shapely.union_all(regions)
+
+
+def region_of(rings):
+    """Shapely region of rings as marks.json has them, and their areas with sign."""
+    signed = [0.5 * np.sum(r[:, 0] * np.roll(r[:, 1], -1) - r[:, 1] * np.roll(r[:, 0], -1)) for r in rings]
+    outer = shapely.union_all([shapely.Polygon(r) for r, a in zip(rings, signed, strict=True) if a > 0])
+    holes = shapely.union_all([shapely.Polygon(r) for r, a in zip(rings, signed, strict=True) if a < 0])
+    return outer - holes, np.array(signed)
+
+
+def marks_of(poses, brush, tolerance_mm=0.02):
+    marks = core.simulate(make_plan(np.array(poses, float)), brush, tolerance_mm)
+    core.trace_outlines(marks, brush)
+    return marks
+
+
+@pytest.mark.parametrize("shape", BRUSHES)
+@pytest.mark.parametrize("name", PASSES)
+def test_outline_area_against_a_dense_union(name, shape):
+    wanted = dense_union(PASSES[name], shape)
+    marks = marks_of(PASSES[name], brush_of(shape), 0.005)
+    rings = marks.passes[0].outline_mm
+    region, signed = region_of(rings)
+    assert all(len(r) >= 3 and not np.array_equal(r[0], r[-1]) for r in rings)
+    assert all(shapely.Polygon(r).is_simple for r in rings)
+    assert signed.sum() == pytest.approx(region.area, rel=1e-9)  # holes lie inside, outer rings apart
+    assert core.area(rings) == pytest.approx(signed.sum(), rel=1e-9)
+    assert signed.sum() == pytest.approx(wanted.area, rel=2e-4)
+    assert region.symmetric_difference(wanted).area < 4e-4 * wanted.area + 1e-3 * wanted.length
+    assert (signed < -1e-3).sum() == sum(shapely.Polygon(h).area > 1e-3 for h in holes_of(wanted))
+
+
+def holes_of(region):
+    return [h for part in shapely.get_parts(region) for h in part.interiors]
+
+
+@pytest.mark.parametrize("shape", ["round, pressed apart", "crescent"])
+def test_outline_area_at_the_default_tolerance(shape):
+    for name in ("straight", "corner", "circle"):
+        wanted = dense_union(PASSES[name], shape)
+        marks = marks_of(PASSES[name], brush_of(shape))
+        assert core.area(marks.outline_mm) == pytest.approx(wanted.area, rel=2e-4), name
+
+
+def test_outline_area_on_random_passes():
+    rng = np.random.default_rng(4)
+    for shape in ("round", "crescent"):
+        for _ in range(3):
+            poses = random_poses(rng, 6)
+            wanted = dense_union(poses, shape, 60000)
+            marks = marks_of(poses, brush_of(shape), 0.005)
+            assert core.area(marks.outline_mm) == pytest.approx(wanted.area, rel=2e-4)
+
+
+@pytest.mark.parametrize("shape", BRUSHES)
+@pytest.mark.parametrize("name", ["straight", "corner", "circle", "two dabs", "crossing"])
+def test_coverage_against_rings_and_union(name, shape):
+    brush, wanted = brush_of(shape), dense_union(PASSES[name], shape)
+    marks = marks_of(PASSES[name], brush, 0.005)
+    left, bottom, right, top = core.painted_bounds(marks.passes[0], brush)
+    assert (left, bottom, right, top) == pytest.approx(wanted.bounds, abs=0.01)
+    px = 20.0
+    size = np.ceil((np.array([right - left, top - bottom]) + 1) * px) / px
+    window = (left - 0.5, bottom - 0.5, *size)
+    image = core.coverage(marks, brush, window, px)
+    assert image.dtype == np.float32
+    assert image.shape == (round(size[1] * px), round(size[0] * px))
+    assert image.min() >= 0
+    assert image.max() <= 1
+    assert image.sum(dtype=float) / px**2 == pytest.approx(wanted.area, rel=2e-4)
+    rings = core.coverage(marks.outline_mm, window, px)
+    assert rings.sum(dtype=float) / px**2 == pytest.approx(core.area(marks.outline_mm), rel=2e-4)
+    assert np.abs(image - rings).mean() * image.size / max(1.0, wanted.length * px) < 0.05
+
+    rng = np.random.default_rng(1)
+    edge = np.argwhere((image > 0) & (image < 1))
+    picked = np.concatenate([edge[rng.permutation(len(edge))[:300]], rng.integers(0, image.shape, (200, 2))])
+    x, y = window[0] + picked[:, 1] / px, window[1] + size[1] - (picked[:, 0] + 1) / px  # row 0 is the top
+    shapely.prepare(wanted)
+    exact = shapely.area(shapely.intersection(shapely.box(x, y, x + 1 / px, y + 1 / px), wanted)) * px**2
+    found = image[picked[:, 0], picked[:, 1]]
+    assert np.abs(found - exact).mean() < 0.05
+    assert np.abs(found - exact).max() < 0.35
+    assert abs(np.mean(found - exact)) < 0.02  # neither widened nor narrowed
+
+
+def test_coverage_of_a_window_inside_the_mark():
+    brush = brush_of("round")
+    marks = marks_of(PASSES["corner"], brush)
+    whole = core.coverage(marks, brush, (-2.0, -6.0, 30.0, 36.0), 10.0)
+    part = core.coverage(marks, brush, (12.0, -3.0, 9.0, 12.0), 10.0)
+    assert part == pytest.approx(whole[210:330, 140:230], abs=1e-3)
+    assert core.coverage(marks, brush, (500.0, 500.0, 5.0, 5.0), 10.0).max() == 0
+
+
+def test_union_over_passes():
+    """A cross of two passes: the whole is the union, each pass keeps its own outline."""
+    brush = brush_of("round")
+    plan = make_plan(
+        np.array([[0, 0, 0], [4, 0, -4], [30, 0, -4], [30, 0, 0.0]]),
+        np.array([[15, 15, 0], [15, 11, -4], [15, -15, -4], [15, -15, 0.0]]),
+    )
+    marks = core.simulate(plan, brush, 0.005)
+    core.trace_outlines(marks, brush)
+    regions = [region_of(p.outline_mm)[0] for p in marks.passes]
+    assert core.area(marks.outline_mm) == pytest.approx(shapely.union_all(regions).area, rel=1e-4)
+    assert core.area(marks.outline_mm) < sum(r.area for r in regions) - 5
+    both = core.overlap(marks.passes[0].outline_mm, marks.passes[1].outline_mm)
+    exact = regions[0].intersection(regions[1]).area / shapely.union_all(regions).area
+    assert both == pytest.approx(exact, rel=1e-4)
+
+
+def test_rows_are_parallel_and_span_the_poses():
+    rng = np.random.default_rng(6)
+    brush = brush_of("round")
+    for lifts in (False, True):
+        poses = random_poses(rng, 8, lifts=lifts)
+        rows = marks_of(poses, brush).passes[0]
+        count = len(rows.pose)
+        for column in (rows.tcp_mm, rows.contact_mm, rows.heading_rad, rows.depth_mm, rows.taut, rows.pull):
+            assert len(column) == count
+        assert rows.pose[0] == 0
+        assert rows.pose[-1] == len(poses) - 1
+        assert np.all(np.diff(rows.pose) >= 0)
+        assert set(range(len(poses))) <= set(rows.pose)
+        moving = [np.interp(rows.pose, np.arange(len(poses)), poses[:, k]) for k in range(3)]
+        assert rows.tcp_mm == pytest.approx(np.column_stack(moving[:2]), abs=1e-9)
+        down = moving[2] <= 0
+        assert rows.depth_mm[down] == pytest.approx(-moving[2][down], abs=1e-9)
+        assert np.all(rows.depth_mm[moving[2] > 1e-9] < 0)
+        assert np.all((rows.pull >= 0) & (rows.pull <= 1 + 1e-12))
+        assert np.all(np.isfinite(rows.contact_mm))
+        assert np.all(np.isfinite(rows.heading_rad))
+
+
+@pytest.mark.parametrize("shape", BRUSHES)
+def test_footprint_blending(shape):
+    dragged, pressed = BRUSHES[shape]
+    table = brush_of(shape).footprints
+    for depth in (0.0, 0.4, 1.0, 1.99, 2.0, 3.7, 5.0, 8.5, 10.0, 12.0):
+        for pull in (0.0, 0.3, 1.0):
+            wanted = oracle.footprint_at(dragged, pressed, depth, pull)
+            assert core.footprint_at(table, depth, pull) == pytest.approx(wanted, abs=1e-12)
+
+
+def test_nothing_painted_is_nothing():
+    brush = brush_of("round")
+    marks = marks_of([[0, 0, 0], [0, 0, 0], [0, 0, 0]], brush)
+    assert core.area(marks.outline_mm) == 0
+    assert core.coverage(marks, brush, (-5.0, -5.0, 10.0, 10.0), 10.0).max() == 0

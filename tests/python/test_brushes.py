@@ -1,0 +1,272 @@
+"""Brush files: the shipped ones hold what they say, and faulty ones are refused in a sentence."""
+
+import hashlib
+import importlib.util
+import json
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from brushsvg import _core
+from brushsvg.brushes import SHIPPED, brush_names, find_brush, save_brush
+from brushsvg.errors import Error
+
+ROOT = Path(__file__).parents[2]
+LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
+
+
+def shipped_json(name: str) -> dict:
+    return json.loads((SHIPPED / f"{name}.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def changed(tmp_path):
+    """Writes round-6 with something changed, returns the path."""
+
+    def write(change) -> Path:
+        content = shipped_json("round-6")
+        change(content)
+        path = tmp_path / "changed.json"
+        path.write_text(json.dumps(content), encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="module")
+def make_brushes():
+    spec = importlib.util.spec_from_file_location("make_brushes", ROOT / "tools" / "make_brushes.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_names():
+    assert brush_names() == ["rigid", "round-6"]
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*")), ids=lambda path: path.name)
+def test_every_shipped_file_is_a_sound_brush(path):
+    brush = find_brush(path.stem)
+    assert path.suffix == ".json"
+    assert brush.name == path.stem
+    assert brush.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert find_brush(path).sha256 == brush.sha256 == find_brush(str(path)).sha256
+    assert _core.write_brush(brush).encode() == path.read_bytes()
+    for law in LAWS:
+        profile = getattr(brush, law)
+        assert profile.source, f"{law} does not say where it comes from"
+
+
+def test_shipped_files_are_what_the_tool_makes(make_brushes, tmp_path, monkeypatch):
+    made = make_brushes.brush_files()
+    assert sorted(made) == sorted(path.name for path in SHIPPED.iterdir())
+    monkeypatch.setattr("sys.argv", ["make_brushes.py", str(tmp_path)])
+    make_brushes.main()
+    for name, text in made.items():
+        assert (SHIPPED / name).read_bytes() == text.encode() == (tmp_path / name).read_bytes()
+
+
+def test_laws_of_round_6():
+    brush = find_brush("round-6")
+    assert tuple(brush.depth_range_mm) == (0, 10)
+    assert brush.kind == "round"
+    assert brush.max_speed_mm_s == 25
+    assert brush.paint_depth_mm == 5
+    assert list(brush.lag.coefficients) == [3.1, 0.86, 0.31, -0.05, 0.0021]
+    assert list(brush.lag.half_interval_95) == [0.9, 1.57, 0.68, 0.103, 0.0051]
+    assert list(brush.tip_gap.half_interval_95) == [0, 0.09]
+    assert [getattr(brush, law).rmse_mm for law in LAWS] == [0.58, 0.85, 0.51, None]
+    assert [getattr(brush, law).assumed for law in LAWS] == [False, False, False, True]
+    assert [tuple(getattr(brush, law).calibrated_mm or ()) for law in LAWS] == [(1, 10)] * 3 + [()]
+    assert json.loads(brush.extra)["footprints"]["assumed"] is True
+    assert "2.1e-4" in brush.lag.source and "2.1e-3" in brush.lag.source
+    # by hand from the printed polynomials; the tails of theory.md's vertical lifts are r(d) - r(0)
+    for depth, lag, gap, widest, half in [
+        (0, 3.1, 0, 0, 0),
+        (0.5, 3.60138125, 0.26, 0.063, 0.21),
+        (1, 4.2221, 0.52, 0.126, 0.42),
+        (2, 5.6936, 1.04, 1.662, 0.84),
+        (5, 10.2125, 2.6, 3.9, 2.1),
+        (10, 13.7, 5.2, 7.15, 4.2),
+    ]:
+        assert brush.lag(depth) == pytest.approx(lag, abs=1e-12)
+        assert brush.tip_gap(depth) == pytest.approx(gap, abs=1e-12)
+        assert brush.tip_to_widest(depth) == pytest.approx(widest, abs=1e-12)
+        assert brush.half_width(depth) == pytest.approx(half, abs=1e-12)
+    assert [round(brush.lag(d) - brush.lag(0), 1) for d in (3, 6, 10)] == [4.2, 8.2, 10.6]
+
+
+def test_outlines_of_round_6():
+    brush = find_brush("round-6")
+    table = shipped_json("round-6")["footprints"]
+    assert [shape["depth_mm"] for shape in table["dragged"]] == list(range(1, 11))
+    assert table["pressed"] == []
+    for shape in table["dragged"]:
+        depth = shape["depth_mm"]
+        outline = np.array(shape["outline_mm"])
+        widest, half = brush.tip_to_widest(depth), brush.half_width(depth)
+        front = min(half, max(7 - widest, 0.25 * half))
+        assert outline.shape == (65, 2)
+        assert outline[0].tolist() == [0, 0]
+        np.testing.assert_allclose(outline[[1, -1]], [[widest, -half], [widest, half]], atol=0.6e-4)
+        np.testing.assert_array_equal(outline[1:], outline[:0:-1] * [1, -1])
+        x, y = outline[1:].T
+        on_ellipse = np.hypot((x - widest) / front, y / half)
+        np.testing.assert_allclose(on_ellipse, 1, atol=1e-4 / min(front, half))
+        assert np.all(x >= widest - 0.6e-4)
+        assert x.max() == pytest.approx(widest + front, abs=2e-3)
+        edges = np.roll(outline, -1, axis=0) - outline
+        turns = np.cross(np.c_[edges, 0 * x[:1].repeat(65)], np.c_[np.roll(edges, -1, axis=0), np.zeros(65)])
+        assert np.all(turns[:, 2] > 0), "convex and counter-clockwise"
+        assert np.hypot(*edges[1:-1].T).max() < 0.06 * half + 0.06 * front, "spread along the ellipse"
+
+
+def test_rigid_is_a_disc_that_does_not_trail():
+    brush = find_brush("rigid")
+    assert brush.is_rigid() and not brush.width_follows_depth()
+    assert 0 < brush.paint_depth_mm < brush.depth_range_mm[1]
+    for shape in shipped_json("rigid")["footprints"]["dragged"]:
+        outline = np.array(shape["outline_mm"])
+        assert outline.shape == (64, 2) and outline[0].tolist() == [0, 0]
+        centre = [brush.tip_gap(shape["depth_mm"]), 0]  # the contact, which is where the TCP is
+        np.testing.assert_allclose(np.hypot(*(outline - centre).T), 0.5, atol=1e-4)
+        x, y = outline.T
+        assert 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) == pytest.approx(math.pi / 4, rel=2e-3)
+
+
+def test_unknown_name_lists_the_known_ones():
+    with pytest.raises(Error, match="'round-7' is not known; known are rigid, round-6, "):
+        find_brush("round-7")
+
+
+@pytest.mark.parametrize("name", ["none.json", "folder/none", Path("none")])
+def test_missing_file(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(Error, match=r"none.* cannot be read: no such file"):
+        find_brush(name)
+
+
+def test_a_file_does_not_hide_a_shipped_brush(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rigid").write_text("{}")
+    assert find_brush("rigid").name == "rigid"
+
+
+def test_the_article_as_printed_is_refused(changed):
+    def printed(content):
+        content["lag"]["coefficients"][4] = 2.1e-4
+
+    path = changed(printed)
+    with pytest.raises(Error, match=r"lag is -5\.2") as refusal:
+        find_brush(path)
+    assert refusal.value.where == "lag"
+    assert refusal.value.value == pytest.approx(-5.2)
+    assert refusal.value.file == str(path)
+
+
+def _set(*keys, to):
+    def change(content):
+        for key in keys[:-1]:
+            content = content[key]
+        content[keys[-1]] = to
+
+    return change
+
+
+def _drop(*keys):
+    def change(content):
+        for key in keys[:-1]:
+            content = content[key]
+        del content[keys[-1]]
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "where", "said"),
+    [
+        (_set("version", to=2), "version", "version 2 of brushsvg/brush is not known"),
+        (_set("format", to="brushsvg/plan"), "format", "brushsvg/plan"),
+        *[(_drop(key), key, f"the key {key} is missing") for key in ("format", "version", "name", *LAWS)],
+        (_drop("depth_range_mm"), "depth_range_mm", "missing"),
+        (_drop("footprints"), "footprints", "missing"),
+        (_drop("footprints", "dragged"), "footprints.dragged", "missing"),
+        (_drop("tip_gap", "coefficients"), "tip_gap.coefficients", "missing"),
+        (_set("lag", "coefficients", 2, to="0.31"), "lag.coefficients[2]", "must be a number, not a string"),
+        (
+            _set("lag", "coefficients", 2, to=math.nan),
+            "lag.coefficients[2]",
+            "not valid JSON at line 1, column",
+        ),
+        (_set("lag", "coefficients", 2, to=-math.inf), "lag.coefficients[2]", "not valid JSON"),
+        (
+            _set("footprints", "dragged", 3, "outline_mm", 5, to=[1]),
+            "footprints.dragged[3].outline_mm[5]",
+            "[x, y]",
+        ),
+        (
+            _drop("footprints", "dragged", 3, "outline_mm", 5),
+            "footprints.dragged[3].outline_mm",
+            "64 points where",
+        ),
+        (_set("half_width", "coefficients", to=[4.2, -0.42]), "half_width", "half width"),
+        (_set("half_width", "coefficients", to=[0, 1.5]), "footprints.dragged[0]", "0.5 mm"),
+    ],
+)
+def test_faults_are_named_with_their_key(changed, change, where, said):
+    with pytest.raises(Error) as refusal:
+        find_brush(changed(change))
+    assert refusal.value.where == where
+    assert said in str(refusal.value)
+
+
+def test_broken_files(tmp_path):
+    whole = (SHIPPED / "round-6.json").read_bytes()
+    path = tmp_path / "broken.json"
+    not_utf8 = whole.replace(b"round", b"\xff", 1)
+    for data in (b"", whole[:-3], whole[: len(whole) // 2], b"\x89PNG\r\n", b"[]", not_utf8):
+        path.write_bytes(data)
+        with pytest.raises(Error) as refusal:
+            find_brush(path)
+        assert refusal.value.file == str(path)
+
+
+def test_unknown_keys_come_back(changed, tmp_path):
+    def add(content):
+        content["maker"] = {"name": "Atelier", "year": 1889}
+        content["lag"]["camera"] = "M200"
+        content["footprints"]["glass"] = "matte"
+        content["footprints"]["dragged"][2]["photo"] = "3.jpg"
+
+    brush = find_brush(changed(add))
+    save_brush(brush, tmp_path / "again.json")
+    again = json.loads((tmp_path / "again.json").read_text())
+    assert again == json.loads((tmp_path / "changed.json").read_text())
+
+
+def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
+    brush = find_brush("round-6")
+    path = tmp_path / "mine.json"
+    save_brush(brush, path)
+    before = path.read_bytes()
+    assert before == (SHIPPED / "round-6.json").read_bytes()
+
+    lag = brush.lag.coefficients
+    for speed, coefficients in [(math.inf, lag), (10, [-1.0] * 5)]:
+        brush.max_speed_mm_s = speed
+        brush.lag.coefficients = coefficients
+        with pytest.raises(Error):
+            save_brush(brush, path)
+    brush.lag.coefficients = lag
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+        with pytest.raises(Error, match=r"mine\.json cannot be written: no space left"):
+            save_brush(brush, path)
+    assert path.read_bytes() == before
+    assert os.listdir(tmp_path) == ["mine.json"]
+
+    save_brush(brush, path)
+    assert find_brush(path).max_speed_mm_s == 10

@@ -1,0 +1,388 @@
+"""The command line: exit status, one line per problem, everything or nothing written."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from brushsvg import commands
+from brushsvg.brushes import SHIPPED
+from brushsvg.cli import main
+from brushsvg.console import say
+
+LINE = '<path id="line" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/>'
+DAB = '<path id="dab" d="M97 20h0" stroke="#802010" stroke-width="3"/>'
+
+
+def drawing(*elements, size='width="120mm" height="60mm" viewBox="0 0 120 60"'):
+    body = "".join(elements)
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}><title>A line</title>{body}</svg>'
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """A directory with one sound drawing, a plan of it, and faulty things to refuse."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.svg").write_text(drawing(LINE, DAB))
+    assert main(["convert", "a.svg", "plan.json"]) == 0
+    return tmp_path
+
+
+def run(capsys, *argv):
+    status = main([str(word) for word in argv])
+    out, err = capsys.readouterr()
+    assert "Traceback" not in err
+    assert all(line.startswith("brushsvg: ") for line in err.splitlines())
+    return status, out, err.splitlines()
+
+
+def listing(directory):
+    return {path.name: path.read_bytes() for path in directory.iterdir() if path.is_file()}
+
+
+def test_convert_writes_program_preview_and_report(desk, capsys):
+    words = ["--preview", "p.png", "--report", "r.json"]
+    assert run(capsys, "convert", "a.svg", "a.ngc", *words) == (0, "", [])
+    code = (desk / "a.ngc").read_text(encoding="ascii")
+    assert code.startswith("(title: A line)\n(brush: round-6, 2 strokes)\n(compensation: closed, ")
+    assert "(warnings: 0)" in code
+    assert code.index("(stroke 1 of 2: line)") < code.index("(stroke 2 of 2: dab)")
+    assert (desk / "p.png").read_bytes().startswith(b"\x89PNG")
+    report = json.loads((desk / "r.json").read_text())
+    assert [row["stroke"] for row in report["strokes"]] == ["line", "dab"]
+    assert report["total"]["overlap"] > 0.9
+
+
+def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
+    assert run(capsys, "convert", "a.svg", "direct.ngc")[0] == 0
+    assert run(capsys, "convert", "plan.json", "by_plan.ngc") == (0, "", [])
+    moves = [
+        [line for line in (desk / name).read_text().splitlines() if not line.startswith("(")]
+        for name in ("direct.ngc", "by_plan.ngc")
+    ]
+    assert moves[0] == moves[1]
+    plan = json.loads((desk / "plan.json").read_text())
+    assert plan["passes"][0]["poses_mm"][0][2] == 0
+    assert plan["passes"][0]["poses_mm"][-1][2] == 0
+
+
+@pytest.mark.parametrize("source", ["a.svg", "plan.json"])
+def test_predict_draws_and_report_prints(desk, capsys, source):
+    for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<svg"), (".json", b"{")):
+        assert run(capsys, "predict", source, f"out{suffix}") == (0, "", [])
+        assert (desk / f"out{suffix}").read_bytes().startswith(start)
+    assert json.loads((desk / "out.json").read_text())["format"] == "brushsvg/marks"
+    status, out, err = run(capsys, "report", source)
+    assert (status, err) == (0, [])
+    assert "line" in out
+    assert "dab" in out
+    status, out, err = run(capsys, "report", source, "--json")
+    assert (json.loads(out)["total"]["overlap"] is None) == (source == "plan.json")
+
+
+def test_same_input_same_bytes_wherever_it_lies(desk, capsys):
+    (desk / "elsewhere").mkdir()
+    (desk / "elsewhere" / "b.svg").write_bytes((desk / "a.svg").read_bytes())
+    for name in ("x.ngc", "x.json"):
+        assert run(capsys, "convert", "a.svg", name)[0] == 0
+        assert run(capsys, "convert", "elsewhere/b.svg", f"elsewhere/{name}")[0] == 0
+        assert (desk / name).read_bytes() == (desk / "elsewhere" / name).read_bytes()
+
+
+def test_flags_reach_the_plan(desk, capsys):
+    def plan(*flags):
+        assert run(capsys, "convert", "a.svg", "out.json", *flags)[0] == 0
+        return json.loads((desk / "out.json").read_text())
+
+    default = plan()
+    assert default == plan("--brush", "round-6", "--compensation", "closed", "--tolerance", "0.05")
+    assert plan("--brush", str(SHIPPED / "round-6.json")) == default
+    assert plan("--sheet", "200x100mm")["sheet_mm"] == [200, 100]
+    none, constant = plan("--compensation", "none"), plan("--compensation", "constant", "--lag", "5")
+    assert none["passes"][0]["poses_mm"][0][:2] == pytest.approx([20, 20])
+    assert constant != plan("--compensation", "constant", "--lag", "6") != default
+    finer = plan("--tolerance", "0.0005")
+    assert len(finer["passes"][0]["poses_mm"]) > len(default["passes"][0]["poses_mm"])
+
+
+REFUSED = {
+    "no file": ("missing.svg", None, [], r"brushsvg: missing\.svg: .*no such file"),
+    "no plan file": ("missing.json", None, [], r"missing\.json: the file cannot be read: no such file"),
+    "not XML": ("x.svg", "moo", [], r"brushsvg: x\.svg: "),
+    "empty drawing": ("x.svg", drawing(), [], r"brushsvg: x\.svg: .*nothing to paint"),
+    "width out of reach": (
+        "x.svg",
+        drawing(LINE.replace('"3"', '"30"')),
+        [],
+        r"brushsvg: x\.svg: line: .*(15|30).*\[.*\]",
+    ),
+    "off the sheet": (
+        "x.svg",
+        drawing(LINE.replace("M20 40", "M-3 40")),
+        [],
+        r"brushsvg: x\.svg: line: the mark reaches [34]\.\d\d mm beyond the left edge of the sheet",
+    ),
+    "damaged": ("x.svg", drawing(LINE, '<path id="bad" d="M1 nan" stroke="#000"/>'), [], r"x\.svg: bad: "),
+    "unknown brush": ("a.svg", None, ["--brush", "broom"], r"brushsvg: broom: .*'broom'"),
+    "not a plan": ("x.json", '{"format": "brushsvg/brush", "version": 1}', [], r"brushsvg: x\.json: "),
+    "not text": ("x.json", b"\xff\xfe\x00", [], r"brushsvg: x\.json: .*"),
+    "plan of an unknown version": (
+        "x.json",
+        '{"format": "brushsvg/plan", "version": 99, "brush": "round-6", "sheet_mm": [9, 9], "passes": []}',
+        [],
+        r"brushsvg: x\.json: .*99",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refused_with_one_sentence_and_nothing_written(desk, capsys, case):
+    name, content, flags, words = REFUSED[case]
+    if content is not None:
+        (desk / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    before = listing(desk)
+    status, out, err = run(capsys, "convert", name, "out.ngc", "--report", "out.txt", *flags)
+    assert (status, out, len(err)) == (1, "", 1), err
+    assert re.search(words, err[0]), err[0]
+    assert listing(desk) == before
+
+
+def edited_plan(desk, **changes):
+    plan = json.loads((desk / "plan.json").read_text())
+    for key, value in changes.items():
+        if key in plan:
+            plan[key] = value
+        else:
+            plan["passes"][0][key] = value
+    (desk / "x.json").write_text(json.dumps(plan))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"speed_mm_s": 30},
+            "x.json: line: speed 30.0 mm/s is outside the range (0, 25.0] mm/s of brush round-6",
+        ),
+        (
+            {"poses_mm": [[30, 30, 0], [200, 30, 0]]},
+            "x.json: line: the TCP goes 50.00 mm beyond the right edge",
+        ),
+        ({"sheet_mm": [120, 20]}, "x.json: line: the mark reaches"),
+        ({"poses_mm": [[30, 30, 0], [50, 30, -12], [60, 30, 0]]}, "x.json: line: depth 12.0"),
+    ],
+)
+def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, words):
+    edited_plan(desk, **changes)
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
+    assert status == 1
+    assert any(words in line for line in err), err
+    assert not (desk / "out.ngc").exists()
+
+
+def test_whoever_only_looks_is_warned(desk, capsys):
+    edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
+    status, _, err = run(capsys, "predict", "x.json", "out.svg")
+    assert status == 0
+    assert any("speed 30.0" in line for line in err)
+    assert any("beyond the upper edge of the sheet" in line for line in err)
+    status, out, _ = run(capsys, "report", "x.json")
+    assert status == 0
+    assert "line: speed 30.0" in out
+
+
+def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
+    bad = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke-width="2"/>'
+    (desk / "x.svg").write_text(drawing(LINE, bad))
+    assert run(capsys, "convert", "x.svg", "out.ngc")[0] == 1
+    for words in (("convert", "x.svg", "out.ngc", "--lenient"), ("predict", "x.svg", "out.png")):
+        status, _, err = run(capsys, *words)
+        assert (status, len(err)) == (0, 1)
+        assert err[0].startswith("brushsvg: x.svg: bad: ")
+    assert "(warnings: 1, 1 of them damaged geometry)" in (desk / "out.ngc").read_text()
+
+
+def test_a_plan_keeps_its_brush(desk, capsys):
+    edited_plan(desk, brush_sha256="0" * 64)
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
+    assert (status, err) == (
+        0,
+        ["brushsvg: x.json: brush_sha256: the plan was made with another file of brush round-6"],
+    )
+    status, _, err = run(
+        capsys, "predict", "plan.json", "out.png", "--brush", "rigid", "--compensation", "none"
+    )
+    assert err[0] == "brushsvg: plan.json: --compensation has no effect on a plan, whose poses are fixed"
+    (desk / "mine.json").write_text("{}")
+    edited_plan(desk, brush="mine.json")
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
+    assert (status, err[0].split(": ")[:2]) == (1, ["brushsvg", "mine.json"])
+    edited_plan(desk, brush="my-brush")
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
+    assert (status, len(err)) == (1, 1)
+    assert "my-brush" in err[0]
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc", "--brush", "round-6")
+    assert (status, len(err)) == (0, 1)
+    assert "made for brush my-brush, not for round-6" in err[0]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "",
+        "paint a.svg",
+        "convert a.svg",
+        "convert a.svg out.dxf",
+        "convert a.dxf out.ngc",
+        "convert a.svg out",
+        "convert a.svg out.ngc --preview p.gif",
+        "convert a.svg out.ngc --report r.html",
+        "convert plan.json plan.json",
+        "convert a.svg out.ngc --preview a.svg",
+        "convert a.svg out.json --report ./out.json",
+        "convert a.svg out.ngc --compensation refined",
+        "convert a.svg out.ngc --comp none",
+        "convert a.svg out.ngc --lag 5",
+        "convert a.svg out.ngc --compensation constant --lag -1",
+        "convert a.svg out.ngc --compensation constant --lag nan",
+        "convert a.svg out.ngc --tolerance 0",
+        "convert a.svg out.ngc --tolerance -0.1",
+        "convert a.svg out.ngc --tolerance inf",
+        "convert a.svg out.ngc --tolerance 1e-300",
+        "convert a.svg out.ngc --tolerance thick",
+        "convert a.svg out.ngc --sheet A4",
+        "convert a.svg out.ngc --sheet 0x10",
+        "convert a.svg out.ngc --cell mine",
+        "convert a.svg out.ngc --width 20",
+        "convert a.svg out.ngc --json",
+        "predict a.svg out.ngc",
+        "predict a.svg out.png --preview p.png",
+        "report a.svg extra",
+        "report a.txt",
+        "brush",
+        "brush plot round-6 out.svg",
+        "brush show",
+    ],
+)
+def test_wrong_usage(desk, capsys, words):
+    before = listing(desk)
+    status, out, err = run(capsys, *words.split())
+    assert (status, out, len(err)) == (2, "", 1)
+    assert listing(desk) == before
+
+
+def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
+    (desk / "folder.png").mkdir()
+    for words, reason in (
+        (["convert", "a.svg", "no/where/out.ngc"], "its directory does not exist"),
+        (["convert", "a.svg", "out.ngc", "--preview", "folder.png"], "it is a directory"),
+        (["convert", "a.svg", "out.ngc", "--report", "no/where/out.txt"], "its directory does not exist"),
+        (["predict", "a.svg", "folder.png"], "it is a directory"),
+    ):
+        before = listing(desk)
+        status, _, err = run(capsys, *words)
+        assert (status, len(err)) == (1, 1)
+        assert f"the file cannot be written: {reason}" in err[0]
+        assert listing(desk) == before
+
+
+def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
+    say("a.svg", "id\nbrushsvg: done\x1b[2K\x9b31m\u202e", "")
+    assert capsys.readouterr().err == "brushsvg: a.svg: id brushsvg: done [2K 31m \n"
+
+
+def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
+    hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
+    (desk / "x.svg").write_text(drawing(hairpin))
+    status, _, err = run(capsys, "convert", "x.svg", "out.ngc")
+    assert (status, len(err)) == (0, 1)
+    assert re.fullmatch(
+        r"brushsvg: x.svg: line: the widest point stays up to \d\.\d+ mm off the middle line, "
+        r"tolerance 0.05 mm: it turns too sharply there",
+        err[0],
+    )
+    assert run(capsys, "convert", "x.svg", "out.ngc", "--compensation", "none") == (0, "", [])
+
+
+def test_brush_commands(desk, capsys):
+    status, out, err = run(capsys, "brush", "list")
+    assert (status, err) == (0, [])
+    assert [line.split()[0] for line in out.splitlines()] == ["rigid", "round-6"]
+    status, out, _ = run(capsys, "brush", "show", "round-6")
+    assert status == 0
+    for words in ("3.1 + 0.86 d + 0.31 d^2 - 0.05 d^3 + 0.0021 d^4", "max(0.126 d, ", "RMSE 0.58", "assumed"):
+        assert words in out
+    for name in ("rigid", "round-6"):
+        assert run(capsys, "brush", "check", str(SHIPPED / f"{name}.json"))[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("version", 2),
+        ("format", "brushsvg/plan"),
+        ("lag", {"coefficients": [3.1, 0.86, 0.31, -0.05, 0.00021]}),  # as the article prints them
+        ("depth_range_mm", [5, 1]),
+    ],
+)
+def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value):
+    brush = json.loads((SHIPPED / "round-6.json").read_text())
+    brush[key] = value
+    (desk / "mine.json").write_text(json.dumps(brush))
+    for words in (["brush", "check", "mine.json"], ["convert", "a.svg", "out.ngc", "--brush", "mine.json"]):
+        status, out, err = run(capsys, *words)
+        assert (status, out, len(err)) == (1, "", 1)
+        assert err[0].startswith("brushsvg: mine.json: ")
+    assert not (desk / "out.ngc").exists()
+
+
+def test_ctrl_c_and_mistakes_of_ours_leave_no_traceback(desk, capsys, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    def fail(*_):
+        raise ZeroDivisionError("division by zero")
+
+    monkeypatch.setattr(commands, "report_file", stop)
+    assert run(capsys, "report", "a.svg") == (130, "", ["brushsvg: interrupted"])
+    monkeypatch.setattr(commands, "report_file", fail)
+    status, _, err = run(capsys, "report", "a.svg")
+    assert (status, len(err)) == (1, 1)
+    assert err[0].startswith("brushsvg: a.svg: ")
+
+
+def spawn(*words, **settings):
+    """In a process of its own, with its output buffered as it is for users."""
+    code = "import sys; from brushsvg.cli import main; sys.exit(main())"
+    env = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
+    return subprocess.run([sys.executable, "-c", code, *words], check=False, env=env, **settings)
+
+
+def test_a_reader_who_leaves_early_is_no_error(desk):
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    with os.fdopen(write_end, "wb") as closed:
+        done = spawn("report", "a.svg", stdout=closed, stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_disk_under_stdout_is_said(desk):
+    with open("/dev/full", "wb") as full:
+        done = spawn("report", "a.svg", stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == 1
+    assert done.stderr == b"brushsvg: standard output: no space left on device\n"
+
+
+def test_help_is_quick_and_promises_only_what_there_is(capsys):
+    status, out, _ = run(capsys, "convert", "--help")
+    assert status == 0
+    flags = set(re.findall(r"--[a-z]+", out))
+    choices = {"--brush", "--sheet", "--compensation", "--lag", "--tolerance", "--lenient"}
+    assert flags == choices | {"--help", "--preview", "--report"}
+    code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.convert"} & set(done.stderr.split())

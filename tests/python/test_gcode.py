@@ -1,0 +1,91 @@
+"""G-code: the words LinuxCNC wants, and numbers that no controller can misread."""
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from brushsvg.cell import load_cell
+from brushsvg.posts.gcode import LINE_LIMIT, gcode
+from brushsvg.program import program
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
+
+
+def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0)):
+    passes = [
+        SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed)
+        for stroke, poses, speed in passes
+    ]
+    return gcode(program(SimpleNamespace(sheet_mm=sheet, passes=passes), load_cell(), header))
+
+
+def code_lines(text):
+    return [line for line in text.splitlines() if line and not line.startswith("(")]
+
+
+TWO = (
+    ("n/1", [(10, 10, 0), (12.5, 10, -3), (30.123456, 20.98766, -3.25), (28, 20, 0)], 20.0),
+    ("dot", [(40, 30, 0), (40, 30, -2), (43, 30, -2), (42, 30, 0)], 12.5),
+)
+
+
+def test_golden():
+    text = text_of(*TWO, header=("title: two strokes", "brush: round-6, 2 strokes"))
+    assert text == GOLDEN.read_text(encoding="ascii")
+
+
+def test_modes_stand_before_any_motion_and_the_end_is_marked():
+    code = code_lines(text_of(*TWO))
+    assert set(code[0].split()) >= {"G21", "G90", "G94", "G17"}
+    assert code[2] == "G0 Z10.0000", "up before going anywhere"
+    assert code[-1] == "M2"
+    first_feed = next(line for line in code if line.startswith("G1"))
+    assert re.search(r" F\d", first_feed)
+
+
+def test_feed_is_in_mm_per_minute_and_follows_every_change():
+    code = code_lines(text_of(*TWO))
+    feed, seen = None, {}
+    for line in code:
+        found = re.search(r" F([\d.]+)", line)
+        feed = float(found[1]) if found else feed
+        if line.startswith("G1"):
+            seen.setdefault(feed, []).append(line)
+    assert set(seen) == {30 * 60, 8 * 60, 20 * 60, 12.5 * 60}
+    assert any("X30.1235 Y20.9877 Z-3.2500" in line for line in seen[1200.0])
+    assert all("Z0.0000" in line or "Z1.0000" in line for line in seen[480.0])
+
+
+@pytest.mark.parametrize("tiny", [-2.77e-17, -4.9e-5, 1e-300, -0.0])
+def test_numbers_are_plain(tiny):
+    text = text_of(
+        ("s", [(tiny, 1e-7, min(tiny, 0)), (123456.5, 20, -3), (tiny, 0, 0)], 20.0), sheet=(2e5, 60)
+    )
+    words = re.findall(r"[XYZFP]\S+", "\n".join(code_lines(text)))
+    assert words
+    for word in words:
+        assert re.fullmatch(r"[XYZFP]-?\d+\.\d+", word), word
+        assert not re.fullmatch(r".-0\.0*", word), word
+
+
+def test_nothing_rapid_below_safe_height():
+    for line in code_lines(text_of(*TWO)):
+        if line.startswith("G0 "):
+            assert "Z10.0000" in line
+
+
+def test_comments_are_ascii_closed_and_never_commands():
+    title = "Caf\u00e9 \u6c38 (draft) 50% #5220\nG0 Z-50 " + "x" * 300
+    text = text_of(("MSG, (probe)\r\nM3", *TWO[0][1:]), header=(f"title: {title}",))
+    comments = [line for line in text.splitlines() if line.startswith("(")]
+    assert comments[0].startswith("(title: Cafe ? [draft] 50% #5220 G0 Z-50 x")
+    assert comments[1] == "(stroke 1 of 1: MSG, [probe]  M3)"
+    for line in comments:
+        assert re.fullmatch(r"\([a-z]+[: ][^()]*\)", line)
+    assert all(len(line) <= LINE_LIMIT and line.isascii() for line in text.splitlines())
+
+
+def test_same_moves_same_bytes():
+    assert text_of(*TWO) == text_of(*TWO)

@@ -1,0 +1,85 @@
+"""The package as a library: its names, what they cost, the examples, and writing a program from Python."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import brushsvg
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def python(*words):
+    return subprocess.run(
+        [sys.executable, *map(str, words)], capture_output=True, text=True, check=True
+    ).stdout
+
+
+@pytest.mark.parametrize("name", brushsvg.__all__)
+def test_every_public_name_is_there(name):
+    assert getattr(brushsvg, name)
+    assert name in dir(brushsvg)
+
+
+def test_names_and_table_agree():
+    assert set(brushsvg.__all__) == {*brushsvg._HOME, "__version__"}
+    with pytest.raises(AttributeError, match="paint"):
+        brushsvg.paint  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "first", ["import brushsvg.strokes", "from brushsvg import convert", "brushsvg.Plan"]
+)
+def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
+    python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")
+
+
+def test_importing_the_package_loads_nothing():
+    loaded = python("-c", "import sys, brushsvg; print(*sys.modules)").split()
+    assert not {"numpy", "cv2", "brushsvg._core", "argparse"} & set(loaded)
+
+
+def test_the_short_example(tmp_path):
+    out = python(EXAMPLES / "01_word_to_program.py", EXAMPLES / "vincent.svg", tmp_path / "v.ngc")
+    overlap = float(out.rsplit(":", 1)[1])
+    assert overlap > 0.9
+    assert "(title: Vincent)" in (tmp_path / "v.ngc").read_text()
+
+
+def test_the_demo_leaves_everything(tmp_path):
+    python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
+    names = {path.name for path in (tmp_path / "demo").iterdir()}
+    assert names == {f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".png")}
+
+
+def plan_of(poses, speed=20.0, sheet=(60.0, 30.0)):
+    one = brushsvg.Pass("s", np.array(poses, float), speed)
+    return brushsvg.Plan("round-6", "", sheet, [one])
+
+
+SOUND = [(10, 15, 0), (15, 15, -3), (40, 15, -3), (38, 15, 0)]
+
+
+def test_write_program_by_extension(tmp_path):
+    brush = brushsvg.find_brush("round-6")
+    brushsvg.write_program(tmp_path / "a.ngc", plan_of(SOUND), brush, title="one")
+    assert (tmp_path / "a.ngc").read_text().startswith("(title: one)")
+    brushsvg.write_program(tmp_path / "a.json", plan_of(SOUND), brush)
+    assert len(brushsvg.read_plan((tmp_path / "a.json").read_text()).passes) == 1
+
+
+@pytest.mark.parametrize(
+    ("plan", "name", "words"),
+    [
+        (plan_of(SOUND, sheet=(30.0, 30.0)), "a.ngc", "beyond the right edge of the sheet"),
+        (plan_of(SOUND, speed=26.0), "a.ngc", "speed 26.0 mm/s"),
+        (plan_of([(10, 15, 0), (15, 15, 2)]), "a.json", "z|above"),
+        (plan_of(SOUND), "a.txt", "extension"),
+    ],
+)
+def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, words):
+    with pytest.raises(brushsvg.Error, match=words):
+        brushsvg.write_program(tmp_path / name, plan, brushsvg.find_brush("round-6"))
+    assert list(tmp_path.iterdir()) == []

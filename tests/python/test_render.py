@@ -1,0 +1,95 @@
+"""Pictures: the paint is where the marks are, in its colour, up is up."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import cv2
+import numpy as np
+import pytest
+from brushsvg import Stroke, area, compensate, find_brush, marks_png, marks_svg, simulate, trace_outlines
+from brushsvg.render import Panel, panels_png
+
+SHEET = (60.0, 30.0)
+RED, BLUE = "#c01020", "#1020c0"
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def painted():
+    """A red line low on the left, a blue one high on the right, and a red one over it."""
+    brush = find_brush("round-6")
+    lines = [((8, 6), (24, 6), RED), ((30, 24), (50, 24), BLUE), ((40, 10), (40, 25), RED)]
+    strokes = [
+        Stroke(f'<s"{k}', np.array([[*a, *a, *b, *b]], float), half_width=[(0, 1.5), (1, 1.5)], colour=colour)
+        for k, (a, b, colour) in enumerate(lines)
+    ]
+    marks = simulate(compensate(strokes, brush, SHEET).plan, brush)
+    trace_outlines(marks, brush)
+    return marks, brush, [colour for _, _, colour in lines]
+
+
+def pixel(image, x_mm, y_mm):
+    scale = image.shape[1] / SHEET[0]
+    blue, green, red = image[int(image.shape[0] - y_mm * scale), int(x_mm * scale)]
+    return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def decode(data):
+    return cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+
+
+def test_png_shows_colours_at_their_places_and_order(painted):
+    marks, brush, colours = painted
+    image = decode(marks_png(marks, brush, SHEET, colours))
+    assert image.shape[:2] == (600, 1200)
+    assert pixel(image, 16, 6) == RED
+    assert pixel(image, 33, 24) == BLUE
+    assert pixel(image, 40, 24) == RED, "the later stroke lies on top"
+    assert pixel(image, 16, 24) == "#ffffff"
+    edge = image[(image != 255).any(axis=2) & (image != decode_colour(RED)).any(axis=2)]
+    assert len(np.unique(edge, axis=0)) > 20, "edges are anti-aliased"
+
+
+def decode_colour(colour):
+    return [int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)]
+
+
+def test_svg_holds_the_same_paint_upside_down(painted):
+    marks, _, colours = painted
+    root = ET.fromstring(marks_svg(marks, SHEET, colours, "A & B"))
+    assert (root.get("width"), root.get("height"), root.get("viewBox")) == ("60mm", "30mm", "0 0 60 30")
+    assert root.find(f"{SVG}title").text == "A & B"
+    paths = root.findall(f"{SVG}path")
+    assert [path.get("fill") for path in paths] == colours
+    assert [path.get("data-stroke") for path in paths] == ['<s"0', '<s"1', '<s"2']
+    for path, trace in zip(paths, marks.passes, strict=True):
+        rings = [
+            np.array([pair.split(",") for pair in ring.strip("MZ").split("L")], float)
+            for ring in re.findall(r"M[^Z]*Z", path.get("d"))
+        ]
+        back = [np.column_stack([ring[:, 0], SHEET[1] - ring[:, 1]]) for ring in rings]
+        assert area(back) == pytest.approx(area(trace.outline_mm), rel=1e-3)
+
+
+def test_svg_numbers_are_plain(painted):
+    marks, _, colours = painted
+    marks.passes[0].outline_mm = []
+    text = marks_svg(marks, SHEET, colours)
+    assert not re.search(r"\de|nan|inf|-0\.000", text)
+
+
+@pytest.mark.parametrize(("shape", "landscape"), [((90, 30), True), ((40, 40), True)])
+def test_panels_are_complete_at_one_scale(shape, landscape):
+    width, height = shape
+    ring = np.array([(5, 5), (5 + width, 5), (5 + width, 5 + height), (5, 5 + height)], float)
+    line = ring[[0, 2]]
+    panels = [
+        Panel(f"panel {k}", ("0.5", "overlap"), ("some", "words"), [ring], [ring] if k else [], [line])
+        for k in range(3)
+    ]
+    image = decode(panels_png(panels, "Heading", "note"))
+    assert image.shape[1] == 2000
+    assert (image.shape[1] > image.shape[0]) == landscape
+    grey = (np.abs(image.astype(int) - 180).max(axis=2) < 8).sum()
+    ink = ((image[..., 0] > 90) & (image[..., 2] < 80)).sum()
+    assert ink == pytest.approx(2 * grey, rel=0.1), "one panel wanted, two painted over it"
