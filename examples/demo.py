@@ -3,9 +3,8 @@
 import sys
 from pathlib import Path
 
-import numpy as np
-
 import brushsvg
+import numpy as np
 from brushsvg import convert, report
 from brushsvg.cell import load_cell
 from brushsvg.console import RefusedError, about, say, warn
@@ -26,8 +25,8 @@ def main(drawing: Path, directory: Path) -> None:
 
     directory.mkdir(parents=True, exist_ok=True)
     files = {
-        ".plan.json": convert.encode(".json", work.plan, work.brush, work.title),
-        ".ngc": convert.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
+        ".plan.json": convert.encode(".json", work.plan, work.title),
+        ".ngc": convert.encode(".ngc", work.plan, work.title, convert.notes(work), cell),
         ".marks.svg": convert.picture(".svg", work, marks["closed"]),
         ".report.txt": convert.report_text(".txt", work, marks["closed"], cell),
         ".png": comparison(works, marks),
@@ -43,8 +42,9 @@ def comparison(works, marks) -> bytes:
     wanted = brushsvg.unite([ring for s in work.strokes for ring in brushsvg.wanted_outline(s, 0.01)])
     middle = [brushsvg.flatten(stroke, 0.01)[:, :2] for stroke in work.strokes]
     width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
-    size = (f"{width_mm:.0f} x {height_mm:.0f} mm",)
-    panels = [Panel("What was drawn", (str(len(work.strokes)), "strokes"), size, wanted, [], middle, MIDDLE_LINE)]
+    drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")
+    count = (str(len(work.strokes)), "strokes")
+    panels = [Panel("What was drawn", count, drawn, wanted, [], middle, MIDDLE_LINE)]
     for how, title in (("none", "Tool follows the drawing"), ("closed", "With compensation")):
         plan, painted = works[how].plan, marks[how]
         _, total = report.measure(plan, painted, work.brush, work.strokes)

@@ -26,9 +26,7 @@ def convert_file(args) -> None:
         problems += convert.problems(work.plan, work.brush, marks, cell)
         if problems:
             raise RefusedError([(args.input, *problem) for problem in problems])
-        program = convert.encode(
-            _suffix(args.output), work.plan, work.brush, work.title, convert.notes(work), cell
-        )
+        program = convert.encode(_suffix(args.output), work.plan, work.title, convert.notes(work), cell)
         files = [(args.output, program)]
         if args.preview:
             files.append((args.preview, convert.picture(_suffix(args.preview), work, marks)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -146,7 +146,7 @@ def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
     return found
 
 
-def encode(suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None) -> bytes:
+def encode(suffix: str, plan, title: str, notes=(), cell: Cell | None = None) -> bytes:
     """The plan as the bytes of a .json or .ngc file. Error where a limit of the cell is broken."""
     if suffix == ".json":
         return _core.write_plan(plan).encode()
@@ -178,14 +178,7 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     cell = cell or load_cell()
     for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell):
         raise Error(sentence, where=where)
-    write_atomically(path, encode(Path(path).suffix.lower(), plan, brush, title, cell=cell))
-
-
-def without_compensation(work: Work) -> Work:
-    """The same strokes with the TCP on their middle lines: what to compare with."""
-    options = replace(work.options, compensation="none", lag_mm=None)
-    done = _core.compensate(work.strokes, work.brush, work.plan.sheet_mm, "none", options.tolerance_mm)
-    return replace(work, plan=done.plan, misses=tuple(done.misses), options=options)
+    write_atomically(path, encode(Path(path).suffix.lower(), plan, title, cell=cell))
 
 
 def picture(suffix: str, work: Work, marks) -> bytes:

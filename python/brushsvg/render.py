@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
@@ -36,10 +37,15 @@ def marks_svg(marks, sheet_mm: tuple[float, float], colours: list[str], title: s
     for trace, colour in zip(marks.passes, colours, strict=True):
         if trace.outline_mm:
             stroke = quoteattr(_printable(trace.stroke))
-            lines.append(f'<path data-stroke={stroke} fill={quoteattr(colour or "#000000")} d="')
+            lines.append(f'<path data-stroke={stroke} fill="{_known(colour)}" d="')
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
     return "\n".join([*lines, "</svg>", ""])
+
+
+def _known(colour: str) -> str:
+    """A plan from elsewhere may say anything of its colours: what is not #rrggbb is drawn black."""
+    return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"
 
 
 def _path_data(ring: np.ndarray, height: float) -> str:
@@ -64,7 +70,7 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -
         run.passes = list(marks.passes[first:last])
         paint = _core.coverage(run, brush, window, px_per_mm)
         image = _canvas(paint.shape, "#ffffff") if image is None else image
-        _lay(image, paint, colours[first] or "#000000")
+        _lay(image, paint, _known(colours[first]))
         first = last
     if image is None:
         raise Error("there is nothing to draw")
@@ -75,7 +81,7 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -
 class Panel:
     """One picture of the comparison. Rings and lines in mm, paper frame.
 
-    score: one figure to see from afar with its name; notes: lines of text below it; lines: the TCP's paths, or
+    score: one figure to see from afar, and its name; notes: lines of text below it; lines: the TCP's paths or
     middle lines in line_colour.
     """
 

@@ -1,5 +1,7 @@
 """Outline rings and coverage against a dense shapely union of footprints, and what marks.json promises of rows."""
 
+import itertools
+
 import numpy as np
 import oracle
 import pytest
@@ -55,29 +57,51 @@ def brush_of(shape, lag="round"):
     return make_brush(LAGS[lag], footprints=dragged, pressed=pressed)
 
 
-def dense_union(poses, shape, samples=24000, lag="round"):
-    """Region painted, from the event-driven reference and dense samples of the outline."""
+def dense_union(poses, shape, lag="round", close_mm=2e-4):
+    """Region painted, from the event-driven reference: outlines sampled until half way between two of them
+    no vertex is farther than `close_mm` from the line between, and none moves far. Where the TCP passes exactly over the patch
+    the heading jumps and nothing is swept."""
     dragged, pressed = BRUSHES[shape]
+    poses = np.array(poses, float)
     reference = oracle.Reference(poses, law(lag))
-    moves = len(poses) - 1
-    pose = np.unique(np.concatenate([np.linspace(0, moves, max(400, samples // len(dragged[0][1])) + 1), reference.events()]))
-    states = [reference.at(p) for p in pose]
-    headings = [s[1] for s in states if not np.isnan(s[1])]
-    runs, run, last = [], [], headings[0] if headings else 0.0
-    for p, (contact, heading, _, pull) in zip(pose, states, strict=True):
-        depth = -np.interp(p, np.arange(len(poses)), np.array(poses)[:, 2])
-        if np.isnan(heading):
-            heading = last
-        jumps = abs(np.angle(np.exp(1j * (heading - last)))) > 2
-        last = heading
-        if np.isnan(contact[0]) or jumps:
-            runs, run = [*runs, run], []
-        if not np.isnan(contact[0]):
-            outline = oracle.footprint_at(dragged, pressed, depth, 0.0 if np.isnan(pull) else pull)
-            run.append(oracle.placed(outline, contact, heading, 0.52 * depth))
-    convex = not shape.startswith("crescent")
-    regions = [oracle.swept(r, convex) for r in [*runs, run] if len(r) > 1]
-    return shapely.union_all(regions)
+    moves = np.arange(len(poses))
+    known = [h for h in (reference.at(p)[1] for p in np.linspace(0, moves[-1], 2000)) if not np.isnan(h)]
+    first = known[0] if known else 0.0
+
+    def outline(pose):
+        depth = -np.interp(pose, moves, poses[:, 2])
+        contact, heading, _, pull = reference.at(pose)
+        if np.isnan(contact[0]) or depth < 0:
+            return None
+        shape_there = oracle.footprint_at(dragged, pressed, depth, 0.0 if np.isnan(pull) else pull)
+        return oracle.placed(shape_there, contact, first if np.isnan(heading) else heading, 0.52 * depth)
+
+    pieces, convex = [], not shape.startswith("crescent")
+
+    def sample(p0, p1, a, b):
+        """All outlines after a up to b; None where there is a break."""
+        middle = 0.5 * (p0 + p1)
+        between = outline(middle)
+        if a is None or b is None or between is None:
+            return [None, b] if a is None and b is None or p1 - p0 < 1e-9 else halves(p0, middle, p1, a, between, b)
+        if np.max(np.abs(between - 0.5 * (a + b))) < close_mm and np.max(np.abs(a - b)) < 1e3 * close_mm:
+            return [between, b]
+        return [None, b] if p1 - p0 < 1e-9 else halves(p0, middle, p1, a, between, b)
+
+    def halves(p0, middle, p1, a, between, b):
+        return sample(p0, middle, a, between) + sample(middle, p1, between, b)
+
+    start = np.unique(np.concatenate([np.linspace(0, moves[-1], 8 * moves[-1] + 1), reference.events()]))
+    run, last = [outline(start[0])], outline(start[0])
+    for p0, p1 in itertools.pairwise(start):
+        following = outline(p1)
+        run += sample(p0, p1, last, following)
+        last = following
+    for present, group in itertools.groupby(run, key=lambda o: o is not None):
+        if present:
+            group = list(group)
+            pieces.append(oracle.swept(group, convex) if len(group) > 1 else oracle.union_of(group))
+    return shapely.union_all(pieces)
 
 
 def region_of(rings):
@@ -127,7 +151,7 @@ def test_outline_area_on_random_passes():
     for shape in ("round", "crescent"):
         for _ in range(3):
             poses = random_poses(rng, 6)
-            wanted = dense_union(poses, shape, 60000)
+            wanted = dense_union(poses, shape)
             marks = marks_of(poses, brush_of(shape), 0.005)
             assert core.area(marks.outline_mm) == pytest.approx(wanted.area, rel=2e-4)
 

@@ -71,6 +71,14 @@ def test_svg_holds_the_same_paint_upside_down(painted):
         assert area(back) == pytest.approx(area(trace.outline_mm), rel=1e-3)
 
 
+def test_a_colour_that_is_none_is_black(painted):
+    marks, brush, _ = painted
+    colours = ["", "red", '"/><script/>']
+    assert pixel(decode(marks_png(marks, brush, SHEET, colours)), 16, 6) == "#000000"
+    paths = ET.fromstring(marks_svg(marks, SHEET, colours)).findall(f"{SVG}path")
+    assert [path.get("fill") for path in paths] == ["#000000"] * 3
+
+
 def test_svg_numbers_are_plain(painted):
     marks, _, colours = painted
     marks.passes[0].outline_mm = []

@@ -131,6 +131,8 @@ def test_segments_without_length_vanish_among_others():
     assert len(cubics) == 2
     assert np.array_equal(cubics[1, 0], cubics[0, 3])
     assert cubics[1, 3].tolist() == [4, 4.00000001]
+    closed = in_user_units("M0 0h1e-7l4 0v4L1e-7 1e-7L0 0Z").subpaths[0].cubics
+    assert np.array_equal(closed[0, 0], closed[-1, 3])
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -613,6 +615,13 @@ def test_what_is_not_read_is_named(body, where, sentence):
 )
 def test_what_changes_nothing_is_not_named(body):
     assert only(body)
+
+
+def test_names_and_sentences_stay_on_one_line():
+    design = read('<path id="a&#10;b&#x85;" d="M0 0H5" stroke="url(#x&#10;y)"/>')
+    assert design.elements[0].id == "a b"
+    assert design.notices[0].where == "a b"
+    assert "#x y is not read yet" in design.notices[0].sentence
 
 
 def test_the_default_fill_of_a_stroked_path_is_no_news():

@@ -202,7 +202,7 @@ class _Walk:
         self._note(node, _UNREAD.get(tag, f"{tag[:40]} is not read yet: left out"))
 
     def _note(self, node: ET.Element, sentence: str, damaged: bool = False) -> None:
-        self.notices.append(Notice(self._label(node), sentence, damaged))
+        self.notices.append(Notice(self._label(node), _one_line(sentence), damaged))
 
     def _label(self, node: ET.Element) -> str:
         if name := _one_line(node.get("id", "")):

@@ -57,6 +57,8 @@ def _tidy(cubics: np.ndarray, closed: bool) -> SubPath:
         handle = (kept[:, 1] == kept[:, 0]).all(axis=1)
         kept[handle, 1] = joined[handle]
         kept[:, 0] = joined
+        if closed:
+            kept[-1, 3] = kept[0, 0]
         cubics = kept
     return SubPath(cubics, closed)
 

@@ -1,0 +1,108 @@
+# Two commands do everything on a fresh Debian or Ubuntu machine: `make demo` and `make test`.
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.ONESHELL:
+.DEFAULT_GOAL := help
+
+# the system's Python where it is new enough: `make setup` installs its headers and venv
+PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+VENV := .venv
+BIN := $(VENV)/bin
+SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libboost-dev nlohmann-json3-dev doctest-dev python3 python3-dev python3-venv
+CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
+
+.PHONY: help setup system demo test lint format cpp-test python-test integration fuzz bench asan clean
+
+help:
+	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
+	@echo "make test         set up, then run the linters and the tests of both languages"
+	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, real lettering (installs them)"
+	@echo "make bench        our figures beside the peers' and the floor"
+	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
+	@echo "make format       format both languages"
+	@echo "make clean        remove what was built"
+
+# $(call install,PACKAGES): what is missing, with root's rights where we have them
+define install
+	missing=""
+	for p in $(1); do dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; done
+	if [ -n "$$missing" ]; then
+	  run=""
+	  if [ "$$(id -u)" != 0 ]; then
+	    if sudo -n true 2>/dev/null || { [ -t 0 ] && command -v sudo >/dev/null; }; then run=sudo; else
+	      echo "these packages are needed: run, as root,  apt-get install --no-install-recommends$$missing" >&2; exit 1; fi
+	  fi
+	  $$run apt-get update -q
+	  DEBIAN_FRONTEND=noninteractive $$run apt-get install -y -q --no-install-recommends $$missing
+	fi
+endef
+
+system:
+	@command -v dpkg-query >/dev/null || { echo "not a Debian or Ubuntu system: see README.md for what to install" >&2; exit 0; }
+	$(call install,$(SYSTEM_PACKAGES))
+
+setup: system
+	@$(MAKE) --no-print-directory $(VENV)/.installed
+
+$(VENV)/.created:
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install -q --upgrade pip
+	$(BIN)/pip install -q "scikit-build-core>=1.0" "pybind11>=3.0"
+	touch $@
+
+$(VENV)/.installed: $(VENV)/.created pyproject.toml $(CPP_SOURCES)
+	@echo "building (a few minutes the first time)"
+	$(BIN)/pip install -q --no-build-isolation -e .
+	touch $@
+
+$(VENV)/.dev: $(VENV)/.installed pyproject.toml
+	@$(BIN)/pip install -q --no-build-isolation -e ".[dev]"
+	touch $@
+
+demo: setup
+	@$(BIN)/python examples/demo.py examples/vincent.svg demo
+
+test: setup
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(MAKE) --no-print-directory lint cpp-test python-test
+
+lint: $(VENV)/.dev
+	@$(BIN)/ruff check .
+	$(BIN)/ruff format --check -q .
+	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
+
+format: $(VENV)/.dev
+	@$(BIN)/ruff check --fix -q .
+	$(BIN)/ruff format -q .
+	$(BIN)/clang-format -i $$(git ls-files '*.cpp' '*.hpp')
+
+cpp-test:
+	@cmake --preset dev >/dev/null
+	cmake --build --preset dev
+	ctest --preset dev
+
+asan:
+	@cmake --preset asan >/dev/null
+	cmake --build --preset asan --target brushsvg_tests
+	ctest --preset asan -R '^cpp$$'
+
+python-test: $(VENV)/.dev
+	@$(BIN)/python -m pytest
+
+integration: setup
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(call install,$(shell cat tests/integration/apt-packages.txt))
+	$(BIN)/pip install -q -r tests/integration/requirements.txt
+	$(BIN)/python -m pytest tests/integration
+
+bench: setup
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	cmake --preset release >/dev/null
+	cmake --build --preset release --target advance_bench
+	build/release/benchmarks/advance_bench
+	$(BIN)/python benchmarks/marks.py
+	$(BIN)/python benchmarks/page.py
+
+clean:
+	@rm -rf build demo $(VENV)
