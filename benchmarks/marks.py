@@ -136,7 +136,7 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     brush, a_pass = brush_14_by_10(), stroke_200_mm()
     outline = teardrop(14.0, 10.0)
-    marks = _core.simulate(_core.Plan("14x10", "", (200, 200), [a_pass]), brush, 0.01)
+    marks = _core.simulate(_core.Plan("14x10", "", (200, 200), [a_pass]), brush)
     rows = marks.passes[0]
     left, bottom, right, top = _core.painted_bounds(rows, brush)
     grid = lambda v, to: to(v * PX_PER_MM) / PX_PER_MM  # noqa: E731

@@ -66,9 +66,9 @@ def main() -> None:
         )
         marks = stage("simulate", lambda: _core.simulate(done.plan, brush))
         stage("limits", lambda: problems(done.plan, brush, marks, load_cell()))
-        stage("G-code", lambda: encode(".ngc", done.plan, "page"))
+        stage("G-code", lambda: encode(".ngc", done.plan, brush, "page"))
         begin = time.perf_counter()
-        ran = subprocess.run([sys.executable, "-m", "brushsvg", "convert", drawing, program], capture_output=True, text=True)
+        ran = subprocess.run([Path(sys.executable).with_name("brushsvg"), "convert", drawing, program], capture_output=True, text=True)
         whole = time.perf_counter() - begin
         assert ran.returncode == 0, ran.stderr
         begin = time.perf_counter()

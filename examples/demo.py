@@ -3,55 +3,67 @@
 import sys
 from pathlib import Path
 
-import brushsvg
 import numpy as np
+
+import brushsvg
 from brushsvg import convert, report
 from brushsvg.cell import load_cell
 from brushsvg.console import RefusedError, about, say, warn
 from brushsvg.describe import one_line
-from brushsvg.files import write_atomically
+from brushsvg.files import write_files
 from brushsvg.render import MIDDLE_LINE, Panel, panels_png
 
 
 def main(drawing: Path, directory: Path) -> None:
     cell = load_cell()
-    works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ("none", "closed")}
+    ways = ("none", "constant", "closed")
+    works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ways}
     work = works["closed"]
+    works["best"] = convert.best_constant(work)
     marks = {how: convert.predict(works[how]) for how in works}
     problems = convert.problems(work.plan, work.brush, marks["closed"], cell)
     if problems:
         raise RefusedError([(str(drawing), *problem) for problem in problems])
     warn(str(drawing), [(notice.where, notice.sentence) for notice in work.notices])
 
-    directory.mkdir(parents=True, exist_ok=True)
-    files = {
-        ".plan.json": convert.encode(".json", work.plan, work.title),
-        ".ngc": convert.encode(".ngc", work.plan, work.title, convert.notes(work), cell),
-        ".marks.svg": convert.picture(".svg", work, marks["closed"]),
-        ".report.txt": convert.report_text(".txt", work, marks["closed"], cell),
-        ".png": comparison(works, marks),
+    totals = {
+        how: report.measure(each.plan, marks[how], each.brush, each.strokes)[1] for how, each in works.items()
     }
-    for ending, data in files.items():
-        write_atomically(directory / (drawing.stem + ending), data)
-        print(directory / (drawing.stem + ending))
+    names = {
+        "none": "none",
+        "best": f"constant, {works['best'].options.lag_mm:g} mm for all, the best",
+        "constant": "constant, by each stroke's depth",
+        "closed": "closed",
+    }
+    table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
+    files = {
+        ".plan.json": convert.encode(".json", work.plan, work.brush, work.title),
+        ".ngc": convert.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
+        ".marks.svg": convert.picture(".svg", work, marks["closed"]),
+        ".report.txt": convert.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
+        ".png": comparison(works, marks, totals),
+    }
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = {directory / (drawing.stem + ending): data for ending, data in files.items()}
+    write_files(paths)
+    print(table, *paths, sep="\n")
 
 
-def comparison(works, marks) -> bytes:
+def comparison(works, marks, totals) -> bytes:
     """Three panels: what was drawn, what is painted without and with compensation."""
     work = works["closed"]
-    wanted = brushsvg.unite([ring for s in work.strokes for ring in brushsvg.wanted_outline(s, 0.01)])
+    wanted = report.wanted_rings(work.strokes)
     middle = [brushsvg.flatten(stroke, 0.01)[:, :2] for stroke in work.strokes]
     width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
     drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")
     count = (str(len(work.strokes)), "strokes")
     panels = [Panel("What was drawn", count, drawn, wanted, [], middle, MIDDLE_LINE)]
     for how, title in (("none", "Tool follows the drawing"), ("closed", "With compensation")):
-        plan, painted = works[how].plan, marks[how]
-        _, total = report.measure(plan, painted, work.brush, work.strokes)
+        total = totals[how]
         score = (f"{total.overlap:.2f}", "overlap with the drawing")
         off = f"{total.centre_mean_mm:.2f} mm mean, {total.centre_largest_mm:.2f} mm at most"
-        paths = [a_pass.poses_mm[:, :2] for a_pass in plan.passes]
-        panels.append(Panel(title, score, ("centre-line error", off), wanted, painted.outline_mm, paths))
+        paths = [a_pass.poses_mm[:, :2] for a_pass in works[how].plan.passes]
+        panels.append(Panel(title, score, ("centre-line error", off), wanted, marks[how].outline_mm, paths))
     return panels_png(panels, work.title, f"with brush {work.brush.name}. {one_line(work.brush)}")
 
 

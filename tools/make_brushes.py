@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 from brushsvg import _core
-from brushsvg.files import write_atomically
+from brushsvg.files import write_files
 
 SHIPPED = Path(__file__).parents[1] / "python" / "brushsvg" / "data" / "brushes"
 
@@ -146,8 +146,7 @@ def brush_files() -> dict[str, str]:
 def main() -> None:
     """Write the files into the folder given, or where they are shipped from."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else SHIPPED
-    for name, text in brush_files().items():
-        write_atomically(folder / name, text)
+    write_files({folder / name: text for name, text in brush_files().items()})
 
 
 if __name__ == "__main__":

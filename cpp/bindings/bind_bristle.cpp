@@ -4,10 +4,14 @@
 
 void bind_bristle(py::module_& m) {
     using namespace brushsvg;
-    m.def("bristle_coefficients", [](const std::string& end) {
-        if (end != "third_derivative" && end != "shear_free")
-            throw Error("the sliding end is \"third_derivative\" or \"shear_free\", not \"" + end + "\"");
-        return bristle_coefficients(end == "shear_free" ? SlidingEnd::shear_free : SlidingEnd::third_derivative);
-    }, py::arg("sliding_end"), "c1 to c4 of w = c1 + c2 z + (c3 + c4 z) e^z + z^2/2, Lemma 1 with EI = load = exp(1 - z).");
+    m.def(
+        "bristle_coefficients",
+        [](const std::string& end) {
+            if (end != "third_derivative" && end != "shear_free")
+                throw Error("the sliding end is \"third_derivative\" or \"shear_free\", not \"" + end + "\"");
+            return bristle_coefficients(end == "shear_free" ? SlidingEnd::shear_free : SlidingEnd::third_derivative);
+        },
+        py::arg("sliding_end"),
+        "c1 to c4 of w = c1 + c2 z + (c3 + c4 z) e^z + z^2/2, Lemma 1 with EI = load = exp(1 - z).");
     m.def("bristle_deflection", &bristle_deflection, py::arg("coefficients"), py::arg("z"));
 }

@@ -24,11 +24,15 @@ void bind_brush(py::module_& m) {
         .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
              "Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.")
         .def("lever_to_widest", &Brush::lever_to_widest, py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.");
-    m.def("check", [](const Brush& brush) { brushsvg::check(brush); }, py::arg("brush"),
-          "Error when the brush would lead a robot astray (negative lag, laws and outlines that disagree, ...).");
-    m.def("remarks", [](const Brush& brush) {
-        std::vector<std::pair<std::string, std::string>> out;
-        for (const auto& w : brushsvg::remarks(brush)) out.emplace_back(w.where, w.sentence);
-        return out;
-    }, py::arg("brush"), "What is odd about an admissible brush: [(law, sentence)].");
+    m.def(
+        "check", [](const Brush& brush) { brushsvg::check(brush); }, py::arg("brush"),
+        "Error when the brush would lead a robot astray (negative lag, laws and outlines that disagree, ...).");
+    m.def(
+        "remarks",
+        [](const Brush& brush) {
+            std::vector<std::pair<std::string, std::string>> out;
+            for (const auto& w : brushsvg::remarks(brush)) out.emplace_back(w.where, w.sentence);
+            return out;
+        },
+        py::arg("brush"), "What is odd about an admissible brush: [(law, sentence)].");
 }

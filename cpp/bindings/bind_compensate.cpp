@@ -21,7 +21,8 @@ struct Compensated {
 
 void bind_compensate(py::module_& m) {
     using namespace brushsvg;
-    py::class_<Miss>(m, "Miss", "Distance of the widest point from the middle line [mm] from the first taut row to the last.")
+    py::class_<Miss>(m, "Miss",
+                     "Distance of the widest point from the middle line [mm] from the first taut row to the last.")
         .def_readonly("largest_mm", &Miss::largest_mm)
         .def_readonly("mean_mm", &Miss::mean_mm)
         .def_readonly("within_tolerance", &Miss::within_tolerance)
@@ -30,25 +31,29 @@ void bind_compensate(py::module_& m) {
         .def_readonly("plan", &Compensated::plan)
         .def_readonly("misses", &Compensated::misses)
         .def_readonly("warnings", &Compensated::warnings);
-    m.def("compensate", [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,
-                           const std::string& method, double tolerance_mm, std::optional<double> lag_mm, double speed_mm_s,
-                           const py::object& progress) {
-        const CompensateOptions options{method_from(method), tolerance_mm, lag_mm, speed_mm_s};
-        Compensated out;
-        out.plan.brush = brush.name;
-        out.plan.brush_sha256 = brush.sha256;
-        out.plan.sheet_mm = sheet_mm;
-        if (!brush.width_follows_depth())
-            out.warnings.emplace_back("", "brush " + brush.name + " has one width: drawn widths are ignored");
-        in_chunks(strokes.size(), 16, progress, [&](std::size_t i) {
-            CompensatedPass one = compensate(strokes[i], brush, options);
-            out.plan.passes.push_back(std::move(one.pass));
-            out.misses.push_back(one.miss);
-            for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
-        });
-        return out;
-    }, py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed", py::arg("tolerance_mm") = 0.05,
-          py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0, py::arg("progress") = py::none(),
-          "Where the TCP must go: a plan for strokes, simulated before it is returned. method: none, constant, closed.");
+    m.def(
+        "compensate",
+        [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,
+           const std::string& method, double tolerance_mm, std::optional<double> lag_mm, double speed_mm_s,
+           const py::object& progress) {
+            const CompensateOptions options{method_from(method), tolerance_mm, lag_mm, speed_mm_s};
+            Compensated out;
+            out.plan.brush = brush.name;
+            out.plan.brush_sha256 = brush.sha256;
+            out.plan.sheet_mm = sheet_mm;
+            if (!brush.width_follows_depth())
+                out.warnings.emplace_back("", "brush " + brush.name + " has one width: drawn widths are ignored");
+            in_chunks(strokes.size(), 16, progress, [&](std::size_t i) {
+                CompensatedPass one = compensate(strokes[i], brush, options);
+                out.plan.passes.push_back(std::move(one.pass));
+                out.misses.push_back(one.miss);
+                for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
+            });
+            return out;
+        },
+        py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed",
+        py::arg("tolerance_mm") = 0.05, py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0,
+        py::arg("progress") = py::none(),
+        "Where the TCP must go: a plan for strokes, simulated before it is returned. method: none, constant, closed.");
     m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05);
 }

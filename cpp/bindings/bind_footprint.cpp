@@ -3,7 +3,8 @@
 
 void bind_footprint(py::module_& m) {
     using namespace brushsvg;
-    py::class_<Footprint>(m, "Footprint", "Contact patch outline (n, 2) [mm] at one depth [mm]; first vertex the tip at (0, 0).")
+    py::class_<Footprint>(m, "Footprint",
+                          "Contact patch outline (n, 2) [mm] at one depth [mm]; first vertex the tip at (0, 0).")
         .def(py::init([](double depth_mm, const Ring& outline_mm) { return Footprint{depth_mm, outline_mm}; }),
              py::arg("depth_mm"), py::arg("outline_mm"))
         .def_readwrite("depth_mm", &Footprint::depth_mm)

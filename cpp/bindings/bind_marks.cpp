@@ -25,11 +25,12 @@ void bind_marks(py::module_& m) {
         .def_property_readonly("contact_mm", [](const PassMarks& p) { return p.contact_mm; })
         .def_property_readonly("heading_rad", column(&PassMarks::heading_rad))
         .def_property_readonly("depth_mm", column(&PassMarks::depth_mm))
-        .def_property_readonly("taut", [](const PassMarks& p) {
-            py::array_t<bool> out(py::ssize_t(p.taut.size()));
-            std::copy(p.taut.begin(), p.taut.end(), out.mutable_data());
-            return out;
-        })
+        .def_property_readonly("taut",
+                               [](const PassMarks& p) {
+                                   py::array_t<bool> out(py::ssize_t(p.taut.size()));
+                                   std::copy(p.taut.begin(), p.taut.end(), out.mutable_data());
+                                   return out;
+                               })
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_readwrite("outline_mm", &PassMarks::outline_mm);
     py::class_<Marks>(m, "Marks")

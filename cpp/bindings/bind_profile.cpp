@@ -3,7 +3,8 @@
 
 void bind_profile(py::module_& m) {
     using brushsvg::Profile;
-    py::class_<Profile>(m, "Profile", "One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).")
+    py::class_<Profile>(
+        m, "Profile", "One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).")
         .def(py::init([](std::vector<double> coefficients, double floor, double floor_slope,
                          std::optional<std::array<double, 2>> calibrated_mm, std::string source, bool assumed,
                          std::vector<double> half_interval_95, std::optional<double> rmse_mm) {
@@ -22,7 +23,8 @@ void bind_profile(py::module_& m) {
              py::arg("floor") = -std::numeric_limits<double>::infinity(), py::arg("floor_slope") = 0.0,
              py::arg("calibrated_mm") = py::none(), py::arg("source") = "", py::arg("assumed") = false,
              py::arg("half_interval_95") = std::vector<double>{}, py::arg("rmse_mm") = py::none())
-        .def("__call__", [](const Profile& p, double depth_mm) { return p(depth_mm); }, py::arg("depth_mm"))
+        .def(
+            "__call__", [](const Profile& p, double depth_mm) { return p(depth_mm); }, py::arg("depth_mm"))
         .def_readwrite("coefficients", &Profile::coefficients)
         .def_readwrite("floor", &Profile::floor)
         .def_readwrite("floor_slope", &Profile::floor_slope)

@@ -3,14 +3,17 @@
 
 void bind_simulate(py::module_& m) {
     using namespace brushsvg;
-    m.def("simulate", [](const Plan& plan, const Brush& brush, double tolerance_mm, const py::object& progress) {
-        Marks marks;
-        marks.passes.resize(plan.passes.size());
-        in_chunks(plan.passes.size(), 64, progress,
-                  [&](std::size_t i) { marks.passes[i] = simulate(plan.passes[i], brush, tolerance_mm); });
-        return marks;
-    }, py::arg("plan"), py::arg("brush"), py::arg("tolerance_mm") = 0.02, py::arg("progress") = py::none(),
-          "What the brush does along a plan: Marks, rows as close as the tolerance [mm] asks.");
+    m.def(
+        "simulate",
+        [](const Plan& plan, const Brush& brush, double tolerance_mm, const py::object& progress) {
+            Marks marks;
+            marks.passes.resize(plan.passes.size());
+            in_chunks(plan.passes.size(), 64, progress,
+                      [&](std::size_t i) { marks.passes[i] = simulate(plan.passes[i], brush, tolerance_mm); });
+            return marks;
+        },
+        py::arg("plan"), py::arg("brush"), py::arg("tolerance_mm") = 0.02, py::arg("progress") = py::none(),
+        "What the brush does along a plan: Marks, rows as close as the tolerance [mm] asks.");
     m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"),
           "Centre of the widest section at every row (n, 2) [mm].");
 }

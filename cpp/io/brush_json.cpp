@@ -12,15 +12,15 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/brush";
-const std::set<std::string> kBrushKeys{"format",        "version",    "name",       "kind",
-                                       "depth_range_mm", "lag",        "tip_gap",    "tip_to_widest",
-                                       "half_width",    "covariance", "max_speed_mm_s", "paint_depth_mm"};
+const std::set<std::string> kBrushKeys{"format",         "version",    "name",           "kind",
+                                       "depth_range_mm", "lag",        "tip_gap",        "tip_to_widest",
+                                       "half_width",     "covariance", "max_speed_mm_s", "paint_depth_mm"};
 const std::set<std::string> kProfileKeys{"coefficients", "calibrated_mm",    "source",  "assumed",
                                          "floor",        "half_interval_95", "rmse_mm", "floor_slope"};
 
 struct Law {
     const char* key;
-    Profile Brush::*profile;
+    Profile Brush::* profile;
 };
 constexpr Law kLaws[] = {{"lag", &Brush::lag},
                          {"tip_gap", &Brush::tip_gap},

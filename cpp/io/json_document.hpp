@@ -28,7 +28,7 @@ struct PassRows {
 /// Follows the parser through the document: knows the key path, refuses keys that stand twice in one object,
 /// and collects the rows of passes.
 class Watcher {
-   public:
+ public:
     explicit Watcher(PassRows* rows) : rows_(rows) {}
 
     Json parse(const std::string& text) {
@@ -47,7 +47,7 @@ class Watcher {
         return path;
     }
 
-   private:
+ private:
     struct Level {
         bool is_array;
         std::size_t index;  ///< of the member being read, in an array
@@ -62,7 +62,8 @@ class Watcher {
             case Event::object_start:
             case Event::array_start:
                 // Printing nested values recurses; no file of ours is deeper than seven.
-                if (levels_.size() == 100) throw Error("the file is nested deeper than 100 levels", levels_.front().key);
+                if (levels_.size() == 100)
+                    throw Error("the file is nested deeper than 100 levels", levels_.front().key);
                 levels_.push_back({event == Event::array_start, 0, {}, {}});
                 return true;
             case Event::key:
@@ -78,7 +79,9 @@ class Watcher {
                 count();
                 return keep;
             }
-            case Event::value: count(); return true;
+            case Event::value:
+                count();
+                return true;
         }
         return true;
     }
@@ -124,8 +127,7 @@ Matrix PassRows::of_pass(std::size_t pass, const Field& left, const std::string&
                         (fault.is_array() ? " of " + std::to_string(fault.size()) : ""),
                     path);
     }
-    return Eigen::Map<const Matrix>(flat.data(), static_cast<Eigen::Index>(count),
-                                    static_cast<Eigen::Index>(width));
+    return Eigen::Map<const Matrix>(flat.data(), static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(width));
 }
 
 /// "line 3, column 7" of a byte (counted from 1) of the text.
@@ -153,9 +155,9 @@ inline Fields parse_document(const std::string& text, const std::string& format,
     try {
         document = watcher.parse(text);
     } catch (const Json::parse_error& fault) {
-        throw Error("the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " +
-                        reason_of(fault.what()),
-                    watcher.path());
+        throw Error(
+            "the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " + reason_of(fault.what()),
+            watcher.path());
     } catch (const Json::out_of_range& fault) {  // 1e400
         throw Error("the file holds a number that is too large to be finite", watcher.path());
     }
@@ -166,16 +168,14 @@ inline Fields parse_document(const std::string& text, const std::string& format,
     }
     const Field version = fields.take("version");
     if (number(version) != 1.0) {
-        throw Error("version " + version.value.dump() + " of " + format +
-                        " is not known; this program reads version 1",
+        throw Error("version " + version.value.dump() + " of " + format + " is not known; this program reads version 1",
                     version.path, number(version));
     }
     return fields;
 }
 
 /// The JSON object in a value type's `extra` or `settings`; none of its keys may be one the writer itself writes.
-inline Json parse_object(const std::string& text, const std::string& path,
-                         const std::set<std::string>& own_keys = {}) {
+inline Json parse_object(const std::string& text, const std::string& path, const std::set<std::string>& own_keys = {}) {
     Watcher watcher(nullptr);
     Json object;
     try {

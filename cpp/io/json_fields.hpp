@@ -29,12 +29,18 @@ struct Field {
 
 inline std::string in_words(const Json& value) {
     switch (value.type()) {
-        case Json::value_t::null: return "null";
-        case Json::value_t::boolean: return value.get<bool>() ? "true" : "false";
-        case Json::value_t::string: return "a string";
-        case Json::value_t::array: return "an array";
-        case Json::value_t::object: return "an object";
-        default: return value.dump();
+        case Json::value_t::null:
+            return "null";
+        case Json::value_t::boolean:
+            return value.get<bool>() ? "true" : "false";
+        case Json::value_t::string:
+            return "a string";
+        case Json::value_t::array:
+            return "an array";
+        case Json::value_t::object:
+            return "an object";
+        default:
+            return value.dump();
     }
 }
 
@@ -125,7 +131,7 @@ inline Ring points(const Field& field) {
 
 /// An object whose known keys are taken out one by one; what then is left are the unknown ones.
 class Fields {
-   public:
+ public:
     explicit Fields(Field object) : object_(std::move(object)) {
         if (!object_.value.is_object()) {
             object_.refuse(object_.name() + " must be an object, not " + in_words(object_.value));
@@ -149,10 +155,8 @@ class Fields {
     Json& rest() { return object_.value; }
     std::string extra() const { return object_.value.dump(); }
 
-   private:
-    std::string path_of(const std::string& key) const {
-        return object_.path.empty() ? key : object_.path + "." + key;
-    }
+ private:
+    std::string path_of(const std::string& key) const { return object_.path.empty() ? key : object_.path + "." + key; }
     Field object_;
 };
 

@@ -32,8 +32,7 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
         }
     }
     if (!(pass.speed_mm_s > 0.0) || !std::isfinite(pass.speed_mm_s)) {
-        throw Error("speed_mm_s of stroke " + pass.stroke + " must be greater than 0, not " +
-                        in_words(pass.speed_mm_s),
+        throw Error("speed_mm_s of stroke " + pass.stroke + " must be greater than 0, not " + in_words(pass.speed_mm_s),
                     path + ".speed_mm_s", pass.speed_mm_s);
     }
 }

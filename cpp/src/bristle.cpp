@@ -9,9 +9,9 @@ Eigen::Vector4d bristle_coefficients(SlidingEnd end) {
     const double e = std::exp(1.0);
     Eigen::Matrix4d a;
     Eigen::Vector4d b;
-    a.row(0) << 1.0, 0.0, 1.0, 0.0;       // w(0) = 0
-    a.row(1) << 0.0, 1.0, 1.0, 1.0;       // w'(0) = 0
-    a.row(2) << 0.0, 1.0, e, 2.0 * e;     // w'(1) = 0
+    a.row(0) << 1.0, 0.0, 1.0, 0.0;    // w(0) = 0
+    a.row(1) << 0.0, 1.0, 1.0, 1.0;    // w'(0) = 0
+    a.row(2) << 0.0, 1.0, e, 2.0 * e;  // w'(1) = 0
     b << 0.0, 0.0, -1.0, 0.0;
     if (end == SlidingEnd::third_derivative) {
         a.row(3) << 0.0, 0.0, e, 4.0 * e;  // w'''(1) = 0

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "brushsvg/error.hpp"
-#include "brushsvg/lag.hpp"
 
 namespace brushsvg {
 namespace {
@@ -16,7 +15,7 @@ std::string format(const char* pattern, double a = 0.0, double b = 0.0, double c
     return text;
 }
 
-constexpr double kLawAgainstOutlineMm = 0.5;  // contract: outlines rule the mark, laws the inverse; they must agree
+constexpr double kLawAgainstOutlineMm = 0.5;  // outlines rule the mark, laws the inverse; they must agree
 
 /// Least value of a profile over the depth range and where it stands.
 struct Least {
@@ -57,7 +56,9 @@ void check_lag(const Brush& brush) {
 void check_rising(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     double before = brush.half_width(lo);
-    if (before < 0.0) throw Error(format("the half width is %.3f mm at depth %.2f mm; it must not be negative", before, lo), "half_width");
+    if (before < 0.0)
+        throw Error(format("the half width is %.3f mm at depth %.2f mm; it must not be negative", before, lo),
+                    "half_width");
     constexpr int n = 1000;
     for (int i = 1; i <= n; ++i) {
         const double d = lo + (hi - lo) * i / n, now = brush.half_width(d);
@@ -67,15 +68,6 @@ void check_rising(const Brush& brush) {
         before = now;
     }
     if (!(before > 0.0)) throw Error("the half width is zero over the whole depth range", "half_width");
-}
-
-double signed_area(const Ring& ring) {
-    double twice = 0.0;
-    for (Eigen::Index i = 0, n = ring.rows(); i < n; ++i) {
-        const Eigen::Index j = (i + 1) % n;
-        twice += ring(i, 0) * ring(j, 1) - ring(j, 0) * ring(i, 1);
-    }
-    return 0.5 * twice;
 }
 
 bool crosses_itself(const Ring& p) {
@@ -107,7 +99,8 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
             throw Error(format("the outline has %.0f vertices where the first one has %.0f; all depths need the same",
                                double(shape.outline_mm.rows()), double(brush.footprints.vertex_count())),
                         here);
-        if (shape.outline_mm.row(0).norm() > 1e-9) throw Error("the outline's first vertex is not the tip at (0, 0)", here);
+        if (shape.outline_mm.row(0).norm() > 1e-9)
+            throw Error("the outline's first vertex is not the tip at (0, 0)", here);
         if (!(signed_area(shape.outline_mm) > 0.0)) throw Error("the outline does not run counter-clockwise", here);
         if (crosses_itself(shape.outline_mm)) throw Error("the outline crosses itself", here);
         if (d > brush.depth_range_mm[1]) continue;
@@ -115,15 +108,17 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
         // several sections may be equally wide: the law must lie on one of them
         const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
         if (std::abs(seen.half_width_mm - h_law) > kLawAgainstOutlineMm)
-            throw Error(format("at depth %.2f mm the outline is %.2f mm wide on each side but half_width says %.2f mm; they "
-                               "must agree to 0.5 mm",
-                               d, seen.half_width_mm, h_law),
-                        here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
+            throw Error(
+                format("at depth %.2f mm the outline is %.2f mm wide on each side but half_width says %.2f mm; they "
+                       "must agree to 0.5 mm",
+                       d, seen.half_width_mm, h_law),
+                here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
         if (std::abs(seen.from_tip_mm - x_law) > kLawAgainstOutlineMm)
-            throw Error(format("at depth %.2f mm the outline is widest %.2f mm from the tip but tip_to_widest says %.2f mm; "
-                               "they must agree to 0.5 mm",
-                               d, seen.from_tip_mm, x_law),
-                        here, seen.from_tip_mm, std::array<double, 2>{x_law - 0.5, x_law + 0.5});
+            throw Error(
+                format("at depth %.2f mm the outline is widest %.2f mm from the tip but tip_to_widest says %.2f mm; "
+                       "they must agree to 0.5 mm",
+                       d, seen.from_tip_mm, x_law),
+                here, seen.from_tip_mm, std::array<double, 2>{x_law - 0.5, x_law + 0.5});
     }
 }
 
@@ -167,12 +162,14 @@ void check(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo))
         throw Error(format("the depth range [%.2f, %.2f] mm must rise from 0 or more", lo, hi), "depth_range_mm");
-    for (const auto& [profile, where] : {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
-                                         std::pair{&brush.tip_to_widest, "tip_to_widest"},
-                                         std::pair{&brush.half_width, "half_width"}}) {
+    for (const auto& [profile, where] :
+         {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
+          std::pair{&brush.tip_to_widest, "tip_to_widest"}, std::pair{&brush.half_width, "half_width"}}) {
         if (profile->coefficients.empty()) throw Error("the law has no coefficients", where);
         if (int(profile->coefficients.size()) > kMaxLawDegree + 1)
-            throw Error(format("the law has %.0f coefficients; at most 9 are read", double(profile->coefficients.size())), where);
+            throw Error(
+                format("the law has %.0f coefficients; at most 9 are read", double(profile->coefficients.size())),
+                where);
         for (double c : profile->coefficients)
             if (!std::isfinite(c)) throw Error("a coefficient is not finite", where);
     }
@@ -184,16 +181,17 @@ void check(const Brush& brush) {
     if (!(brush.max_speed_mm_s > 0.0))
         throw Error(format("the speed limit %.2f mm/s must be positive", brush.max_speed_mm_s), "max_speed_mm_s");
     if (!brush.width_follows_depth() && !(brush.paint_depth_mm >= lo && brush.paint_depth_mm <= hi))
-        throw Error(format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", brush.paint_depth_mm, lo, hi),
-                    "paint_depth_mm", brush.paint_depth_mm, brush.depth_range_mm);
+        throw Error(
+            format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", brush.paint_depth_mm, lo, hi),
+            "paint_depth_mm", brush.paint_depth_mm, brush.depth_range_mm);
 }
 
 std::vector<Warning> remarks(const Brush& brush) {
     std::vector<Warning> out;
     const auto [lo, hi] = brush.depth_range_mm;
-    for (const auto& [profile, where] : {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
-                                         std::pair{&brush.tip_to_widest, "tip_to_widest"},
-                                         std::pair{&brush.half_width, "half_width"}}) {
+    for (const auto& [profile, where] :
+         {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
+          std::pair{&brush.tip_to_widest, "tip_to_widest"}, std::pair{&brush.half_width, "half_width"}}) {
         if (profile->assumed) out.push_back({where, "the law is assumed, not measured"});
         if (profile->calibrated_mm && ((*profile->calibrated_mm)[0] > lo || (*profile->calibrated_mm)[1] < hi))
             out.push_back({where, format("the law was measured between depths %.2f and %.2f mm, the brush may be used ",
@@ -208,14 +206,16 @@ std::vector<Warning> remarks(const Brush& brush) {
             gap = gap && brush.tip_gap(d) >= 0.0;
         }
         if (!falls)
-            out.push_back({"lag", "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
-                                  "so the brush is pressed down on the spot before it runs"});
+            out.push_back({"lag",
+                           "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
+                           "so the brush is pressed down on the spot before it runs"});
         if (!gap) out.push_back({"tip_gap", "the centre of friction lies outside the footprint at some depths"});
     }
     if (!brush.width_follows_depth())
-        out.push_back({"half_width", format("the width does not depend on depth: drawn widths are ignored and every stroke is "
-                                            "%.2f mm wide",
-                                            2.0 * brush.half_width(hi))});
+        out.push_back(
+            {"half_width", format("the width does not depend on depth: drawn widths are ignored and every stroke is "
+                                  "%.2f mm wide",
+                                  2.0 * brush.half_width(hi))});
     if (brush.footprints.pressed.empty())
         out.push_back({"footprints.pressed", "no outline for a brush pressed straight down: the dragged one is used"});
     return out;

@@ -7,7 +7,7 @@
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
-#include "brushsvg/simulate.hpp"
+#include "middle_line.hpp"
 
 namespace brushsvg {
 namespace {
@@ -15,162 +15,13 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// A chord of a turn in place: at most this angle, so that the heading between poses is never far from what it says.
-constexpr double kTurnStepRad = 0.2;
 /// How far inside q = P + r u a lift stays: 0 slips on straight moves (0.25 mm from depth 10), much more lets the patch
 /// relax towards its pressed shape.
 constexpr double kLiftSlackMm = 0.05;
 
-/// A place on the middle line and what the inverse finds there.
-struct Sample {
-    Place place;
-    double s;         ///< arc length from the start [mm]
-    Vector2d middle;  ///< m
-    double depth;
-    Vector2d contact;  ///< P
-    Vector2d heading;  ///< u
-    Vector2d tcp;      ///< q
-    bool taut = true;      ///< the lever from P to m; loose where the line turns too sharply for it
-    bool settled = false;  ///< the chord to the next sample is close enough
-};
-using Samples = std::vector<Sample>;
-
-double depth_of(const Stroke& stroke, const Brush& brush, double fraction) {
-    return brush.depth_for_half_width(half_width_at(stroke, fraction), stroke.id);
-}
-
-/// The middle line with its arc length, and the depth along it.
-class Line {
-   public:
-    Line(const Stroke& stroke, const Brush& brush) : stroke_(stroke), brush_(brush) {
-        start_.push_back(0.0);
-        for (Index i = 0; i < stroke.middle_mm.rows(); ++i)
-            start_.push_back(start_.back() + arc_length(stroke.middle_mm, i, 0.0, 1.0));
-    }
-    double length() const { return start_.back(); }
-
-    Sample at(const Place& place, double s) const {
-        Sample sample;
-        sample.place = place;
-        sample.s = s;
-        sample.middle = point_at(stroke_.middle_mm, place);
-        sample.depth = depth_of(stroke_, brush_, length() > 0.0 ? s / length() : 0.0);
-        return sample;
-    }
-    Sample at(double s) const {
-        Index i = std::upper_bound(start_.begin(), start_.end(), s) - start_.begin() - 1;
-        i = std::clamp<Index>(i, 0, stroke_.middle_mm.rows() - 1);
-        const double target = s - start_[i], whole = start_[i + 1] - start_[i];
-        double a = 0.0, b = 1.0;
-        if (target <= 0.0) return at({i, 0.0}, start_[i]);
-        if (target >= whole) return at({i, 1.0}, start_[i + 1]);
-        for (int k = 0; k < 60 && b - a > 1e-14; ++k) {
-            const double t = 0.5 * (a + b);
-            (arc_length(stroke_.middle_mm, i, 0.0, t) < target ? a : b) = t;
-        }
-        return at({i, b}, s);
-    }
-    Sample between(const Sample& a, const Sample& b, double c) const {
-        const Place place{a.place.cubic, a.place.t + c * (b.place.t - a.place.t)};
-        return at(place, a.s + arc_length(stroke_.middle_mm, place.cubic, a.place.t, place.t));
-    }
-    Vector2d tangent(const Sample& sample) const { return tangent_at(stroke_.middle_mm, sample.place); }
-
-    /// Samples at both ends of every cubic and at the given arc lengths, between s0 and s1. Neighbours share a cubic,
-    /// or stand on the same point where one cubic ends and the next begins.
-    Samples coarse(double s0, double s1, std::vector<double> extra) const {
-        extra.push_back(s0);
-        extra.push_back(s1);
-        std::sort(extra.begin(), extra.end());
-        Samples samples;
-        for (Index i = 0; i < stroke_.middle_mm.rows(); ++i) {
-            if (start_[i + 1] < s0 || start_[i] > s1 || start_[i + 1] == start_[i]) continue;
-            const auto push = [&](const Sample& sample) {
-                if (samples.empty() || samples.back().place.cubic != sample.place.cubic ||
-                    samples.back().place.t < sample.place.t)
-                    samples.push_back(sample);
-            };
-            if (start_[i] >= s0) push(at({i, 0.0}, start_[i]));
-            for (double s : extra) {
-                if (!(s > start_[i] && s < start_[i + 1] && s >= s0 && s <= s1)) continue;
-                Sample sample = at(s);
-                sample.place.cubic = i;
-                push(sample);
-            }
-            if (start_[i + 1] <= s1) push(at({i, 1.0}, start_[i + 1]));
-        }
-        if (samples.size() > 1 && samples[0].place.cubic != samples[1].place.cubic) samples.erase(samples.begin());
-        while (samples.size() > 1 && samples[samples.size() - 2].place.cubic != samples.back().place.cubic)
-            samples.pop_back();
-        return samples;
-    }
-
-   private:
-    const Stroke& stroke_;
-    const Brush& brush_;
-    std::vector<double> start_;
-};
-
-double angle_between(const Vector2d& from, const Vector2d& to) {
-    return std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
-}
-
 Vector2d turned(const Vector2d& u, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * u.x() - s * u.y(), s * u.x() + c * u.y()};
-}
-
-double distance_to_chord(const Sample& a, const Sample& b, const Sample& between, double& depth_on_chord) {
-    const Vector2d chord = b.tcp - a.tcp;
-    const double squared = chord.squaredNorm();
-    const double t = squared > 0.0 ? std::clamp((between.tcp - a.tcp).dot(chord) / squared, 0.0, 1.0) : 0.5;
-    depth_on_chord = a.depth + t * (b.depth - a.depth);
-    return (between.tcp - (a.tcp + t * chord)).norm();
-}
-
-/// Splits the steps along the line until no chord of the TCP's path is farther than `tolerance` from it, depth included.
-/// Looks at both thirds of a step: the middle of an S lies on its chord. `solve` fills contact, heading and tcp of all
-/// samples.
-template <class Solve>
-void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {
-    const double least = std::min(1e-3, 0.1 * tolerance);
-    for (bool done = false; !done;) {
-        Samples finer;
-        std::vector<bool> trial;
-        done = true;
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            finer.push_back(samples[i]);
-            trial.push_back(false);
-            if (i + 1 == samples.size() || samples[i].settled || samples[i].place.cubic != samples[i + 1].place.cubic)
-                continue;
-            if (samples[i + 1].s - samples[i].s < least) continue;
-            for (double c : {1.0 / 3.0, 2.0 / 3.0}) {
-                finer.push_back(line.between(samples[i], samples[i + 1], c));
-                trial.push_back(true);
-            }
-            done = false;
-        }
-        solve(finer);
-        samples.clear();
-        for (std::size_t i = 0; i < finer.size(); ++i) {
-            samples.push_back(finer[i]);
-            if (i + 3 >= finer.size() || !trial[i + 1]) continue;
-            const Sample &a = finer[i], &b = finer[i + 3];
-            bool close = std::abs(angle_between(a.heading, b.heading)) <= kTurnStepRad;
-            for (std::size_t k : {i + 1, i + 2}) {
-                double depth = 0.0;
-                const double off = distance_to_chord(a, b, finer[k], depth);
-                close = close && off + 0.5 * std::abs(depth - finer[k].depth) <= tolerance;
-            }
-            if (close) {
-                samples.back().settled = true;
-            } else {
-                samples.push_back(finer[i + 1]);
-                samples.push_back(finer[i + 2]);
-            }
-            i += 2;
-        }
-    }
 }
 
 struct PoseList {
@@ -239,7 +90,7 @@ void lift(const Sample& last, const Brush& brush, PoseList& out) {
 
 /// q = m + (r - e) u with P dragged by m on the lever e (article's law read backwards).
 class Inverse {
-   public:
+ public:
     Inverse(const Line& line, const Brush& brush) : line_(line), brush_(brush) {
         const auto [lo, hi] = brush.depth_range_mm;
         const auto e = difference(brush.tip_to_widest, brush.tip_gap, lo, hi);
@@ -273,7 +124,7 @@ class Inverse {
         for (Sample& sample : samples) sample.tcp = sample.contact + brush_.lag(sample.depth) * sample.heading;
     }
 
-   private:
+ private:
     int sign_of(const Samples& samples, std::size_t i) const {
         if (ahead_.rigid) return 0;
         const double e = brush_.lever_to_widest(0.5 * (samples[i].depth + samples[i + 1].depth));
@@ -306,7 +157,8 @@ class Inverse {
     }
     void step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,
               LagState<double>& state) const {
-        advance(law, Move<double>(samples[from].middle, samples[to].middle, samples[from].depth, samples[to].depth), state);
+        advance(law, Move<double>(samples[from].middle, samples[to].middle, samples[from].depth, samples[to].depth),
+                state);
         store(samples[to], sign, state);
     }
     static void store(Sample& sample, double sign, const LagState<double>& state) {
@@ -327,7 +179,8 @@ double front_of_widest(const Brush& brush, double depth) {
 }
 
 /// Arc lengths where the depth passes a given one: samples must stand there.
-std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length, const std::vector<double>& depths) {
+std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
+                                     const std::vector<double>& depths) {
     std::vector<double> out;
     for (std::size_t k = 0; k < stroke.half_width.size(); ++k) {
         const WidthKnot& knot = stroke.half_width[k];
@@ -370,7 +223,8 @@ std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, 
 /// A mark no longer than a footprint: one landing that leaves the widest section at the path's end.
 Samples dab(const Stroke& stroke, const Line& line) {
     Sample sample = line.at(line.length());
-    const Vector2d across = point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0}) - point_at(stroke.middle_mm, {0, 0.0});
+    const Vector2d across =
+        point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0}) - point_at(stroke.middle_mm, {0, 0.0});
     // a point has no direction: left to right, as one writes
     sample.heading = line.length() > 0.0 ? line.tangent(sample) : Vector2d(1.0, 0.0);
     if (across.norm() > 0.5 * line.length() && line.length() > 0.0) sample.heading = across.normalized();
@@ -468,75 +322,12 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
     warnings.push_back({stroke.id, text + brush.name + " was measured"});
 }
 
-/// Distance to a polyline, block by block; successive queries lie close to each other.
-class Nearest {
-   public:
-    explicit Nearest(const MiddlePolyline& line) : line_(line) {
-        for (Index i = 0; i < std::max<Index>(1, line.rows() - 1); i += kBlock) {
-            const Index n = std::min<Index>(kBlock + 1, line.rows() - i);
-            const Vector2d lo = line.block(i, 0, n, 2).colwise().minCoeff().transpose();
-            const Vector2d hi = line.block(i, 0, n, 2).colwise().maxCoeff().transpose();
-            blocks_.push_back({0.5 * (lo + hi), 0.5 * (hi - lo).norm()});
-        }
-    }
-    double distance(const Vector2d& p) {
-        double best = in_block(last_, p);
-        for (std::size_t k = 0; k < blocks_.size(); ++k) {
-            if ((p - blocks_[k].centre).norm() - blocks_[k].radius >= best) continue;
-            const double d = in_block(k, p);
-            if (d < best) {
-                best = d;
-                last_ = k;
-            }
-        }
-        return best;
-    }
-
-   private:
-    static constexpr Index kBlock = 16;
-    struct Block {
-        Vector2d centre;
-        double radius;
-    };
-    double in_block(std::size_t k, const Vector2d& p) const {
-        const Index first = Index(k) * kBlock, last = std::min<Index>(first + kBlock, line_.rows() - 1);
-        double best = (p - line_.row(first).head<2>().transpose()).squaredNorm();
-        for (Index i = first; i < last; ++i) {
-            const Vector2d a = line_.row(i).head<2>().transpose(), d = line_.row(i + 1).head<2>().transpose() - a;
-            const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-            best = std::min(best, (p - a - t * d).squaredNorm());
-        }
-        return std::sqrt(best);
-    }
-    const MiddlePolyline& line_;
-    std::vector<Block> blocks_;
-    std::size_t last_ = 0;
-};
-
 }  // namespace
-
-Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
-    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.25 * tolerance_mm));
-    const Ring widest = widest_points(marks, brush);
-    const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
-    Nearest nearest(line);
-    // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does
-    std::size_t begin = 0, end = marks.taut.size();
-    while (begin < end && !marks.taut[begin]) ++begin;
-    while (end > begin && !marks.taut[end - 1]) --end;
-    Miss miss;
-    for (std::size_t i = begin; i < end; ++i) {
-        const double d = nearest.distance(widest.row(i).transpose());
-        miss.largest_mm = std::max(miss.largest_mm, d);
-        miss.mean_mm += d / double(end - begin);
-    }
-    miss.within_tolerance = miss.largest_mm <= tolerance_mm;
-    return miss;
-}
 
 CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
     check(stroke);
-    if (!(options.tolerance_mm > 0.0)) throw Error("the tolerance must be greater than 0 mm", stroke.id, options.tolerance_mm);
+    if (!(options.tolerance_mm > 0.0))
+        throw Error("the tolerance must be greater than 0 mm", stroke.id, options.tolerance_mm);
     const Line line(stroke, brush);
     CompensatedPass result;
     warn(stroke, brush, result.warnings);
@@ -550,7 +341,8 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
     double step_tolerance = 0.5 * options.tolerance_mm;
     if (options.method != Compensation::closed) {
         double r0 = 0.0;
-        if (options.method == Compensation::constant) r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
+        if (options.method == Compensation::constant)
+            r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
         pass.poses_mm = offset(stroke, brush, line, r0, step_tolerance).matrix();
         result.miss = miss_of(pass, stroke, brush, options.tolerance_mm);
         return result;

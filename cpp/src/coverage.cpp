@@ -26,7 +26,7 @@ std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm)
 
 /// Union of horizontal spans on sub-scanlines, in pixels, then coverage.
 class Spans {
-   public:
+ public:
     Spans(const Window& window, double px_per_mm) : window_(window), scale_(px_per_mm) {
         const auto [width, height] = picture_size(window, px_per_mm);
         width_ = width;
@@ -74,7 +74,9 @@ class Spans {
     }
 
     Coverage coverage() {
-        const auto by_place = [](const Span& a, const Span& b) { return a.line < b.line || (a.line == b.line && a.lo < b.lo); };
+        const auto by_place = [](const Span& a, const Span& b) {
+            return a.line < b.line || (a.line == b.line && a.lo < b.lo);
+        };
         std::sort(more_.begin(), more_.end(), by_place);
         std::sort(parts_.begin(), parts_.end(), by_place);
         Coverage out = Coverage::Zero(height_, width_);
@@ -88,7 +90,8 @@ class Spans {
                 parts.clear();
                 if (lo_[line] < hi_[line]) here.push_back({line, lo_[line], hi_[line]});
                 for (; next < more_.size() && more_[next].line == line; ++next) here.push_back(more_[next]);
-                for (; next_part < parts_.size() && parts_[next_part].line == line; ++next_part) parts.push_back(parts_[next_part]);
+                for (; next_part < parts_.size() && parts_[next_part].line == line; ++next_part)
+                    parts.push_back(parts_[next_part]);
                 merge(here);
                 if (!parts.empty()) outside(here, parts);
                 for (const Span& span : here) {
@@ -104,16 +107,18 @@ class Spans {
                 sum += steps[x];
                 pixels[x] = std::min(1.0f, std::max(0.0f, sum));
             }
-            if (from < to) std::fill(steps.begin() + from, steps.begin() + std::min<Eigen::Index>(to + 1, width_ + 2), 0.0f);
+            if (from < to)
+                std::fill(steps.begin() + from, steps.begin() + std::min<Eigen::Index>(to + 1, width_ + 2), 0.0f);
         }
         return out;
     }
 
-   private:
+ private:
     struct Span {
         int line;
         float lo, hi;
         float height = 1.0f;  ///< of the band
+        bool hangs = false;   ///< a part of a band: from its upper side
     };
     struct Point {
         double x, y;
@@ -133,7 +138,8 @@ class Spans {
         spans.resize(last + 1);
     }
 
-    /// Adds to disjoint full spans what parts of the band paint beside them: the highest part at every x.
+    /// Adds to disjoint full spans what parts of the band paint beside them: at every x the highest part that stands on
+    /// the band's lower side and the longest that hangs from its upper one.
     void outside(std::vector<Span>& full, const std::vector<Span>& parts) {
         edges_.clear();
         for (const Span& s : full) edges_.insert(edges_.end(), {s.lo, s.hi});
@@ -143,13 +149,12 @@ class Spans {
         for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
             const float lo = edges_[k], hi = edges_[k + 1];
             if (!(lo < hi)) continue;
-            float height = 0.0f;
-            for (std::size_t i = 0; i < fulls; ++i)
-                if (full[i].lo <= lo && full[i].hi >= hi) height = 1.0f;
-            if (height > 0.0f) continue;
+            const auto holds = [&](const Span& s) { return s.lo <= lo && s.hi >= hi; };
+            if (std::any_of(full.begin(), full.begin() + fulls, holds)) continue;
+            float standing = 0.0f, hanging = 0.0f;
             for (const Span& s : parts)
-                if (s.lo <= lo && s.hi >= hi) height = std::max(height, s.height);
-            if (height > 0.0f) full.push_back({0, lo, hi, height});
+                if (holds(s)) (s.hangs ? hanging : standing) = std::max(s.hangs ? hanging : standing, s.height);
+            if (standing + hanging > 0.0f) full.push_back({0, lo, hi, std::min(1.0f, standing + hanging), false});
         }
     }
 
@@ -174,7 +179,7 @@ class Spans {
             lo_[line] = std::min(lo_[line], lo);
             hi_[line] = std::max(hi_[line], hi);
         } else {
-            if (lo_[line] < hi_[line]) more_.push_back({line, lo_[line], hi_[line], 1.0f});
+            if (lo_[line] < hi_[line]) more_.push_back({line, lo_[line], hi_[line]});
             lo_[line] = lo;
             hi_[line] = hi;
         }
@@ -222,17 +227,17 @@ class Spans {
         if (b) split(*b, left_b_, right_b_);
         side(left_a_, left_b_, 1.0, left_);
         side(right_a_, right_b_, -1.0, right_);
-        // bands covered over their whole height count by their middle line, the two cut by the top and the bottom of the
-        // shape by the part covered: without them a horizontal edge would be off by half a band
+        // bands covered over their whole height count by their middle line, the two cut by the top and the bottom of
+        // the shape by the part covered: without them a horizontal edge would be off by half a band
         const double top = std::clamp(left_.front().y, -1.0, double(lines()) + 1.0);
         const double bottom = std::clamp(left_.back().y, -1.0, double(lines()) + 1.0);
         const int full = int(std::ceil(top)), cut = int(std::floor(bottom));
         if (full > cut) {
-            part(top, bottom);
+            part(top, bottom, false);
             return;
         }
-        part(top, full);
-        part(cut, bottom);
+        part(top, full, false);
+        part(cut, bottom, true);
         const int first = std::max(0, full), last = std::min(lines(), cut);
         if (first >= last) return;
         xs_.resize(last - first);
@@ -247,13 +252,13 @@ class Spans {
         }
         return chain.back().x;
     }
-    /// A piece of one band, from y0 down to y1.
-    void part(double y0, double y1) {
+    /// A piece of one band, from y0 down to y1; `hangs` from the band's upper side, or else stands on its lower one.
+    void part(double y0, double y1, bool hangs) {
         const double middle = 0.5 * (y0 + y1);
         const int line = int(std::floor(middle));
         if (!(y1 > y0) || line < 0 || line >= lines()) return;
         const auto lo = float(x_at(left_, middle)), hi = float(x_at(right_, middle));
-        if (lo < hi) parts_.push_back({line, lo, hi, float(y1 - y0)});
+        if (lo < hi) parts_.push_back({line, lo, hi, float(y1 - y0), hangs});
     }
 
     template <class Sink>
@@ -286,17 +291,14 @@ Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, 
         sweep(
             pass, brush, [&](const Ring& a, const Ring& b) { spans.convex_pair(a, b); },
             [&](const Ring& ring) { spans.polygon({ring}); },
-            [&](const Ring& quad) {
-                const Ring hull = convex_hull(quad);
-                if (hull.rows() > 2) spans.convex_pair(hull, hull);
-            });
+            [&](const Ring& piece) { spans.convex_pair(piece, piece); });
     return spans.coverage();
 }
 
 Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
     const auto [width, height] = picture_size(window, px_per_mm);
     // exact: every edge leaves in each pixel it crosses the area to its right, and its height in all pixels beyond
-    Eigen::MatrixXd edge = Eigen::MatrixXd::Zero(width + 2, height);  // one column per pixel row
+    Eigen::MatrixXd edge = Eigen::MatrixXd::Zero(width + 2, height);                 // one column per pixel row
     const auto add = [&](double x0, double y0, double x1, double y1, double sign) {  // within one pixel row
         const auto row = Eigen::Index(std::floor(0.5 * (y0 + y1)));
         if (row < 0 || row >= height) return;
@@ -358,7 +360,7 @@ Rings outline(const PassMarks& pass, const Brush& brush) {
             points << a, b;
             keep(convex_hull(points));
         },
-        keep, [&](const Ring& quad) { keep(convex_hull(quad)); });
+        keep, keep);
     return unite(swept);
 }
 
@@ -369,8 +371,7 @@ std::array<double, 4> painted_bounds(const PassMarks& marks, const Brush& brush)
         box = {std::min(box[0], ring.col(0).minCoeff()), std::min(box[1], ring.col(1).minCoeff()),
                std::max(box[2], ring.col(0).maxCoeff()), std::max(box[3], ring.col(1).maxCoeff())};
     };
-    sweep(
-        marks, brush, [&](const Ring&, const Ring& b) { include(b); }, include, [](const Ring&) {});
+    sweep(marks, brush, [&](const Ring&, const Ring& b) { include(b); }, include, [](const Ring&) {});
     return box;
 }
 

@@ -38,7 +38,7 @@ Ring to_ring(Iterator begin, Iterator end, bool counter_clockwise) {
     Ring ring(Eigen::Index(points.size()), 2);
     for (Eigen::Index i = 0; i < ring.rows(); ++i)
         ring.row(i) << points[i].x() / kUnitsPerMm, points[i].y() / kUnitsPerMm;
-    if ((area({ring}) > 0.0) != counter_clockwise) ring = ring.colwise().reverse().eval();
+    if ((signed_area(ring) > 0.0) != counter_clockwise) ring = ring.colwise().reverse().eval();
     return ring;
 }
 
@@ -59,7 +59,7 @@ Set to_set(const Rings& rings) {
     Set set;
     for (const Ring& ring : rings) {
         if (ring.rows() < 3) continue;
-        set.insert(to_polygon(ring), area({ring}) < 0.0);
+        set.insert(to_polygon(ring), signed_area(ring) < 0.0);
     }
     set.clean();
     return set;
@@ -81,7 +81,7 @@ Rings unite(const Rings& rings) {
     level.reserve(rings.size());
     for (const Ring& ring : rings) {
         if (ring.rows() < 3) continue;
-        const bool hole = area({ring}) < 0.0;
+        const bool hole = signed_area(ring) < 0.0;
         if (!hole || level.empty()) level.emplace_back();
         level.back().insert(to_polygon(ring), hole);
     }
@@ -101,15 +101,9 @@ Rings unite(const Rings& rings) {
 }
 
 double area(const Rings& rings) {
-    double twice = 0.0;
-    for (const Ring& ring : rings)
-        for (Eigen::Index i = 0, n = ring.rows(); i < n; ++i) {
-            const Eigen::Index j = i + 1 == n ? 0 : i + 1;
-            // relative to the first vertex: no cancellation far from the origin
-            twice += (ring(i, 0) - ring(0, 0)) * (ring(j, 1) - ring(0, 1)) -
-                     (ring(j, 0) - ring(0, 0)) * (ring(i, 1) - ring(0, 1));
-        }
-    return 0.5 * twice;
+    double sum = 0.0;
+    for (const Ring& ring : rings) sum += signed_area(ring);
+    return sum;
 }
 
 double overlap(const Rings& a, const Rings& b) {
@@ -124,9 +118,8 @@ double overlap(const Rings& a, const Rings& b) {
 Ring convex_hull(const Ring& points) {
     std::vector<Eigen::Vector2d> p(points.rows());
     for (Eigen::Index i = 0; i < points.rows(); ++i) p[i] = points.row(i).transpose();
-    std::sort(p.begin(), p.end(), [](const auto& a, const auto& b) {
-        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-    });
+    std::sort(p.begin(), p.end(),
+              [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
     std::vector<Eigen::Vector2d> hull;
     const auto turns_right = [&](const Eigen::Vector2d& c) {
         const Eigen::Vector2d &a = hull[hull.size() - 2], &b = hull.back();

@@ -18,25 +18,38 @@ struct Extents {
         depth.push_back(0.0);
         front.push_back(0.0);
         half_width.push_back(0.0);
-        for (const Footprint& shape : brush.footprints.dragged) {
-            depth.push_back(shape.depth_mm);
-            front.push_back(shape.outline_mm.col(0).maxCoeff());
-            half_width.push_back(shape.outline_mm.col(1).maxCoeff());
+        for (const auto* shapes : {&brush.footprints.dragged, &brush.footprints.pressed})
+            for (const Footprint& shape : *shapes) depth.push_back(shape.depth_mm);
+        std::sort(depth.begin(), depth.end());
+        depth.erase(std::unique(depth.begin(), depth.end()), depth.end());
+        for (std::size_t i = 1; i < depth.size(); ++i) {
+            const Ring outline = footprint_at(brush.footprints, depth[i], 1.0);
+            front.push_back(outline.col(0).maxCoeff());
+            half_width.push_back(outline.col(1).maxCoeff());
         }
     }
     std::array<double, 2> at(double d) const {
         const std::size_t i = std::upper_bound(depth.begin(), depth.end(), d) - depth.begin();
         if (i >= depth.size()) return {front.back(), half_width.back()};
         const double c = (d - depth[i - 1]) / (depth[i] - depth[i - 1]);
-        return {front[i - 1] + c * (front[i] - front[i - 1]), half_width[i - 1] + c * (half_width[i] - half_width[i - 1])};
+        return {front[i - 1] + c * (front[i] - front[i - 1]),
+                half_width[i - 1] + c * (half_width[i] - half_width[i - 1])};
     }
 };
 
 class Tracer {
-   public:
+ public:
     Tracer(const Brush& brush, double tolerance_mm, PassMarks& out)
-        : brush_(brush), law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
-          extents_(brush), tolerance_(tolerance_mm), out_(out) {}
+        : brush_(brush),
+          law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
+          extents_(brush),
+          tolerance_(tolerance_mm),
+          out_(out) {
+        kinks_ = extents_.depth;
+        for (const Profile* profile : {&brush.tip_gap, &brush.tip_to_widest})
+            for (const auto& piece : pieces(*profile, brush.depth_range_mm[0], brush.depth_range_mm[1]))
+                kinks_.push_back(piece.lo);
+    }
 
     /// Poses index and fractions of the following moves: pose + scale * t.
     void place(double pose, double scale) {
@@ -45,12 +58,10 @@ class Tracer {
     }
     void touch(const Vec2<double>& q) {
         state_ = touch_down<double>(q);
-        if (heading_known_once_) state_.heading = last_heading_;
-    }
-    void row_now(const Vec2<double>& q, double depth, double t) {
-        const double r = law_.at(depth);
-        const bool taut = state_.taut || law_.rigid;
-        add(t, q, depth, state_, taut || r <= 0.0 ? 1.0 : std::min(1.0, (q - state_.contact).norm() / r));
+        state_.heading = last_heading_;
+        if (moved_once_) first_row_ = out_.pose.size();  // before any motion the first rows wait for a heading too
+        moved_ = false;
+        row(q, 0.0, state_, 0.0);
     }
     void lifted(const Vec2<double>& q, double z, double t) {
         LagState<double> away = state_;
@@ -62,73 +73,130 @@ class Tracer {
         advance(law_, m, state_, [&](const auto& piece, const auto& mv, const auto& start, double begin, double end) {
             sample(piece, mv, start, begin, end);
         });
-        if (state_.heading_known || state_.taut) note_heading(state_.heading);
-        row_now(m.tcp(1.0), m.depth(1.0), 1.0);
+        row(m.tcp(1.0), m.depth(1.0), state_, 1.0);
     }
-    bool deeper_than_allowed(double depth) const { return depth > brush_.depth_range_mm[1] + 1e-9; }
-    double first_heading() const { return first_heading_; }
-    std::size_t rows_before_heading() const { return rows_before_heading_; }
+    void finish() {
+        const Eigen::Index n = Eigen::Index(out_.pose.size());
+        out_.tcp_mm = Eigen::Map<const Ring>(tcp_.data(), n, 2);
+        out_.contact_mm = Eigen::Map<const Ring>(contact_.data(), n, 2);
+    }
 
-   private:
-    struct Corners {
-        Eigen::Matrix<double, 2, 4> points;
-        Vec2<double> heading;
-        double depth;
+ private:
+    /// What the footprint looks like at one instant; its corners stand for its motion.
+    struct Instant {
         LagState<double> state;
+        double depth, pull;
+        Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
     };
 
     template <class Piece>
-    Corners corners(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin, double t) const {
-        Corners c;
+    Instant instant(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin,
+                    double t) const {
+        Instant now;
         if (law_.rigid) {
-            c.state = start;
-            c.state.contact = m.tcp(t);
+            now.state = start;
+            now.state.contact = m.tcp(t);
         } else {
-            c.state = within_phase(piece, m, start, begin, t);
+            now.state = within_phase(piece, m, start, begin, t);
         }
-        c.depth = m.depth(t);
-        const double b = brush_.tip_gap(c.depth);
-        const auto [front, half] = extents_.at(c.depth);
-        const Vec2<double> u = c.state.heading, n(-u.y(), u.x());
-        const Vec2<double> tip = c.state.contact - b * u;
-        c.heading = u;
-        c.points << tip + half * n, tip - half * n, tip + front * u + half * n, tip + front * u - half * n;
-        return c;
+        now.depth = m.depth(t);
+        now.pull = pull_of(now.state, m.tcp(t), now.depth);
+        const auto [front, half] = extents_.at(now.depth);
+        const Vec2<double> u = now.state.heading, n(-u.y(), u.x()), tip = tip_of(now);
+        now.corners << tip + half * n, tip - half * n, tip + front * u + half * n, tip + front * u - half * n,
+            tip + brush_.tip_to_widest(now.depth) * u;
+        return now;
+    }
+    Vec2<double> tip_of(const Instant& now) const {
+        return now.state.contact - brush_.tip_gap(now.depth) * now.state.heading;
     }
 
     template <class Piece>
     void sample(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin, double end) {
-        if (begin > 0.0) {
-            // the state at an event stands as a row of its own
-            row(m, start, begin);
-        }
-        if (start.heading_known || start.taut) note_heading(start.heading);
+        if (begin > 0.0) row(m.tcp(begin), m.depth(begin), start, begin);  // the event that begins this phase
         // straight out from the contact the heading is the direction of motion from the first instant
         LagState<double> from = start;
         if (!from.taut && !from.heading_known && m.length > 0.0) from.heading = m.along;
-        const Corners a = corners(piece, m, from, begin, begin), b = corners(piece, m, start, begin, end);
-        split(piece, m, start, begin, begin, a, end, b, 0);
+        // outlines are blended between measured depths and laws have kinks: between two rows there must be none
+        std::vector<double> ends{end};
+        for (double depth : kinks_) {
+            const double t = (depth - m.depth_from) / m.depth_by;
+            if (m.depth_by != 0.0 && t > begin + 1e-12 && t < end - 1e-12) ends.push_back(t);
+        }
+        std::sort(ends.begin(), ends.end());
+        Instant a = instant(piece, m, from, begin, begin);
+        double ta = begin;
+        for (double tb : ends) {
+            const Instant b = instant(piece, m, start, begin, tb);
+            split(piece, m, start, begin, ta, a, tb, b, 0);
+            if (tb < end) row(m.tcp(tb), m.depth(tb), b.state, tb);
+            a = b;
+            ta = tb;
+        }
     }
 
     template <class Piece>
     void split(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin, double ta,
-               const Corners& a, double tb, const Corners& b, int level) {
+               const Instant& a, double tb, const Instant& b, int level) {
         if (level >= 40) return;
         const double tm = 0.5 * (ta + tb);
-        const Corners c = corners(piece, m, start, begin, tm);
-        const double bend = (c.points - 0.5 * (a.points + b.points)).colwise().norm().maxCoeff();
-        const bool turned = a.heading.dot(b.heading) < 0.8;  // a chord of the motion says nothing of a wide turn
-        if (bend <= tolerance_ && !(turned && level < 24)) return;
+        const Instant c = instant(piece, m, start, begin, tm);
+        const double bend = (c.corners - 0.5 * (a.corners + b.corners)).colwise().norm().maxCoeff();
+        // a chord of the motion says nothing of a wide turn
+        const bool turned = a.state.heading.dot(b.state.heading) < 0.8;
+        const bool pressed = std::abs(a.depth - b.depth) > 0.5;  // nor of laws that bend twice
+        if (bend <= tolerance_ && !((turned || pressed) && level < 24) &&
+            !(level < 12 && shape_gap(a, b, c) > tolerance_))
+            return;
         split(piece, m, start, begin, ta, a, tm, c, level + 1);
-        row(m, c.state, tm);
+        row(m.tcp(tm), m.depth(tm), c.state, tm);
         split(piece, m, start, begin, tm, c, tb, b, level + 1);
     }
 
-    void row(const Move<double>& m, const LagState<double>& state, double t) {
-        const double depth = m.depth(t), r = law_.at(depth);
-        const Vec2<double> q = m.tcp(t);
-        if (state.heading_known || state.taut) note_heading(state.heading);
-        add(t, q, depth, state, state.taut || r <= 0.0 ? 1.0 : std::min(1.0, (q - state.contact).norm() / r));
+    /// How far the outline half way is from the mean of the outlines at both ends, as support functions h(n) = max n.v
+    /// (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only where this is small.
+    double shape_gap(const Instant& a, const Instant& b, const Instant& c) const {
+        const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05;
+        // turning about a point of its flank a footprint leaves a waist that no hull has; while it is dragged forwards
+        // the widest section has painted there before
+        const bool turns_in_place = !a.state.taut && a.state.heading.dot(b.state.heading) < 1.0 - 1e-8;
+        if (!grows && !turns_in_place) return 0.0;
+        // along the normals of the middle outline's edges: long flanks show it, and only there
+        const Ring from = outline_of(a), to = outline_of(b), between = outline_of(c);
+        double gap = 0.0;
+        for (Eigen::Index k = 0, n = between.rows(); k < n; ++k) {
+            const Eigen::Index j = k + 1 == n ? 0 : k + 1;
+            const Vec2<double> edge = (between.row(j) - between.row(k)).transpose();
+            const double length = edge.norm();
+            if (length < 4.0 * tolerance_) continue;  // too short to open a gap of the tolerance
+            const Vec2<double> normal(edge.y() / length, -edge.x() / length);
+            const double mean = 0.5 * ((from * normal).maxCoeff() + (to * normal).maxCoeff());
+            gap = std::max(gap, std::abs((between * normal).maxCoeff() - mean));
+        }
+        return gap;
+    }
+    Ring outline_of(const Instant& now) const {
+        const Vec2<double> u = now.state.heading, tip = tip_of(now);
+        Eigen::Matrix2d turn;
+        turn << u.x(), u.y(), -u.y(), u.x();
+        return (footprint_at(brush_.footprints, now.depth, now.pull) * turn).rowwise() + tip.transpose();
+    }
+
+    /// r'/r, 1 when taut.
+    double pull_of(const LagState<double>& state, const Vec2<double>& q, double depth) const {
+        const double r = law_.at(depth);
+        return state.taut || law_.rigid || r <= 0.0 ? 1.0 : std::min(1.0, (q - state.contact).norm() / r);
+    }
+
+    void row(const Vec2<double>& q, double depth, const LagState<double>& state, double t) {
+        if ((state.heading_known || state.taut) && !moved_) {
+            // rows since touch-down, or since the pass began, take the first heading there is
+            std::fill(out_.heading_rad.begin() + first_row_, out_.heading_rad.end(),
+                      std::atan2(state.heading.y(), state.heading.x()));
+            moved_ = moved_once_ = true;
+        }
+        if (moved_) last_heading_ = state.heading;
+        add(t, q, depth, state, pull_of(state, q, depth));
     }
 
     void add(double t, const Vec2<double>& q, double depth, const LagState<double>& state, double pull) {
@@ -141,48 +209,36 @@ class Tracer {
         out_.pull.push_back(pull);
     }
 
-    void note_heading(const Vec2<double>& u) {
-        if (!heading_known_once_) {
-            first_heading_ = std::atan2(u.y(), u.x());
-            rows_before_heading_ = out_.pose.size();
-            heading_known_once_ = true;
-        }
-        last_heading_ = u;
-    }
-
-   public:
-    void finish() {
-        const Eigen::Index n = Eigen::Index(out_.pose.size());
-        out_.tcp_mm = Eigen::Map<const Ring>(tcp_.data(), n, 2);
-        out_.contact_mm = Eigen::Map<const Ring>(contact_.data(), n, 2);
-        if (heading_known_once_)
-            std::fill_n(out_.heading_rad.begin(), rows_before_heading_, first_heading_);
-    }
-
-   private:
     const Brush& brush_;
     LagLaw<double> law_;
     Extents extents_;
+    std::vector<double> kinks_;
     double tolerance_;
     PassMarks& out_;
     LagState<double> state_;
     std::vector<double> tcp_, contact_;
     double pose_ = 0.0, scale_ = 1.0;
     Vec2<double> last_heading_ = Vec2<double>(1.0, 0.0);
-    double first_heading_ = 0.0;
-    std::size_t rows_before_heading_ = 0;
-    bool heading_known_once_ = false;
+    std::size_t first_row_ = 0;  ///< of those that wait for a heading
+    bool moved_ = false, moved_once_ = false;
 };
 
 void refuse_bad_poses(const Pass& pass, const Brush& brush) {
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         if (!pass.poses_mm.row(i).allFinite())
             throw Error("pose " + std::to_string(i) + " has a coordinate that is not finite", pass.stroke);
+        const double largest = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
+        if (largest > kLargestMm) {
+            char text[120];
+            std::snprintf(text, sizeof text, "pose %ld lies at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
+                          largest);
+            throw Error(text, pass.stroke, largest, std::array<double, 2>{-kLargestMm, kLargestMm});
+        }
         const double depth = -pass.poses_mm(i, 2);
         if (depth > brush.depth_range_mm[1] + 1e-9) {
             char text[200];
-            std::snprintf(text, sizeof text, "depth %.3f mm of pose %ld is outside the range [%.1f, %.1f] mm of brush ", depth,
-                          long(i), brush.depth_range_mm[0], brush.depth_range_mm[1]);
+            std::snprintf(text, sizeof text, "depth %.3f mm of pose %ld is outside the range [%.1f, %.1f] mm of brush ",
+                          depth, long(i), brush.depth_range_mm[0], brush.depth_range_mm[1]);
             throw Error(text + brush.name, pass.stroke, depth, brush.depth_range_mm);
         }
     }
@@ -209,7 +265,6 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm) {
         tracer.lifted(q(0), z(0), 0.0);
     } else {
         tracer.touch(q(0));
-        tracer.row_now(q(0), 0.0, 0.0);
         if (z(0) < 0.0) tracer.move(Move<double>(q(0), q(0), 0.0, -z(0)));
     }
     for (Eigen::Index i = 0; i + 1 < n; ++i) {
@@ -227,7 +282,6 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm) {
             if (za > 0.0) {
                 tracer.place(double(i) + t, 1.0 - t);
                 tracer.touch(c);
-                tracer.row_now(c, 0.0, 0.0);
                 if (zb < 0.0) tracer.move(Move<double>(c, b, 0.0, -zb));
             } else {
                 tracer.place(double(i), t);

@@ -1,6 +1,7 @@
 #include "brushsvg/stroke.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -45,7 +46,8 @@ Vector2d tangent_at(const Cubics& c, const Place& place) {
 
 double arc_length(const Cubics& c, Index i, double t0, double t1) {
     // Gauss-Legendre, 5 nodes on pieces of at most an eighth of the cubic: 1e-9 of the length away from cusps
-    static constexpr double x[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
+    static constexpr double x[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                    0.9061798459386640};
     static constexpr double w[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                     0.2369268850561891};
     const int n = std::max(1, int(std::ceil(std::abs(t1 - t0) * 8.0 - 1e-9)));
@@ -71,6 +73,9 @@ double half_width_at(const Stroke& stroke, double fraction) {
 void check(const Stroke& stroke) {
     if (stroke.middle_mm.rows() == 0) throw Error("the stroke has no middle line", stroke.id);
     if (!stroke.middle_mm.allFinite()) throw Error("the middle line has a coordinate that is not finite", stroke.id);
+    const double largest = stroke.middle_mm.cwiseAbs().maxCoeff();
+    if (largest > 1e6)
+        throw Error("the middle line reaches beyond 1e6 mm", stroke.id, largest, std::array<double, 2>{-1e6, 1e6});
     if (stroke.half_width.empty()) throw Error("the stroke has no width", stroke.id);
     double before = -1.0;
     for (const WidthKnot& knot : stroke.half_width) {

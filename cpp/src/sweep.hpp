@@ -8,11 +8,49 @@
 
 namespace brushsvg {
 
+/// What a segment from a to b sweeps on its way to d, c: convex pieces, counter-clockwise. A segment that turns about a
+/// point of its own sweeps two triangles.
+template <class Piece>
+void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, const Eigen::RowVector2d& c,
+                   const Eigen::RowVector2d& d, Piece&& piece) {
+    using P = Eigen::RowVector2d;
+    const auto cross = [](const P& u, const P& v) { return u.x() * v.y() - u.y() * v.x(); };
+    const auto emit = [&](const P& p, const P& q, const P& r) {
+        const double twice = cross(q - p, r - p);
+        if (twice == 0.0) return;
+        Ring triangle(3, 2);
+        triangle << p, (twice > 0.0 ? q : r), (twice > 0.0 ? r : q);
+        piece(triangle);
+    };
+    // where segments p0 p1 and q0 q1 cross, if they do
+    const auto crossing = [&](const P& p0, const P& p1, const P& q0, const P& q1, P& x) {
+        const double side = cross(p1 - p0, q1 - q0);
+        if (side == 0.0) return false;
+        const double t = cross(q0 - p0, q1 - q0) / side, s = cross(q0 - p0, p1 - p0) / side;
+        x = p0 + t * (p1 - p0);
+        return t > 0.0 && t < 1.0 && s > 0.0 && s < 1.0;
+    };
+    P x;
+    if (crossing(a, b, d, c, x)) {
+        emit(a, x, d);
+        emit(b, c, x);
+    } else if (crossing(b, c, a, d, x)) {
+        emit(a, b, x);
+        emit(c, d, x);
+    } else if ((cross(b - a, c - b) > 0.0) == (cross(d - c, a - d) > 0.0)) {  // the diagonal a c lies inside
+        emit(a, b, c);
+        emit(a, c, d);
+    } else {
+        emit(a, b, d);
+        emit(b, c, d);
+    }
+}
+
 /// The painted area of a pass as simple polygons, counter-clockwise: for every two neighbouring rows what the footprint
 /// sweeps between them. `convex(a, b)` is called with the footprint at both rows when every outline is convex (the
-/// swept area is their hull), else `polygon(ring)` and `quad(ring)` for the footprint and each edge's sweep.
-template <class Convex, class Polygon, class Quad>
-void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Quad&& quad) {
+/// swept area is their hull), else `polygon(ring)` for the footprint and `piece(ring)`, convex, for each edge's sweep.
+template <class Convex, class Polygon, class Piece>
+void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece) {
     bool all_convex = true;
     for (const auto* shapes : {&brush.footprints.dragged, &brush.footprints.pressed})
         for (const Footprint& shape : *shapes) all_convex = all_convex && is_convex(shape.outline_mm);
@@ -51,9 +89,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
                 polygon(now);
                 for (Eigen::Index k = 0, n = now.rows(); !flipped && k < n; ++k) {
                     const Eigen::Index j = (k + 1) % n;
-                    Ring corners(4, 2);
-                    corners << before.row(k), before.row(j), now.row(j), now.row(k);
-                    quad(corners);
+                    swept_by_edge(before.row(k), before.row(j), now.row(j), now.row(k), piece);
                 }
             }
         }

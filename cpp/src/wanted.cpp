@@ -8,15 +8,16 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Hull of two discs as a ring: polygons of n sides (a multiple of 4) whose vertices across the segment lie on the circle,
-/// so that the flanks are exact, and whose others lie a little outside, so that the caps have the disc's area.
+/// Hull of two discs as a ring: polygons of n sides (a multiple of 4) whose vertices across the segment lie on the
+/// circle, so that the flanks are exact, and whose others lie a little outside, so that the caps have the disc's area.
 Ring hull_of_discs(const Eigen::Vector2d& a, double ra, const Eigen::Vector2d& b, double rb, int n) {
     const double grow = std::sqrt(2.0 * kPi / n / std::sin(2.0 * kPi / n));
     const double along = std::atan2(b.y() - a.y(), b.x() - a.x());
     Ring points(2 * n, 2);
     for (int i = 0; i < n; ++i) {
         const double angle = along + 2.0 * kPi * i / n;
-        const Eigen::Vector2d d = (i % (n / 2) == n / 4 ? 1.0 : grow) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        const Eigen::Vector2d d =
+            (i % (n / 2) == n / 4 ? 1.0 : grow) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
         points.row(i) = (a + ra * d).transpose();
         points.row(n + i) = (b + rb * d).transpose();
     }

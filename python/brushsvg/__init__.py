@@ -9,9 +9,9 @@ from __future__ import annotations
 import importlib
 import sys
 import types
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:  # what the table below resolves to, for editors and type checkers
+TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slow to import
+if TYPE_CHECKING:  # what the table below resolves to
     from ._core import (
         Brush,
         Marks,

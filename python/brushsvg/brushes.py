@@ -8,7 +8,7 @@ from pathlib import Path
 
 from . import _core
 from .errors import Error
-from .files import write_atomically
+from .files import read_bytes, write_files
 
 SHIPPED = Path(__file__).parent / "data" / "brushes"
 
@@ -21,15 +21,11 @@ def brush_names() -> list[str]:
 def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
     """The shipped brush of a name, or the brush in a .json file; read, checked, with the sha256 of its bytes.
 
-    Raises Error for an unknown name, a file that cannot be read and a brush that is refused; the last has
-    the key in `where` and the file in `file`.
+    Raises Error for an unknown name, a file that cannot be read and a brush that is refused; the latter two
+    have the file in `file`, the last the key in `where`.
     """
     path = _path_of(name_or_path)
-    try:
-        data = path.read_bytes()
-    except OSError as problem:
-        reason = (problem.strerror or str(problem)).lower()
-        raise Error(f"the brush file {path} cannot be read: {reason}") from None
+    data = read_bytes(path)
     try:
         brush = _core.read_brush(data)
         _core.check(brush)
@@ -46,7 +42,7 @@ def save_brush(brush: _core.Brush, path: str | os.PathLike) -> None:
     Raises Error when the brush is refused or the place cannot be written.
     """
     _core.check(brush)
-    write_atomically(path, _core.write_brush(brush))
+    write_files({path: _core.write_brush(brush)})
 
 
 def _path_of(name_or_path: str | os.PathLike) -> Path:

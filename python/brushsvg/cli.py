@@ -1,28 +1,67 @@
-"""The command line: parse and check what was typed. Nothing heavy is imported before that is done."""
+"""The command: runs what was typed; whatever happens becomes lines on stderr and an exit status.
+
+Nothing is imported before main runs, so that from its first moment on Ctrl-C leaves no traceback.
+"""
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
-
-from .console import RefusedError, say
-from .errors import Error
-
-DRAWINGS = (".svg", ".json")
-PROGRAMS = (".json", ".ngc")
-PREDICTIONS = (".png", ".svg", ".json")
-PREVIEWS = (".png", ".svg")
-REPORTS = (".txt", ".json")
 
 
 def main(argv: list[str] | None = None) -> int:
     """Run one command; the exit status: 0 done, 1 refused, 2 wrong usage, 130 interrupted."""
+    interrupts = _Interrupts()
+    try:
+        interrupts.count()
+        return _with_streams(argv, interrupts)
+    except KeyboardInterrupt:
+        pass
+    except Exception:
+        if not interrupts.seen:
+            raise
+    finally:
+        interrupts.count_no_more()
+    from .console import say
+
+    say("interrupted")
+    return 130
+
+
+class _Interrupts:
+    """Ctrl-C while a module is being imported can come out as another error: seen says that there was one."""
+
+    seen = 0
+    before = None
+
+    def count(self) -> None:
+        import signal
+        from contextlib import suppress
+
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            with suppress(ValueError):  # only the main thread may, and only it is interrupted
+                self.before = signal.signal(signal.SIGINT, self._raise)
+
+    def count_no_more(self) -> None:
+        if self.before is not None:
+            import signal
+
+            signal.signal(signal.SIGINT, self.before)
+
+    def _raise(self, *_) -> None:
+        self.seen += 1
+        raise KeyboardInterrupt
+
+
+def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    """Whatever letters a terminal knows, and whether or not anybody takes what is printed."""
+    from .console import say
+
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     try:
-        status = _run(argv)
+        status = _run(argv, interrupts)
         if sys.stdout is not None:
             sys.stdout.flush()
         return status
@@ -35,12 +74,14 @@ def main(argv: list[str] | None = None) -> int:
         return 1
 
 
-def _run(argv: list[str] | None) -> int:
+def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    from .console import RefusedError, say
+    from .usage import parse
+
     file = ""
     try:
-        args = _parser().parse_args(argv)
+        args = parse(argv)
         file = getattr(args, "input", "")
-        _check_operands(args)
         from . import commands
 
         getattr(commands, args.run)(args)
@@ -50,134 +91,11 @@ def _run(argv: list[str] | None) -> int:
         for line in refused.lines:
             say(*line)
         return 1
-    except KeyboardInterrupt:
-        say("interrupted")
-        return 130
     except OSError:
         raise
     except Exception as mistake:
+        if interrupts.seen:
+            raise
         say(file, f"this should not happen, please report it: {type(mistake).__name__} {mistake}")
         return 1
     return 0
-
-
-class _Parser(argparse.ArgumentParser):
-    def __init__(self, **settings):
-        # A prefix of a flag is no flag: it would change its meaning as flags are added.
-        super().__init__(allow_abbrev=False, **settings)
-
-    def error(self, message: str):
-        say(f"{message} (see {self.prog} --help)")
-        raise SystemExit(2)
-
-
-class _Version(argparse.Action):
-    def __call__(self, parser, *_):
-        from . import __version__
-
-        print(f"brushsvg {__version__}")
-        parser.exit()
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="brushsvg", description="Vector lettering to brush strokes that a robot can paint.")
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
-
-    convert = commands.add_parser("convert", help="make a plan or robot program of a drawing or plan")
-    _add_input(convert)
-    convert.add_argument("output", metavar="OUT", help="a plan (.json) or G-code for LinuxCNC (.ngc)")
-    _add_choices(convert)
-    convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
-    convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
-    convert.set_defaults(run="convert_file", parser=convert)
-
-    predict = commands.add_parser("predict", help="show what the brush will paint")
-    _add_input(predict)
-    predict.add_argument("output", metavar="OUT", help="a picture (.png .svg) or marks (.json)")
-    _add_choices(predict)
-    predict.set_defaults(run="predict_file", parser=predict)
-
-    report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
-    _add_input(report)
-    _add_choices(report)
-    report.add_argument("--json", action="store_true", help="as JSON")
-    report.set_defaults(run="report_file", parser=report)
-
-    brush = commands.add_parser("brush", help="look at brushes")
-    whats = brush.add_subparsers(metavar="WHAT", required=True)
-    whats.add_parser("list", help="name those that come along").set_defaults(run="brush_list")
-    show = whats.add_parser("show", help="laws and ranges of one")
-    show.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
-    show.set_defaults(run="brush_show")
-    check = whats.add_parser("check", help="say whether a brush file can be used")
-    check.add_argument("input", metavar="FILE", help="a brush.json")
-    check.set_defaults(run="brush_check")
-    return parser
-
-
-def _add_input(command: argparse.ArgumentParser) -> None:
-    command.add_argument("input", metavar="IN", help="a drawing (.svg) or plan (.json)")
-
-
-def _add_choices(command: argparse.ArgumentParser) -> None:
-    add = command.add_argument
-    add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
-    add("--sheet", metavar="WxH", type=_size, help="the sheet in mm or with units; default: the drawing's")
-    add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
-    add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
-    add("--tolerance", metavar="MM", type=_tolerance, help="of the painted middle line; default: 0.05")
-    add("--lenient", action="store_true", help="take what is sound of damaged geometry")
-
-
-def _size(text: str) -> tuple[float, float]:
-    from .units import size_mm
-
-    return _read(size_mm, text)
-
-
-def _lag(text: str) -> float:
-    return _length(text, 0.0, 1000.0)
-
-
-def _tolerance(text: str) -> float:
-    return _length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
-
-
-def _length(text: str, least: float, greatest: float) -> float:
-    from .units import length_mm
-
-    value = _read(length_mm, text)
-    if not least <= value <= greatest:
-        raise argparse.ArgumentTypeError(f"{value:g} mm is outside the range [{least:g}, {greatest:g}] mm")
-    return value
-
-
-def _read(reader, text: str):
-    try:
-        return reader(text)
-    except Error as problem:
-        raise argparse.ArgumentTypeError(str(problem)) from None
-
-
-def _check_operands(args) -> None:
-    """Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
-    if args.run.startswith("brush_"):
-        return
-    if args.lag is not None and args.compensation != "constant":
-        args.parser.error("--lag needs --compensation constant")
-    outputs = {
-        "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
-        "predict_file": lambda: [(args.output, PREDICTIONS)],
-        "report_file": lambda: [],
-    }[args.run]()
-    taken = [os.path.realpath(path) for path in (args.input, args.brush) if path]
-    for path, suffixes in [(args.input, DRAWINGS), *outputs]:
-        if path is None:
-            continue
-        if os.path.splitext(path)[1].lower() not in suffixes:
-            args.parser.error(f"{path} does not end in {' or '.join(suffixes)}")
-        if path is not args.input:
-            if os.path.realpath(path) in taken:
-                args.parser.error(f"{path} cannot be two files at once")
-            taken.append(os.path.realpath(path))

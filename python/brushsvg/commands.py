@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-import sys
 
 from . import convert
 from ._core import remarks
 from .brushes import brush_names, find_brush
 from .cell import load_cell
-from .console import RefusedError, about, clear_stage, say, stage, warn
+from .console import RefusedError, about, clear_stage, say, stage, tell, warn
 from .describe import one_line, page
-from .files import write_atomically
+from .files import write_files
 
 
 def convert_file(args) -> None:
@@ -22,16 +21,20 @@ def convert_file(args) -> None:
     warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
     with about(args.input):
         marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
-        problems = [(n.where, n.sentence) for n in damaged]
-        problems += convert.problems(work.plan, work.brush, marks, cell)
+        problems = convert.problems(work.plan, work.brush, marks, cell)
+        problems += [(n.where, n.sentence) for n in damaged]
+        if damaged:
+            where, sentence = problems[-1]
+            problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")
         if problems:
             raise RefusedError([(args.input, *problem) for problem in problems])
-        program = convert.encode(_suffix(args.output), work.plan, work.title, convert.notes(work), cell)
-        files = [(args.output, program)]
+        notes = convert.notes(work)
+        program = convert.encode(_suffix(args.output), work.plan, work.brush, work.title, notes, cell)
+        files = {args.output: program}
         if args.preview:
-            files.append((args.preview, convert.picture(_suffix(args.preview), work, marks)))
+            files[args.preview] = convert.picture(_suffix(args.preview), work, marks)
         if args.report:
-            files.append((args.report, convert.report_text(_suffix(args.report), work, marks, cell)))
+            files[args.report] = convert.report_text(_suffix(args.report), work, marks, cell)
     _write(files)
 
 
@@ -40,15 +43,14 @@ def predict_file(args) -> None:
     work, marks, _ = _look(args, outlines=_suffix(args.output) != ".png")
     with about(args.input):
         picture = convert.picture(_suffix(args.output), work, marks)
-    _write([(args.output, picture)])
+    _write({args.output: picture})
 
 
 def report_file(args) -> None:
     work, marks, warnings = _look(args, outlines=True)
     with about(args.input):
         text = convert.report_text(".json" if args.json else ".txt", work, marks, load_cell(), warnings)
-    clear_stage()
-    sys.stdout.write(text)
+    tell(text)
 
 
 def _look(args, outlines: bool):
@@ -85,7 +87,7 @@ def _suffix(path: str | None) -> str:
 
 
 def _check_places(*paths: str | None) -> None:
-    """Before any work is done, and so that a refusal of one output leaves none of the others behind."""
+    """Whether the outputs can be written, as far as that can be said before any work is done."""
     for path in filter(None, paths):
         folder = os.path.dirname(os.path.realpath(path))
         reason = None
@@ -101,9 +103,8 @@ def _check_places(*paths: str | None) -> None:
 
 def _write(files) -> None:
     stage("writing")
-    for path, data in files:
-        with about(path):
-            write_atomically(path, data)
+    with about(""):  # the error names the file
+        write_files(files)
     clear_stage()
 
 
@@ -112,12 +113,12 @@ def brush_list(args) -> None:
     width = max(map(len, names))
     for name in names:
         with about(name):
-            print(f"{name.ljust(width)}  {one_line(find_brush(name))}")
+            tell(f"{name.ljust(width)}  {one_line(find_brush(name))}\n")
 
 
 def brush_show(args) -> None:
     with about(args.input):
-        print(page(find_brush(args.input)))
+        tell(page(find_brush(args.input)) + "\n")
 
 
 def brush_check(args) -> None:
@@ -125,4 +126,4 @@ def brush_check(args) -> None:
         brush = find_brush(args.input)
         odd = remarks(brush)
     warn(args.input, odd)
-    print(f"{args.input}: brush {brush.name} can be used")
+    tell(f"{args.input}: brush {brush.name} can be used\n")

@@ -22,7 +22,7 @@ def about(file: str):
     try:
         yield
     except Error as problem:
-        raise RefusedError([(getattr(problem, "file", file), problem.where, str(problem))]) from None
+        raise RefusedError([(problem.file or file, problem.where, str(problem))]) from None
 
 
 def say(*parts: str) -> None:
@@ -31,6 +31,14 @@ def say(*parts: str) -> None:
         text = ": ".join(part for part in ("brushsvg", *parts) if part)
         clear_stage()
         sys.stderr.write("".join(letter if letter.isprintable() else " " for letter in text) + "\n")
+
+
+def tell(text: str) -> None:
+    """What was asked for, on stdout."""
+    if sys.stdout is None:
+        raise RefusedError([("standard output", "", "it is closed")])
+    clear_stage()
+    sys.stdout.write(text)
 
 
 def warn(file: str, warnings) -> None:

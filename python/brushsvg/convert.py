@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +13,10 @@ from .brushes import find_brush
 from .cell import Cell, load_cell
 from .design import Notice
 from .errors import Error
-from .files import write_atomically
+from .files import read_bytes, write_files
 from .importers import read_drawing
-from .posts.gcode import gcode
-from .program import broken_limits, duration_s, program
+from .posts import POSTS
+from .program import beyond_edges, broken_limits, duration_s, program
 from .strokes import strokes as strokes_of
 
 DEFAULT_BRUSH = "round-6"
@@ -86,9 +86,7 @@ def _misses(strokes, misses, tolerance_mm: float) -> list[Notice]:
 
 def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
     try:
-        text = Path(path).read_bytes().decode("utf-8")
-    except OSError as problem:
-        raise Error(f"the file cannot be read: {(problem.strerror or str(problem)).lower()}") from None
+        text = read_bytes(path).decode("utf-8")
     except UnicodeDecodeError:
         raise Error("the file is not a plan: it is not text in UTF-8") from None
     plan = _core.read_plan(text)
@@ -99,6 +97,31 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
     elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
         notices.append(Notice("brush_sha256", f"the plan was made with another file of brush {brush.name}"))
     return Work("", brush, plan, None, (), options, tuple(notices))
+
+
+def best_constant(work: Work, step_mm: float = 0.25) -> Work:
+    """A drawing's work with the one lag for all strokes whose marks overlap most with it, to compare with.
+
+    Lags from 0 to the brush's greatest are tried, step_mm apart, and compared by pixels. The best one is in
+    options.lag_mm; notices stay those of the work.
+    """
+    window = (0.0, 0.0, *work.plan.sheet_mm)
+    px_per_mm = min(
+        4.0, 4000.0 / max(work.plan.sheet_mm)
+    )  # overlaps to 2e-4, in a twentieth of the rings' time
+    wanted = _core.coverage(report.wanted_rings(work.strokes), window, px_per_mm)
+    best, most = work, -1.0
+    greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
+    for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
+        options = replace(work.options, compensation="constant", lag_mm=lag_mm)
+        done = _core.compensate(
+            work.strokes, work.brush, work.plan.sheet_mm, "constant", options.tolerance_mm, lag_mm
+        )
+        painted = _core.coverage(_core.simulate(done.plan, work.brush), work.brush, window, px_per_mm)
+        overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
+        if overlap > most:
+            best, most = replace(work, plan=done.plan, misses=tuple(done.misses), options=options), overlap
+    return best
 
 
 def predict(work: Work, outlines: bool = True, stage=lambda text: None):
@@ -115,50 +138,50 @@ def predict(work: Work, outlines: bool = True, stage=lambda text: None):
 
 def problems(plan, brush, marks, cell: Cell) -> list[tuple[str, str]]:
     """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
-    found = broken_limits(plan, cell)
-    limit = brush.max_speed_mm_s
-    found += [
-        (
-            a_pass.stroke,
-            f"speed {a_pass.speed_mm_s:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s "
-            f"of brush {brush.name}",
-        )
-        for a_pass in plan.passes
-        if a_pass.speed_mm_s > limit
-    ]
-    return found + off_sheet(marks, brush, plan.sheet_mm)
+    return broken_limits(plan, brush, cell) + off_sheet(marks, brush, plan.sheet_mm)
 
 
 def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
     """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
     found = []
     for trace in marks.passes:
-        left, bottom, right, top = _core.painted_bounds(trace, brush)
-        if not np.isfinite([left, bottom, right, top]).all():
+        bounds_mm = _core.painted_bounds(trace, brush)
+        if not np.isfinite(bounds_mm).all():
             continue  # nothing touches the paper
-        width, height = sheet_mm
-        beyond_mm = {"left": -left, "right": right - width, "lower": -bottom, "upper": top - height}
         found += [
             (trace.stroke, f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet")
-            for side, beyond in beyond_mm.items()
+            for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
             if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
         ]
     return found
 
 
-def encode(suffix: str, plan, title: str, notes=(), cell: Cell | None = None) -> bytes:
-    """The plan as the bytes of a .json or .ngc file. Error where a limit of the cell is broken."""
+def encode(suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None) -> bytes:
+    """The plan as the bytes of a plan.json or of a program in the cell's language, by the file's extension.
+
+    Error for any other extension, and for a program where a limit of brush or cell is broken.
+    """
     if suffix == ".json":
         return _core.write_plan(plan).encode()
-    if suffix != ".ngc":
-        raise Error(f"there is no robot program with the extension {suffix!r}: it is one of .json, .ngc")
+    cell = cell or load_cell()
+    post = POSTS.get(cell.language)
+    if post is None:
+        known = ", ".join(POSTS)
+        raise Error(
+            f"language {cell.language!r} of cell {cell.name} is not known; known: {known}", where="language"
+        )
+    if suffix != post.extension:
+        raise Error(
+            f"the extension {suffix!r} is neither .json, for a plan, nor {post.extension}, for {post.title}, "
+            f"which cell {cell.name} speaks"
+        )
     header = (
         f"title: {title or 'untitled'}",
         f"brush: {plan.brush}, {len(plan.passes)} strokes",
         *notes,
         "frame: origin at the lower left corner of the sheet, mm; z 0: the brush just touches",
     )
-    return gcode(program(plan, cell or load_cell(), header)).encode("ascii")
+    return post.write(program(plan, brush, cell, header)).encode("ascii")
 
 
 def notes(work: Work) -> tuple[str, ...]:
@@ -178,7 +201,7 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     cell = cell or load_cell()
     for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell):
         raise Error(sentence, where=where)
-    write_atomically(path, encode(Path(path).suffix.lower(), plan, title, cell=cell))
+    write_files({path: encode(Path(path).suffix.lower(), plan, brush, title, cell=cell)})
 
 
 def picture(suffix: str, work: Work, marks) -> bytes:
@@ -205,7 +228,7 @@ def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None) -> st
         tolerance_mm=work.options.tolerance_mm if drawn else None,
         strokes=rows,
         total=total,
-        time_s=duration_s(work.plan, cell),
+        time_s=duration_s(work.plan, work.brush, cell),
         warnings=tuple(known),
     )
     return report.to_json(result) if suffix == ".json" else report.to_text(result)

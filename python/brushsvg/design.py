@@ -11,7 +11,7 @@ import numpy as np
 class Notice:
     """A warning about one element.
 
-    damaged: the geometry itself is broken and was drawn up to the error; convert refuses it unless lenient.
+    damaged: the geometry itself is broken and was read up to the error; convert refuses it unless lenient.
     """
 
     where: str

@@ -9,6 +9,7 @@ class Error(ValueError):
     sentence: what is wrong, with the number and the admissible range; str(error) is this sentence.
     where: the element, stroke or key it concerns, "" if none.
     value, range: the offending number and (least, greatest), None where there are none.
+    file: the file it is about, None where only the caller knows.
     """
 
     def __init__(
@@ -17,9 +18,13 @@ class Error(ValueError):
         where: str = "",
         value: float | None = None,
         range: tuple[float, float] | None = None,
+        file: str | None = None,
     ):
         super().__init__(sentence)
         self.sentence = sentence
         self.where = where
         self.value = value
         self.range = range
+        self.file = file
+        for name in filter(None, (file, where)):
+            self.add_note(f"in {name}")  # for whoever meets it as a traceback

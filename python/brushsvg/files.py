@@ -1,42 +1,81 @@
-"""Writing files so that nobody ever finds half of one."""
+"""Files: read with a refusal in one sentence, written so that nobody finds half of one or some of several."""
+
+from __future__ import annotations
 
 import os
+import stat
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from .errors import Error
 
 
-def write_atomically(path: str | os.PathLike, data: bytes | str) -> None:
-    """Put data (text as UTF-8) at path: written beside it, flushed, then renamed over it.
-
-    Either the whole file is there or path is as it was before. Raises Error when the place cannot be written.
-    """
-    path = Path(path)
-    if isinstance(data, str):
-        data = data.encode("utf-8")
-    target = Path(os.path.realpath(path))  # a link stays a link
-    beside = None
+def read_bytes(path: str | os.PathLike) -> bytes:
+    """What a file holds. Error, with the path in `file`, when it cannot be read."""
     try:
-        if os.path.exists(target) and not os.path.isfile(target):
-            target.write_bytes(data)  # a device or pipe must not be renamed over; a folder refuses
-            return
-        if os.path.exists(target) and not os.access(target, os.W_OK):
-            raise PermissionError(13, "permission denied")
-        handle, beside = tempfile.mkstemp(prefix=f".{target.name[:80]}.", suffix=".part", dir=target.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(beside, target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask())
-        os.replace(beside, target)
-        beside = None
+        return Path(path).read_bytes()
+    except FileNotFoundError:
+        sentence = "there is no such file"
+    except IsADirectoryError:
+        sentence = "this is a directory, not a file"
+    except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
+        sentence = f"the file cannot be read: {reason(problem)}"
+    raise Error(sentence, file=os.fspath(path))
+
+
+def write_files(files: Mapping[str | os.PathLike, bytes | str]) -> None:
+    """Put data (text as UTF-8) at each path, at all of them or at none: written beside them, then renamed.
+
+    Error, with the path in `file`, when a place cannot be written; every path is then as it was before. The
+    one gap: a rename that fails after others were made, as where a file is a mount point of its own.
+    Devices and pipes are written through, once all the rest lies ready.
+    """
+    path: str | os.PathLike = ""
+    targets = {path: os.path.realpath(path) for path in files}  # a link stays a link
+    beside: dict[str | os.PathLike, str] = {}
+    through = []
+    try:
+        for path, target in targets.items():
+            mode = _mode(target)
+            if mode is not None and not stat.S_ISREG(mode):
+                through.append(path)
+                continue
+            if mode is not None and not os.access(target, os.W_OK):
+                raise PermissionError(13, "permission denied")
+            folder, name = os.path.split(target)
+            handle, beside[path] = tempfile.mkstemp(prefix=f".{name[:80]}.", suffix=".part", dir=folder)
+            with os.fdopen(handle, "wb") as file:
+                file.write(_encoded(files[path]))
+                file.flush()
+                os.fsync(file.fileno())
+            os.chmod(beside[path], 0o666 & ~_umask() if mode is None else mode & 0o777)
+        for path in through:  # must not be renamed over; a folder refuses
+            Path(targets[path]).write_bytes(_encoded(files[path]))
+        for path in list(beside):
+            os.replace(beside[path], targets[path])
+            del beside[path]
     except OSError as problem:
-        reason = (problem.strerror or str(problem)).lower()
-        raise Error(f"the file {path} cannot be written: {reason}") from None
+        raise Error(f"the file cannot be written: {reason(problem)}", file=os.fspath(path)) from None
     finally:
-        if beside is not None:
-            Path(beside).unlink(missing_ok=True)
+        for left in beside.values():
+            Path(left).unlink(missing_ok=True)
+
+
+def reason(problem: Exception) -> str:
+    """What the system says of a file, as the end of a sentence."""
+    return (getattr(problem, "strerror", None) or str(problem)).lower()
+
+
+def _mode(path: str) -> int | None:
+    try:
+        return os.stat(path).st_mode
+    except FileNotFoundError:
+        return None
+
+
+def _encoded(data: bytes | str) -> bytes:
+    return data.encode("utf-8") if isinstance(data, str) else data
 
 
 def _umask() -> int:

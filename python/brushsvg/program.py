@@ -44,28 +44,33 @@ class Program:
     decimals: int
 
 
-def program(plan, cell: Cell, header: tuple[str, ...] = ()) -> Program:
-    """Moves for every pass of the plan, in order. Error, naming stroke and range, where a limit is broken."""
-    for where, sentence in broken_limits(plan, cell):
+def program(plan, brush, cell: Cell, header: tuple[str, ...] = ()) -> Program:
+    """Moves for every pass of the plan, in order. Error, naming stroke and range, where a limit is broken.
+
+    brush: asked for nothing but its name and how fast it may go.
+    """
+    for where, sentence in broken_limits(plan, brush, cell):
         raise Error(sentence, where=where)
-    sections = tuple(Section(a_pass.stroke, _moves(a_pass, cell)) for a_pass in plan.passes)
+    sections = tuple(Section(a_pass.stroke, _moves(a_pass, brush, cell)) for a_pass in plan.passes)
     return Program(header, sections, cell.safe_height_mm, cell.path_tolerance_mm, cell.decimals)
 
 
-def duration_s(plan, cell: Cell) -> float:
+def duration_s(plan, brush, cell: Cell) -> float:
     """Time for the whole plan at the speeds asked for, acceleration left out; limits are not looked at."""
     total_s = 0.0
     above = None
-    for move in (move for a_pass in plan.passes for move in _moves(a_pass, cell)):
+    for move in (move for a_pass in plan.passes for move in _moves(a_pass, brush, cell)):
         path = move.points_mm if above is None else np.vstack([above, move.points_mm])
         total_s += float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) / move.speed_mm_s
         above = move.points_mm[-1]
     return total_s
 
 
-def broken_limits(plan, cell: Cell) -> list[tuple[str, str]]:
-    """(stroke, sentence) for each limit of the cell that the plan breaks; empty when the robot may run it."""
+def broken_limits(plan, brush, cell: Cell) -> list[tuple[str, str]]:
+    """(stroke, sentence) for each limit that the plan breaks; empty when the robot may run it."""
     problems = [] if plan.passes else [("", "there is nothing to paint")]
+    limits = (brush.max_speed_mm_s, f"brush {brush.name}"), (cell.max_paint_mm_s, f"cell {cell.name}")
+    limit, whose = min(limits)
     for a_pass in plan.passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         sentences = []
@@ -75,11 +80,9 @@ def broken_limits(plan, cell: Cell) -> list[tuple[str, str]]:
             sentences = ["a pose is not a finite number"]
         else:
             sentences = _heights(poses, cell) + _workspace(poses, plan.sheet_mm, cell)
-        speed, limit = a_pass.speed_mm_s, cell.max_paint_mm_s
+        speed = a_pass.speed_mm_s
         if not 0 < speed <= limit:
-            sentences.append(
-                f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of cell {cell.name}"
-            )
+            sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
         problems += [(a_pass.stroke, sentence) for sentence in sentences]
     return problems
 
@@ -96,21 +99,23 @@ def _heights(poses: np.ndarray, cell: Cell) -> list[str]:
 
 def _workspace(poses: np.ndarray, sheet_mm, cell: Cell) -> list[str]:
     margin = cell.workspace_margin_mm
-    beyond_mm = {
-        "left": -margin - poses[:, 0].min(),
-        "right": poses[:, 0].max() - sheet_mm[0] - margin,
-        "lower": -margin - poses[:, 1].min(),
-        "upper": poses[:, 1].max() - sheet_mm[1] - margin,
-    }
+    bounds_mm = (*poses[:, :2].min(axis=0), *poses[:, :2].max(axis=0))
     return [
-        f"the TCP goes {beyond:.2f} mm beyond the {side} edge of the workspace, "
+        f"the TCP goes {beyond - margin:.2f} mm beyond the {side} edge of the workspace, "
         f"which is the sheet and {margin:.1f} mm around it"
-        for side, beyond in beyond_mm.items()
-        if beyond > 1e-6
+        for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
+        if beyond - margin > 1e-6
     ]
 
 
-def _moves(a_pass, cell: Cell) -> tuple[Move, ...]:
+def beyond_edges(bounds_mm, sheet_mm) -> dict[str, float]:
+    """How far (left, bottom, right, top) reaches beyond each edge of the sheet [mm]; negative inside."""
+    left, bottom, right, top = bounds_mm
+    width, height = sheet_mm
+    return {"left": -left, "right": right - width, "lower": -bottom, "upper": top - height}
+
+
+def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
     poses = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if len(poses) == 0:
         return ()
@@ -121,9 +126,11 @@ def _moves(a_pass, cell: Cell) -> tuple[Move, ...]:
     start, end = poses[0], poses[-1]
     # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
     press_mm_s = min(cell.press_mm_s, a_pass.speed_mm_s)
+    # In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit.
+    approach_mm_s = min(cell.approach_mm_s, brush.max_speed_mm_s)
     moves = (
         Move("travel", over(start, cell.safe_height_mm), cell.travel_mm_s),
-        Move("approach", over(start, cell.clearance_mm), cell.approach_mm_s),
+        Move("approach", over(start, cell.clearance_mm), approach_mm_s),
         Move("land", poses[:1], press_mm_s),
         Move("paint", poses[1:], a_pass.speed_mm_s),
         Move("lift", over(end, cell.clearance_mm), press_mm_s),

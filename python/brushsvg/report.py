@@ -46,6 +46,11 @@ class Report:
     warnings: tuple[tuple[str, str], ...] = ()
 
 
+def wanted_rings(strokes) -> list[np.ndarray]:
+    """Outline of everything that was drawn."""
+    return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
+
+
 def measure(
     plan, marks, brush, strokes=None, tolerance_mm: float = 0.05
 ) -> tuple[tuple[Figures, ...], Figures]:
@@ -210,11 +215,7 @@ def to_text(report: Report) -> str:
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
     ]
-    widths = [max(len(cell) for cell in (name, *cells)) for name, cells in columns]
-    table = []
-    for name, *values in zip(*((name, *cells) for name, cells in columns), strict=True):
-        padded = [value.rjust(width) for value, width in zip(values, widths[1:], strict=True)]
-        table.append("  ".join([name.ljust(widths[0]), *padded]))
+    table = _table(columns)
     rule = "-" * len(table[0])
     how = f", compensation {report.compensation}" if report.compensation else ""
     how += f", tolerance {report.tolerance_mm:g} mm" if report.tolerance_mm is not None else ""
@@ -234,6 +235,30 @@ def to_text(report: Report) -> str:
         lines += ["", f"Warnings: {len(report.warnings)}"]
         lines += ["  " + ": ".join(filter(None, warning)) for warning in report.warnings]
     return "\n".join([*lines, ""])
+
+
+def comparison_text(rows: list[tuple[str, Figures]]) -> str:
+    """A table of several ways to paint the same drawing: (how, its figures in all)."""
+    table = _table(
+        [
+            ("compensation", [how for how, _ in rows]),
+            ("overlap", [_figure(total.overlap, 3) for _, total in rows]),
+            ("centre mean", [_figure(total.centre_mean_mm, 3) for _, total in rows]),
+            ("largest", [_figure(total.centre_largest_mm, 3) for _, total in rows]),
+        ]
+    )
+    heading = "Compensations compared; distances of the widest point from the middle line in mm:"
+    return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+
+
+def _table(columns: list[tuple[str, list[str]]]) -> list[str]:
+    """Lines of a table, the names first; the first column is flush left, the others flush right."""
+    widths = [max(len(cell) for cell in (name, *cells)) for name, cells in columns]
+    lines = []
+    for name, *values in zip(*((name, *cells) for name, cells in columns), strict=True):
+        padded = [value.rjust(width) for value, width in zip(values, widths[1:], strict=True)]
+        lines.append("  ".join([name.ljust(widths[0]), *padded]))
+    return lines
 
 
 def _figure(value, decimals: int) -> str:

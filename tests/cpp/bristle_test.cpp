@@ -23,7 +23,9 @@ TEST_CASE("the deflection solves (e^(1-z) w'')'' = e^(1-z)") {
     for (auto end : {SlidingEnd::third_derivative, SlidingEnd::shear_free}) {
         const auto c = bristle_coefficients(end);
         const auto moment = [&](double z) {
-            const double h = 1e-3, w2 = (bristle_deflection(c, z + h) - 2 * bristle_deflection(c, z) + bristle_deflection(c, z - h)) / (h * h);
+            const double h = 1e-3, w2 = (bristle_deflection(c, z + h) - 2 * bristle_deflection(c, z) +
+                                         bristle_deflection(c, z - h)) /
+                                        (h * h);
             return std::exp(1.0 - z) * w2;
         };
         for (double z : {0.2, 0.5, 0.8}) {

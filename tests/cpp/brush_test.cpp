@@ -64,7 +64,8 @@ TEST_CASE("laws and outlines must agree to half a millimetre, and shapes must be
 
 TEST_CASE("width to depth and back, and the refusal names the reachable range") {
     const Brush brush = shipped("round-6");
-    for (double h : {0.1, 0.42, 2.0, 4.2}) CHECK(brush.half_width(brush.depth_for_half_width(h, "")) == doctest::Approx(h));
+    for (double h : {0.1, 0.42, 2.0, 4.2})
+        CHECK(brush.half_width(brush.depth_for_half_width(h, "")) == doctest::Approx(h));
     try {
         brush.depth_for_half_width(5.0, "p1");
         FAIL("a width out of reach was accepted");

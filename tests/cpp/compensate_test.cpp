@@ -161,7 +161,8 @@ TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest 
             const double turn = 2.0 * unit(random) - 1.0, length = 20 + 20 * unit(random);
             const V a(std::cos(heading), std::sin(heading)), b(std::cos(heading + turn), std::sin(heading + turn));
             const V q = p + length * 0.5 * (a + b);
-            c.row(i) << p.transpose(), (p + length / 3 * a).transpose(), (q - length / 3 * b).transpose(), q.transpose();
+            c.row(i) << p.transpose(), (p + length / 3 * a).transpose(), (q - length / 3 * b).transpose(),
+                q.transpose();
             p = q;
             heading += turn;
         }

@@ -21,7 +21,9 @@ Marks marks_of(const Brush& brush, double tolerance_mm) {
     return simulate(plan, brush, tolerance_mm);
 }
 
-double painted_mm2(const Coverage& c, double px_per_mm) { return double(c.cast<double>().sum()) / (px_per_mm * px_per_mm); }
+double painted_mm2(const Coverage& c, double px_per_mm) {
+    return double(c.cast<double>().sum()) / (px_per_mm * px_per_mm);
+}
 
 /// A crescent that opens towards the TCP; convexity cannot be assumed of it.
 Brush crescent_brush() {

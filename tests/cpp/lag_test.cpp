@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-LagLaw<double> law_of(std::vector<double> coefficients, double hi = 10.0) { return make_law({{0.0, hi, coefficients}}); }
+LagLaw<double> law_of(std::vector<double> coefficients, double hi = 10.0) {
+    return make_law({{0.0, hi, coefficients}});
+}
 
 LagState<double> taut(const V& tcp, double lag, double theta) {
     LagState<double> s;
@@ -53,7 +55,15 @@ struct NumTraits<Dual> : NumTraits<double> {
     using Real = Dual;
     using NonInteger = Dual;
     using Nested = Dual;
-    enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 2, AddCost = 2, MulCost = 3 };
+    enum {
+        IsComplex = 0,
+        IsInteger = 0,
+        IsSigned = 1,
+        RequireInitialization = 1,
+        ReadCost = 2,
+        AddCost = 2,
+        MulCost = 3
+    };
 };
 }  // namespace Eigen
 
@@ -79,14 +89,17 @@ TEST_CASE("depth 2 to 8 over 20 mm with the article's quartic") {
     const auto law = law_of({3.1, 0.86, 0.31, -0.05, 0.0021});
     CHECK(std::abs(lag_exponent(law.pieces[0], 2.0, 8.0, 20.0) - 2.138103176) < 1e-9);
     // article (7) alone: the loose rule would step in, since cos(1.2) < dr/ds
-    const auto state = within_phase(law.pieces[0], Move<double>(V(0, 0), V(20, 0), 2.0, 8.0), taut(V(0, 0), law.at(2.0), 1.2), 0.0, 1.0);
+    const auto state = within_phase(law.pieces[0], Move<double>(V(0, 0), V(20, 0), 2.0, 8.0),
+                                    taut(V(0, 0), law.at(2.0), 1.2), 0.0, 1.0);
     CHECK(std::abs(std::atan2(state.heading.y(), state.heading.x()) - 0.160941370) < 1e-8);
 }
 
 TEST_CASE("the quadrature's nodes are chosen by the nearest root: fine against many splits") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> depth(0.0, 10.0);
-    for (const auto& c : {std::vector<double>{3.1, 0.86, 0.31, -0.05, 0.0021}, {0.05, 0.9}, {1.0, -0.3, 0.0226},
+    for (const auto& c : {std::vector<double>{3.1, 0.86, 0.31, -0.05, 0.0021},
+                          {0.05, 0.9},
+                          {1.0, -0.3, 0.0226},
                           {0.6, 0.0, 0.0, 0.4, 0.02, 0.001}}) {
         const auto law = law_of(c);
         for (int k = 0; k < 200; ++k) {
@@ -222,7 +235,8 @@ TEST_CASE("dual numbers carry derivatives through drags and events") {
         using T = decltype(scalar);
         using W = Vec2<T>;
         LagState<T> s = touch_down<T>(W(T(0.0), T(0.0)));
-        const W q[] = {W(T(0.0), T(0.0)), W(T(12.0), T(0.0)), W(T(20.0), T(3.0)), W(T(4.0), T(5.0)), W(T(-20.0), T(-3.0))};
+        const W q[] = {W(T(0.0), T(0.0)), W(T(12.0), T(0.0)), W(T(20.0), T(3.0)), W(T(4.0), T(5.0)),
+                       W(T(-20.0), T(-3.0))};
         const T d[] = {T(0.0), T(3.0), depth, depth, T(2.0)};
         for (int i = 0; i < 4; ++i) advance(law_, Move<T>(q[i], q[i + 1], d[i], d[i + 1]), s);
         return s;

@@ -15,7 +15,8 @@ TEST_CASE("a floor takes over where the polynomial falls below it, and the piece
     REQUIRE(parts.size() == 2);
     CHECK(parts[0].coefficients == std::vector<double>{0.0, 0.126});
     const double joint = parts[0].hi;
-    CHECK(std::abs(-2.35 + 2.75 * joint - 0.42 * joint * joint + 0.024 * joint * joint * joint - 0.126 * joint) < 1e-12);
+    CHECK(std::abs(-2.35 + 2.75 * joint - 0.42 * joint * joint + 0.024 * joint * joint * joint - 0.126 * joint) <
+          1e-12);
     for (double d = 0.0; d <= 10.0; d += 0.1) {
         const auto& part = d < joint ? parts[0] : parts[1];
         double y = 0.0;

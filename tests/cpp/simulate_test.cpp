@@ -14,7 +14,8 @@ Pass pass_of(const std::vector<std::array<double, 3>>& poses) {
     Pass pass;
     pass.stroke = "s";
     pass.poses_mm.resize(Eigen::Index(poses.size()), 3);
-    for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) pass.poses_mm.row(i) << poses[i][0], poses[i][1], poses[i][2];
+    for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i)
+        pass.poses_mm.row(i) << poses[i][0], poses[i][1], poses[i][2];
     return pass;
 }
 
@@ -22,7 +23,8 @@ Pass pass_of(const std::vector<std::array<double, 3>>& poses) {
 
 TEST_CASE("rows are parallel, ascend, and run from the first pose to the last") {
     const Brush brush = shipped("round-6");
-    const PassMarks m = simulate(pass_of({{0, 0, 0}, {8, 0, -4}, {40, 0, -4}, {40, 30, -4}, {10, 5, -2}, {10, 5, 0}}), brush, 0.01);
+    const PassMarks m =
+        simulate(pass_of({{0, 0, 0}, {8, 0, -4}, {40, 0, -4}, {40, 30, -4}, {10, 5, -2}, {10, 5, 0}}), brush, 0.01);
     const std::size_t n = m.pose.size();
     CHECK(m.heading_rad.size() == n);
     CHECK(m.depth_mm.size() == n);
@@ -48,7 +50,8 @@ TEST_CASE("a pass that begins or ends below the surface is set down and lifted o
     const Brush brush = shipped("round-6");
     const PassMarks with = simulate(pass_of({{0, 0, 0}, {0, 0, -4}, {30, 0, -4}, {30, 0, 0}}), brush);
     const PassMarks without = simulate(pass_of({{0, 0, -4}, {30, 0, -4}}), brush);
-    CHECK((with.contact_mm.row(with.contact_mm.rows() - 1) - without.contact_mm.row(without.contact_mm.rows() - 1)).norm() < 1e-12);
+    CHECK((with.contact_mm.row(with.contact_mm.rows() - 1) - without.contact_mm.row(without.contact_mm.rows() - 1))
+              .norm() < 1e-12);
     CHECK(without.depth_mm.front() == 0.0);
     CHECK(without.depth_mm.back() == 0.0);
     CHECK(without.pose.back() == 1.0);
@@ -56,7 +59,8 @@ TEST_CASE("a pass that begins or ends below the surface is set down and lifted o
 
 TEST_CASE("moves are split where z crosses 0") {
     const Brush brush = shipped("round-6");
-    const PassMarks m = simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}), brush);
+    const PassMarks m =
+        simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}), brush);
     int touching = 0;
     for (std::size_t i = 0; i < m.pose.size(); ++i) {
         if (m.depth_mm[i] == 0.0) ++touching;
@@ -74,7 +78,8 @@ TEST_CASE("too deep or not finite is refused with the pose, the depth and the ra
         simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush);
         FAIL("accepted");
     } catch (const Error& e) {
-        CHECK(std::string(e.what()) == "depth 12.000 mm of pose 1 is outside the range [0.0, 10.0] mm of brush round-6");
+        CHECK(std::string(e.what()) ==
+              "depth 12.000 mm of pose 1 is outside the range [0.0, 10.0] mm of brush round-6");
         CHECK(e.where() == "s");
     }
     CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);

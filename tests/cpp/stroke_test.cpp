@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "brushsvg/wanted.hpp"
+#include "brushsvg/error.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -61,21 +61,6 @@ TEST_CASE("flatten keeps to its tolerance and carries length and width") {
         CHECK(line(line.rows() - 1, 3) == doctest::Approx(2.0));
         CHECK(line(line.rows() - 1, 2) == doctest::Approx(arc_length(s.middle_mm, 0, 0, 1)));
     }
-}
-
-TEST_CASE("the wanted mark of a straight stroke is a stadium, of a dot a disc, of a closed ring a ring") {
-    Stroke s;
-    s.id = "s";
-    s.middle_mm = polyline({V(0, 0), V(30, 0)});
-    s.half_width = {{0.0, 2.0}};
-    CHECK(area(wanted_outline(s)) == doctest::Approx(30 * 4 + kPi * 4).epsilon(2e-4));
-    s.middle_mm = polyline({V(3, 3), V(3, 3)});
-    CHECK(area(wanted_outline(s)) == doctest::Approx(kPi * 4).epsilon(2e-4));
-    s.middle_mm = polyline({V(0, 0), V(30, 0), V(30, 30), V(0, 30), V(0, 0)});
-    const Rings ring = wanted_outline(s);
-    REQUIRE(ring.size() == 2);
-    CHECK(area({ring[0]}) > 0.0);
-    CHECK(area({ring[1]}) == doctest::Approx(-26.0 * 26.0).epsilon(1e-4));
 }
 
 TEST_CASE("a stroke without line or width, or with a bad number, is refused") {

@@ -84,7 +84,7 @@ WIDEST = oracle.Law([-2.35, 2.75, -0.42, 0.024], 0.0, 0.126)
 
 
 def section_6_footprints():
-    """[(depth, outline (65, 2))] at depths 1 to 10, theory section 6."""
+    """[(depth, outline (65, 2))] at depths 1 to 10, the shipped round brush's recipe."""
     return [(float(d), oracle.section_6_outline(float(WIDEST(d)), 0.42 * d)) for d in range(1, 11)]
 
 

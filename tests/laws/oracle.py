@@ -6,6 +6,8 @@ Lengths in mm, angles in radians, paper frame. A law is any callable depth -> va
 `.kinks()`, see Law.
 """
 
+import itertools
+
 import numpy as np
 import shapely
 from scipy.integrate import solve_ivp
@@ -101,7 +103,7 @@ class Reference:
                 t for t in ((k - d0) / (d1 - d0) for k in [0.0, *self.law.kinks()]) if 1e-12 < t < 1 - 1e-12
             ]
         cuts = sorted(cuts)
-        for t0, t1 in zip(cuts[:-1], cuts[1:], strict=True):
+        for t0, t1 in itertools.pairwise(cuts):
             if self._depth(i, 0.5 * (t0 + t1)) < 0:
                 self.contact, self.is_taut = None, False
                 self.phases.append((i + t0, i + t1, "lifted", None))
@@ -376,10 +378,12 @@ class Middle:
         return out
 
 
-def subdivide(poses, parts):
-    """The same pass (n, 3) with every move cut into equal parts."""
+def subdivide(poses, parts, step=np.inf):
+    """The same pass (n, 3) with every move cut into at least `parts` equal parts no longer than `step` mm."""
     poses = np.asarray(poses, float)
-    at = np.arange((len(poses) - 1) * parts + 1) / parts
+    length = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+    cuts = [np.arange(n) / n for n in np.maximum(parts, np.ceil(length / step).astype(int))]
+    at = np.concatenate([k + c for k, c in enumerate(cuts)] + [[len(poses) - 1.0]])
     return np.stack([np.interp(at, np.arange(len(poses)), poses[:, k]) for k in range(3)], axis=1)
 
 

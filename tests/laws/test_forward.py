@@ -80,11 +80,10 @@ def test_arc_is_its_differential_equation(lag, curvature):
 @pytest.mark.parametrize("name", LAGS)
 def test_simulator_against_solve_ivp_with_events(name, lifts):
     rng = np.random.default_rng([5, lifts, *name.encode()])
-    brush = make_brush(LAGS[name])
+    brush, pulls = make_brush(LAGS[name]), []
     for _ in range(8):
         poses = random_poses(rng, 9, lifts=lifts)
         rows, reference = rows_of(poses, brush, 0.2), oracle.Reference(poses, law(name))
-        pulls = []
         for k, pose in enumerate(rows.pose):
             contact, heading, taut, pull = reference.at(pose)
             if rows.depth_mm[k] < 0 or np.isnan(contact[0]):
@@ -99,9 +98,9 @@ def test_simulator_against_solve_ivp_with_events(name, lifts):
                 pulls.append(pull)
             if np.min(np.abs(pose - reference.starts)) > 1e-6:
                 assert rows.taut[k] == taut, pose
-        assert np.min(pulls) < 0.9  # the plans do go loose
         for event in reference.events():
             assert np.min(np.abs(rows.pose - event)) < 1e-6, "no row at an event"
+    assert np.min(pulls) < 0.5  # the plans do go loose
 
 
 @pytest.mark.parametrize("lifts", [False, True])
@@ -141,16 +140,19 @@ def test_the_two_slow_simulators_and_the_reference_agree():
 
 def test_pressing_fast_loosens_inside_a_move():
     """Settled at depth 2, then pressed at 1 mm per mm: the patch rests, then is dragged again."""
-    poses = np.array([[0, 0, -2], [60, 0, -2], [67, 0, -9], [110, 0, -9.0]])
+    poses = np.array([[0, 0, 0], [9, 0, -2], [60, 0, -2], [67, 0, -9], [110, 0, -9], [110, 0, 0.0]])
     rows, reference = rows_of(poses, make_brush()), oracle.Reference(poses, ROUND)
-    inside = (rows.pose > 1) & (rows.pose < 2)
+    inside = (rows.pose > 2) & (rows.pose < 3)
     assert (~rows.taut[inside]).any()
     assert len(reference.events()) >= 3
     for k in range(len(rows.pose)):
         assert rows.contact_mm[k] == pytest.approx(reference.at(rows.pose[k])[0], abs=1e-9)
-    gentle = np.array([[0, 0, -2], [60, 0, -2], [67, 0, -2 - 0.55 * 7], [110, 0, -2 - 0.55 * 7]])
-    rows = rows_of(gentle, make_brush())
-    assert rows.taut[(rows.pose > 1) & (rows.pose < 2)].all()
+    poses[3, 2] = poses[4, 2] = -2 - 0.6 * 7
+    rows = rows_of(poses, make_brush())
+    assert rows.taut[(rows.pose > 2) & (rows.pose < 3)].all()
+    poses[3, 2] = poses[4, 2] = -2 - 0.65 * 7
+    rows = rows_of(poses, make_brush())
+    assert not rows.taut[(rows.pose > 2) & (rows.pose < 3)].all()
 
 
 def test_brush_tightens_and_loosens_again_within_one_move():
@@ -171,13 +173,14 @@ def test_passing_over_the_patch_keeps_the_last_heading():
     poses = np.array([[0, 0, -4.0], [20, 0, -4], [10, 0, -4], [10, 0, -4], [-20, 0, -4]])
     lag = float(ROUND(4.0))
     rows = rows_of(poses, make_brush())
-    over = np.array([[0, 0, -4.0], [20, 0, -4], [20 - lag, 0, -4]])  # stops right over the patch
-    last = rows_of(over, make_brush())
-    assert last.contact_mm[-1] == pytest.approx([20 - lag, 0], abs=1e-9)
-    if np.hypot(*(last.tcp_mm[-1] - last.contact_mm[-1])) < 1e-12:
-        assert abs(last.heading_rad[-1]) < 1e-6
-    assert rows.contact_mm[-1] == pytest.approx([-20 + lag, 0], abs=1e-9)
-    assert abs(rows.heading_rad[-1]) == pytest.approx(np.pi, abs=1e-12)
+    end = at_poses(rows)[-1]
+    assert rows.contact_mm[end] == pytest.approx([-20 + lag, 0], abs=1e-9)
+    assert abs(rows.heading_rad[end]) == pytest.approx(np.pi, abs=1e-12)
+    stops = rows_of(np.array([[0, 0, -4.0], [20, 0, -4], [20 - lag, 0, -4]]), make_brush())
+    end = at_poses(stops)[-1]
+    assert stops.contact_mm[end] == pytest.approx([20 - lag, 0], abs=1e-9)
+    if np.array_equal(stops.tcp_mm[end], stops.contact_mm[end]):
+        assert stops.heading_rad[end] == 0
 
 
 def test_heading_before_the_first_motion():
@@ -233,7 +236,7 @@ def test_rows_are_as_close_as_the_tolerance_asks(tolerance):
             ]
 
 
-# Check values of theory.md ------------------------------------------------------------------------
+# Check values ------------------------------------------------------------------------
 
 FIGURE_3 = np.array(
     [

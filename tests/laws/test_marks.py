@@ -1,4 +1,4 @@
-"""Outline rings and coverage against a dense shapely union of footprints, and what marks.json promises of rows."""
+"""Outline rings and coverage against a dense shapely union of footprints, and what rows promise."""
 
 import itertools
 
@@ -14,7 +14,7 @@ LEAST = 2.0  # the crescent is measured from here on; below it is scaled
 
 
 def crescent(depth, slim=1.0):
-    """Concave in front: two horns at the widest section, the hollow between them half as deep as the patch."""
+    """Concave in front: two horns at the widest section, the hollow between half as deep as the patch."""
     long, half = 0.75 * depth, 0.42 * depth * slim
     t = np.linspace(0, 1, 8)
     outer = np.stack([long * t**2, -half * np.sin(np.pi / 2 * t)], axis=1)
@@ -48,7 +48,16 @@ PASSES = {
     "small circle": [*([4 * np.cos(a), 4 * np.sin(a), -6] for a in np.linspace(0, 7.0, 90)), [4, 4, 0]],
     "two dabs": [[0, 0, 0], [1, 0, -3], [1, 0, 2], [12, 1, 2], [12.5, 2, -4], [12, 4, 0]],
     "straight down": [[3, 4, 0], [3, 4, -6], [3, 4, 0]],
-    "crossing": [[0, 0, 0], [4, 0, -4], [30, 0, -4], [30, 0, 2], [15, 14, 2], [15, 10, -3], [14, -18, -5], [14, -20, 0]],
+    "crossing": [
+        [0, 0, 0],
+        [4, 0, -4],
+        [30, 0, -4],
+        [30, 0, 2],
+        [15, 14, 2],
+        [15, 10, -3],
+        [14, -18, -5],
+        [14, -20, 0],
+    ],
 }
 
 
@@ -59,10 +68,11 @@ def brush_of(shape, lag="round"):
 
 def dense_union(poses, shape, lag="round", close_mm=2e-4):
     """Region painted, from the event-driven reference: outlines sampled until half way between two of them
-    no vertex is farther than `close_mm` from the line between, and none moves far. Where the TCP passes exactly over the patch
-    the heading jumps and nothing is swept."""
+    no vertex is farther than `close_mm` from the line between, and none moves far. Where the TCP passes
+    exactly over the patch the heading jumps and nothing is swept."""
     dragged, pressed = BRUSHES[shape]
-    poses = np.array(poses, float)
+    poses = np.array(poses, float)  # set down and lifted on the spot where they do not begin and end at z = 0
+    poses = np.vstack([poses[:1] * [1, 1, 0], poses, poses[-1:] * [1, 1, 0]])
     reference = oracle.Reference(poses, law(lag))
     moves = np.arange(len(poses))
     known = [h for h in (reference.at(p)[1] for p in np.linspace(0, moves[-1], 2000)) if not np.isnan(h)]
@@ -83,7 +93,11 @@ def dense_union(poses, shape, lag="round", close_mm=2e-4):
         middle = 0.5 * (p0 + p1)
         between = outline(middle)
         if a is None or b is None or between is None:
-            return [None, b] if a is None and b is None or p1 - p0 < 1e-9 else halves(p0, middle, p1, a, between, b)
+            return (
+                [None, b]
+                if (a is None and b is None) or p1 - p0 < 1e-9
+                else halves(p0, middle, p1, a, between, b)
+            )
         if np.max(np.abs(between - 0.5 * (a + b))) < close_mm and np.max(np.abs(a - b)) < 1e3 * close_mm:
             return [between, b]
         return [None, b] if p1 - p0 < 1e-9 else halves(p0, middle, p1, a, between, b)
@@ -122,7 +136,7 @@ def marks_of(poses, brush, tolerance_mm=0.02):
 @pytest.mark.parametrize("name", PASSES)
 def test_outline_area_against_a_dense_union(name, shape):
     wanted = dense_union(PASSES[name], shape)
-    marks = marks_of(PASSES[name], brush_of(shape), 0.005)
+    marks = marks_of(PASSES[name], brush_of(shape), 5e-4)
     rings = marks.passes[0].outline_mm
     region, signed = region_of(rings)
     assert all(len(r) >= 3 and not np.array_equal(r[0], r[-1]) for r in rings)
@@ -138,12 +152,14 @@ def holes_of(region):
     return [h for part in shapely.get_parts(region) for h in part.interiors]
 
 
-@pytest.mark.parametrize("shape", ["round, pressed apart", "crescent"])
-def test_outline_area_at_the_default_tolerance(shape):
-    for name in ("straight", "corner", "circle"):
+@pytest.mark.parametrize("shape", BRUSHES)
+def test_outline_at_the_default_tolerance(shape):
+    """Chords of rows 0.02 mm off the curve: no edge is farther off than that."""
+    for name in PASSES:
         wanted = dense_union(PASSES[name], shape)
-        marks = marks_of(PASSES[name], brush_of(shape))
-        assert core.area(marks.outline_mm) == pytest.approx(wanted.area, rel=2e-4), name
+        region, _ = region_of(marks_of(PASSES[name], brush_of(shape)).outline_mm)
+        assert region.difference(wanted.buffer(0.021)).area < 1e-6, name
+        assert wanted.difference(region.buffer(0.021)).area < 1e-6, name
 
 
 def test_outline_area_on_random_passes():
@@ -152,7 +168,7 @@ def test_outline_area_on_random_passes():
         for _ in range(3):
             poses = random_poses(rng, 6)
             wanted = dense_union(poses, shape)
-            marks = marks_of(poses, brush_of(shape), 0.005)
+            marks = marks_of(poses, brush_of(shape), 5e-4)
             assert core.area(marks.outline_mm) == pytest.approx(wanted.area, rel=2e-4)
 
 
@@ -160,7 +176,7 @@ def test_outline_area_on_random_passes():
 @pytest.mark.parametrize("name", ["straight", "corner", "circle", "two dabs", "crossing"])
 def test_coverage_against_rings_and_union(name, shape):
     brush, wanted = brush_of(shape), dense_union(PASSES[name], shape)
-    marks = marks_of(PASSES[name], brush, 0.005)
+    marks = marks_of(PASSES[name], brush, 1e-3)
     left, bottom, right, top = core.painted_bounds(marks.passes[0], brush)
     assert (left, bottom, right, top) == pytest.approx(wanted.bounds, abs=0.01)
     px = 20.0

@@ -3,11 +3,13 @@
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
 from brushsvg import commands
 from brushsvg.brushes import SHIPPED
 from brushsvg.cli import main
@@ -112,7 +114,7 @@ def test_flags_reach_the_plan(desk, capsys):
 
 REFUSED = {
     "no file": ("missing.svg", None, [], r"brushsvg: missing\.svg: .*no such file"),
-    "no plan file": ("missing.json", None, [], r"missing\.json: the file cannot be read: no such file"),
+    "no plan file": ("missing.json", None, [], r"brushsvg: missing\.json: there is no such file"),
     "not XML": ("x.svg", "moo", [], r"brushsvg: x\.svg: "),
     "empty drawing": ("x.svg", drawing(), [], r"brushsvg: x\.svg: .*nothing to paint"),
     "width out of reach": (
@@ -196,14 +198,35 @@ def test_whoever_only_looks_is_warned(desk, capsys):
     assert "line: speed 30.0" in out
 
 
+BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke-width="2"/>'
+
+
+def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
+    """Told once, at the end, and nothing claims that anything was painted."""
+    worse = BAD.replace('"bad"', '"worse" transform="turn(3)" stroke-dasharray="2" opacity=".5"')
+    off = BAD.replace('"bad" d="M30 40 L60 45 L nan 4"', '"off" d="M-3 30h20"')
+    (desk / "x.svg").write_text(drawing(LINE, worse, off))
+    status, _, err = run(capsys, "convert", "x.svg", "out.ngc")
+    assert status == 1
+    assert [line.split(": ")[2] for line in err] == ["worse", "worse", "off", "worse", "worse"]
+    hint = " (--lenient draws what is sound)"
+    assert err[-1] == (
+        "brushsvg: x.svg: worse: d is damaged at character 17: found 'nan 4'; read up to there" + hint
+    )
+    assert not any(hint in line for line in err[:-1])
+    assert not any(word in line for line in err for word in ("drawn", "painted", "ignored"))
+    (desk / "x.svg").write_text(drawing(off))
+    assert not any("--lenient" in line for line in run(capsys, "convert", "x.svg", "out.ngc")[2])
+
+
 def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
-    bad = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke-width="2"/>'
-    (desk / "x.svg").write_text(drawing(LINE, bad))
+    (desk / "x.svg").write_text(drawing(LINE, BAD))
     assert run(capsys, "convert", "x.svg", "out.ngc")[0] == 1
     for words in (("convert", "x.svg", "out.ngc", "--lenient"), ("predict", "x.svg", "out.png")):
         status, _, err = run(capsys, *words)
         assert (status, len(err)) == (0, 1)
         assert err[0].startswith("brushsvg: x.svg: bad: ")
+        assert "--lenient" not in err[0]
     assert "(warnings: 1, 1 of them damaged geometry)" in (desk / "out.ngc").read_text()
 
 
@@ -291,6 +314,27 @@ def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
         assert listing(desk) == before
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize("full", ["out.ngc", "p.png", "r.txt"])
+def test_several_outputs_are_written_all_or_none(desk, capsys, full):
+    outputs = ["out.ngc", "p.png", "r.txt"]
+    for name in outputs:
+        if name == full:
+            (desk / name).symlink_to("/dev/full")
+        else:
+            (desk / name).write_text("old")
+    before = sorted(os.listdir(desk))
+    status, _, err = run(
+        capsys, "convert", "a.svg", outputs[0], "--preview", outputs[1], "--report", outputs[2]
+    )
+    assert (status, err) == (
+        1,
+        [f"brushsvg: {full}: the file cannot be written: no space left on device"],
+    )
+    assert all((desk / name).read_text() == "old" for name in outputs if name != full)
+    assert sorted(os.listdir(desk)) == before
+
+
 def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
     say("a.svg", "id\nbrushsvg: done\x1b[2K\x9b31m\u202e", "")
     assert capsys.readouterr().err == "brushsvg: a.svg: id brushsvg: done [2K 31m \n"
@@ -358,9 +402,81 @@ def test_ctrl_c_and_mistakes_of_ours_leave_no_traceback(desk, capsys, monkeypatc
 
 def spawn(*words, **settings):
     """In a process of its own, with its output buffered as it is for users."""
-    code = "import sys; from brushsvg.cli import main; sys.exit(main())"
     env = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
-    return subprocess.run([sys.executable, "-c", code, *words], check=False, env=env, **settings)
+    return subprocess.run([sys.executable, "-m", "brushsvg", *words], check=False, env=env, **settings)
+
+
+def test_the_package_runs_as_a_module(desk):
+    done = spawn("convert", "a.svg", "b.svg", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr == b"brushsvg: b.svg does not end in .json or .ngc (see brushsvg convert --help)\n"
+    done = spawn("--version", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert re.fullmatch(rb"brushsvg \d+\.\d+\.\d+\n", done.stdout)
+
+
+@pytest.mark.parametrize(
+    "words", ["report a.svg", "brush list", "brush show rigid", "--version", "--help", "convert --help"]
+)
+def test_a_closed_stdout_is_said(desk, words):
+    done = spawn(*words.split(), preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (1, b"brushsvg: standard output: it is closed\n")
+
+
+def test_what_prints_nothing_needs_no_stdout(desk):
+    done = spawn("convert", "a.svg", "out.ngc", preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert (desk / "out.ngc").read_text().endswith("M2\n")
+
+
+# Ctrl-C comes while the module of the given name is being imported.
+STOPPED_AT = """
+import os, signal, sys
+from importlib.abc import MetaPathFinder
+class Stop(MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == {name!r}:
+            sys.meta_path.remove(self)
+            {how}
+sys.meta_path.insert(0, Stop())
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from brushsvg.cli import main
+sys.exit(main())
+"""
+STOP = "os.kill(os.getpid(), signal.SIGINT)"
+HIDDEN_STOP = f"""
+            try:
+                {STOP}
+            except KeyboardInterrupt:
+                raise ImportError("as a module in C would have it")
+"""
+
+
+@pytest.mark.parametrize("how", [STOP, HIDDEN_STOP], ids=["plain", "hidden"])
+@pytest.mark.parametrize(
+    "name",
+    ["brushsvg.console", "argparse", "brushsvg.usage", "brushsvg.commands", "numpy", "brushsvg._core", "cv2"],
+)
+def test_ctrl_c_during_start_up_leaves_no_traceback(desk, name, how):
+    code = STOPPED_AT.format(name=name, how=how)
+    words = ["convert", "a.svg", "out.ngc", "--preview", "out.png"]
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "brushsvg: interrupted\n")
+    assert not (desk / "out.ngc").exists()
+
+
+def test_ctrl_c_does_again_what_it_did_before(capsys):
+    def mine(*_):
+        pass
+
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        for handler in (signal.default_int_handler, mine):
+            signal.signal(signal.SIGINT, handler)
+            assert main(["brush", "list"]) == 0
+            assert signal.getsignal(signal.SIGINT) is handler
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_a_reader_who_leaves_early_is_no_error(desk):

@@ -1,35 +1,37 @@
-"""Files are whole or not there."""
+"""Files are whole or not there, and so are several."""
 
 import os
 import stat
+import traceback
 
 import pytest
+
 from brushsvg.errors import Error
-from brushsvg.files import write_atomically
+from brushsvg.files import read_bytes, write_files
 
 
 def test_text_and_bytes(tmp_path):
-    write_atomically(tmp_path / "a.txt", "\u00e9\n")
+    write_files({tmp_path / "a.txt": "\u00e9\n"})
     assert (tmp_path / "a.txt").read_bytes() == b"\xc3\xa9\n"
-    write_atomically(str(tmp_path / "a.txt"), b"\x00\r\n")
+    write_files({str(tmp_path / "a.txt"): b"\x00\r\n"})
     assert (tmp_path / "a.txt").read_bytes() == b"\x00\r\n"
     assert os.listdir(tmp_path) == ["a.txt"]
 
 
 def test_permissions_are_the_usual_ones_or_kept(tmp_path):
     (tmp_path / "usual").write_text("")
-    write_atomically(tmp_path / "new", "")
+    write_files({tmp_path / "new": ""})
     assert (tmp_path / "new").stat().st_mode == (tmp_path / "usual").stat().st_mode
     (tmp_path / "mine").write_text("")
     (tmp_path / "mine").chmod(0o640)
-    write_atomically(tmp_path / "mine", "2")
+    write_files({tmp_path / "mine": "2"})
     assert stat.S_IMODE((tmp_path / "mine").stat().st_mode) == 0o640
 
 
 def test_a_link_stays_a_link(tmp_path):
     (tmp_path / "target").write_text("old")
     (tmp_path / "link").symlink_to("target")
-    write_atomically(tmp_path / "link", "new")
+    write_files({tmp_path / "link": "new"})
     assert (tmp_path / "link").is_symlink()
     assert (tmp_path / "target").read_text() == "new"
 
@@ -38,23 +40,42 @@ def test_a_pipe_is_written_through(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    write_atomically(pipe, "through")
+    write_files({pipe: "through"})
     assert os.read(reader, 100) == b"through"
     os.close(reader)
     assert stat.S_ISFIFO(pipe.stat().st_mode)
 
 
-def test_places_that_cannot_be_written(tmp_path):
-    (tmp_path / "file").write_text("")
-    for path, reason in [
-        (tmp_path / "no" / "folder.txt", "no such file or directory"),
-        (tmp_path, "is a directory"),
-        (tmp_path / "file" / "below.txt", "not a directory"),
-        (tmp_path / ("n" * 300), "file name too long"),
-    ]:
-        with pytest.raises(Error, match=f"cannot be written: {reason}"):
-            write_atomically(path, "x")
-    assert os.listdir(tmp_path) == ["file"]
+def snapshot(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+PLACES = {
+    "no folder": ("no/folder.txt", "no such file or directory"),
+    "a folder": ("folder", "is a directory"),
+    "below a file": ("kept/below.txt", "not a directory"),
+    "a long name": ("n" * 300, "file name too long"),
+    "a full device": ("full", "no space left on device"),
+}
+
+
+@pytest.mark.parametrize("case", PLACES)
+@pytest.mark.parametrize("order", [1, -1])
+def test_one_place_that_cannot_be_written_leaves_all_as_they_were(tmp_path, case, order):
+    if case == "a full device" and not os.path.exists("/dev/full"):
+        pytest.skip("needs /dev/full")
+    (tmp_path / "kept").write_text("old")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "full").symlink_to("/dev/full")
+    before = snapshot(tmp_path)
+    name, reason = PLACES[case]
+    files = [(tmp_path / "kept", "changed"), (tmp_path / name, "x"), (tmp_path / "new", "y")]
+    with pytest.raises(Error) as refusal:
+        write_files(dict(files[::order]))
+    assert str(refusal.value) == f"the file cannot be written: {reason}"
+    assert refusal.value.file == str(tmp_path / name)
+    assert snapshot(tmp_path) == before
+    assert set(os.listdir(tmp_path)) == {"kept", "folder", "full"}
 
 
 def test_a_file_that_may_not_be_written_is_left_alone(tmp_path, monkeypatch):
@@ -63,19 +84,44 @@ def test_a_file_that_may_not_be_written_is_left_alone(tmp_path, monkeypatch):
     path.chmod(0o444)
     monkeypatch.setattr(os, "access", lambda *_: False)  # as for any user but root
     with pytest.raises(Error, match="permission denied"):
-        write_atomically(path, "new")
+        write_files({tmp_path / "new": "1", path: "2"})
     assert path.read_text() == "old"
+    assert os.listdir(tmp_path) == ["locked"]
 
 
-def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
-    path = tmp_path / "kept"
-    path.write_text("old")
+@pytest.mark.parametrize("stop", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_a_full_disk_or_ctrl_c_leaves_the_old_files(tmp_path, monkeypatch, stop):
+    paths = [tmp_path / "first", tmp_path / "second"]
+    for path in paths:
+        path.write_text("old")
+    flushed = []
 
-    def full(_):
-        raise OSError(28, "No space left on device")
+    def flush(file):
+        flushed.append(file)
+        if len(flushed) == 2:
+            raise stop
 
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(Error, match="kept cannot be written: no space left"):
-        write_atomically(path, "new")
-    assert path.read_text() == "old"
-    assert os.listdir(tmp_path) == ["kept"]
+    monkeypatch.setattr(os, "fsync", flush)
+    with pytest.raises((Error, KeyboardInterrupt)) as refusal:
+        write_files(dict.fromkeys(paths, "new"))
+    if isinstance(stop, OSError):
+        assert str(refusal.value) == "the file cannot be written: no space left on device"
+        assert refusal.value.file == str(paths[1])
+    assert [path.read_text() for path in paths] == ["old", "old"]
+    assert len(os.listdir(tmp_path)) == 2
+
+
+def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):
+    (tmp_path / "sound").write_bytes(b"1")
+    assert read_bytes(str(tmp_path / "sound")) == b"1"
+    for path, sentence in [
+        (tmp_path / "gone", "there is no such file"),
+        (tmp_path, "this is a directory, not a file"),
+        (tmp_path / "sound" / "below", "the file cannot be read: not a directory"),
+        (tmp_path / ("n" * 300), "the file cannot be read: file name too long"),
+        ("a\0b", "the file cannot be read: embedded null byte"),
+    ]:
+        with pytest.raises(Error) as refusal:
+            read_bytes(path)
+        assert (str(refusal.value), refusal.value.file) == (sentence, str(path))
+        assert f"in {path}" in "".join(traceback.format_exception(refusal.value)), "whoever meets a traceback"

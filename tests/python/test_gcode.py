@@ -6,19 +6,26 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
 from brushsvg.cell import load_cell
+from brushsvg.posts import POSTS
 from brushsvg.posts.gcode import LINE_LIMIT, gcode
 from brushsvg.program import program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
 
-def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0)):
+def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0):
     passes = [
         SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed)
         for stroke, poses, speed in passes
     ]
-    return gcode(program(SimpleNamespace(sheet_mm=sheet, passes=passes), load_cell(), header))
+    brush = SimpleNamespace(name="b", max_speed_mm_s=limit)
+    return gcode(program(SimpleNamespace(sheet_mm=sheet, passes=passes), brush, load_cell(), header))
+
+
+def feeds_in(text):
+    return [float(feed) for feed in re.findall(r" F([\d.]+)", text)]
 
 
 def code_lines(text):
@@ -53,9 +60,26 @@ def test_feed_is_in_mm_per_minute_and_follows_every_change():
         feed = float(found[1]) if found else feed
         if line.startswith("G1"):
             seen.setdefault(feed, []).append(line)
-    assert set(seen) == {30 * 60, 8 * 60, 20 * 60, 12.5 * 60}
+    assert set(seen) == {25 * 60, 8 * 60, 20 * 60, 12.5 * 60}
     assert any("X30.1235 Y20.9877 Z-3.2500" in line for line in seen[1200.0])
     assert all("Z0.0000" in line or "Z1.0000" in line for line in seen[480.0])
+
+
+@pytest.mark.parametrize("limit", [50.0, 25.0, 20.0, 7.0009, 2.0])
+def test_every_feed_is_under_the_brushs_limit(limit):
+    speed = min(limit, 20.0)
+    feeds = feeds_in(text_of(("s", TWO[0][1], speed), limit=limit))
+    assert max(feeds) <= 60 * limit
+    assert min(abs(feed - 60 * speed) for feed in feeds) < 0.1
+
+
+def test_the_slowest_stroke_still_moves():
+    assert feeds_in(text_of(("s", TWO[0][1], 1e-5)))[1:] == [0.1]
+
+
+def test_every_language_has_a_program_to_look_at():
+    for post in POSTS.values():
+        assert list(GOLDEN.parent.glob(f"*{post.extension}")), f"tests/golden has no {post.extension}"
 
 
 @pytest.mark.parametrize("tiny", [-2.77e-17, -4.9e-5, 1e-300, -0.0])

@@ -4,9 +4,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import brushsvg
 import numpy as np
 import pytest
+
+import brushsvg
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

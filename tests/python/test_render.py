@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 import cv2
 import numpy as np
 import pytest
+
 from brushsvg import Stroke, area, compensate, find_brush, marks_png, marks_svg, simulate, trace_outlines
 from brushsvg.render import Panel, panels_png
 

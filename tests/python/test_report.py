@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+
 from brushsvg import Stroke, compensate, find_brush, report, simulate, trace_outlines
 from brushsvg.report import Figures, Report, measure, to_json, to_text, width_error, widths_across
 

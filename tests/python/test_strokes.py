@@ -1,6 +1,7 @@
 import json
 
 import numpy as np
+
 from brushsvg.design import Design, Element, SubPath
 from brushsvg.importers.svg import read_svg
 from brushsvg.strokes import strokes
@@ -15,7 +16,7 @@ def named(*elements):
     return [stroke.id for stroke in result], notices
 
 
-def test_names_follow_the_contract():
+def test_names_are_the_elements():
     names, notices = named(("v", 1), ("", 1), ("i", 2), ("", 3))
     assert names == ["v", "stroke1", "i/1", "i/2", "stroke2/1", "stroke2/2", "stroke2/3"]
     assert notices == []

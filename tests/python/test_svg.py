@@ -6,6 +6,7 @@ import tracemalloc
 import numpy as np
 import pytest
 import svgpathtools
+
 from brushsvg.errors import Error
 from brushsvg.importers import read_drawing
 from brushsvg.importers.svg import read_svg
@@ -182,7 +183,7 @@ def test_arcs_at_the_edge_of_their_definition():
     assert len(in_user_units("M0 0A5 5 0 1 1 0 0L9 9").subpaths[0].cubics) == 1
 
 
-# Damage: drawn up to the error, which is named.
+# Damage: read up to the error, which is named.
 
 
 @pytest.mark.parametrize(
@@ -209,7 +210,7 @@ def test_arcs_at_the_edge_of_their_definition():
         ("M0 0L1 1A5 5 1e999 0 1 9 9", 1, 9, "A5 5 1e999 0 1 9..."),
     ],
 )
-def test_damaged_paths_are_drawn_up_to_the_error(d, cubics, character, found):
+def test_damaged_paths_are_read_up_to_the_error(d, cubics, character, found):
     design = read(f'<path id="bad" d="{d}"/>')
     (notice,) = design.notices
     assert notice.damaged
@@ -591,8 +592,8 @@ FIRST = '<path d="M0 0H5"/>'
         ('<g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>', "g", "mask is not read yet"),
         ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "opacity is not read yet"),
         ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "fully transparent"),
-        ('<path id="p" d="M0 0H5" stroke="url(#g)"/>', "p", "#g is not read yet: painted as #000000"),
-        ('<path id="p" d="M0 0H5" stroke="url(#g) red"/>', "p", "#g is not read yet: painted as #ff0000"),
+        ('<path id="p" d="M0 0H5" stroke="url(#g)"/>', "p", "#g is not read yet: it counts as #000000"),
+        ('<path id="p" d="M0 0H5" stroke="url(#g) red"/>', "p", "#g is not read yet: it counts as #ff0000"),
         ('<circle id="p" r="5" style="r:9"/>', "p", "r in style is not read yet"),
     ],
 )
@@ -754,7 +755,7 @@ def test_a_page_of_strokes_is_read_quickly():
 def test_files(tmp_path):
     drawing = f'<svg {NAMESPACES} {PAGE}><path d="M0 0H5"/></svg>'
     (tmp_path / "vincent.SVG").write_text(drawing)
-    assert read_drawing(tmp_path / "vincent.SVG").title == "vincent"
+    assert read_drawing(tmp_path / "vincent.SVG").title == "", "a path is no title"
     (tmp_path / "titled.svg").write_text(drawing.replace("<path", "<title> My\n word </title><path", 1))
     assert read_drawing(str(tmp_path / "titled.svg")).title == "My word"
     (tmp_path / "folder.svg").mkdir()

@@ -1,4 +1,5 @@
 import pytest
+
 from brushsvg.errors import Error
 from brushsvg.units import length_mm, length_px, size_mm
 

@@ -26,7 +26,7 @@ struct Brush {
     std::string sha256;           ///< of the file it was read from, or empty
     std::string extra = "{}";     ///< JSON object of unknown keys, written back as read
 
-    bool is_rigid() const;            ///< r identically 0: a pen; p = q, no loose rule
+    bool is_rigid() const;             ///< r identically 0: a pen; p = q, no loose rule
     bool width_follows_depth() const;  ///< false where half_width is constant over the depth range
 
     /// Depth [mm] that paints a half width [mm]. Error with the reachable range when there is none.

@@ -11,7 +11,7 @@ namespace brushsvg {
 /// A refusal in one full sentence. `where` names the element (a stroke id, a key of a file), `value` and
 /// `range` carry the offending number and what is allowed, where there are such.
 class Error : public std::runtime_error {
-   public:
+ public:
     explicit Error(const std::string& sentence, std::string where = "", std::optional<double> value = std::nullopt,
                    std::optional<std::array<double, 2>> range = std::nullopt)
         : std::runtime_error(sentence), where_(std::move(where)), value_(value), range_(range) {}
@@ -20,7 +20,7 @@ class Error : public std::runtime_error {
     const std::optional<double>& value() const { return value_; }
     const std::optional<std::array<double, 2>>& range() const { return range_; }
 
-   private:
+ private:
     std::string where_;
     std::optional<double> value_;
     std::optional<std::array<double, 2>> range_;

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
-namespace brushsvg {
+#include "brushsvg/ring.hpp"
 
-/// Points in the plane, one per row [mm].
-using Ring = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+namespace brushsvg {
 
 /// Contact patch outline measured at one depth: unclosed, counter-clockwise, first vertex the tip at (0, 0),
 /// axis +x towards the TCP.

@@ -23,8 +23,6 @@ auto value_of(const Jet& x) -> decltype(x.a) {
     return x.a;
 }
 
-inline constexpr int kMaxLawDegree = 8;
-
 /// A lever's length against depth on [lo, hi], a polynomial, with what the quadrature of its reciprocal and the
 /// search for events need to know of it.
 template <class T>
@@ -33,6 +31,7 @@ struct LawPiece {
     int degree = 0;
     std::array<T, kMaxLawDegree + 1> coefficients{};
     std::vector<std::complex<double>> roots;  ///< of the polynomial, all of them
+    double clear2 = 0.0;                      ///< squared distance of the nearest root from [lo, hi]
     double steepest = 0.0;                    ///< bound of |dr/dd| on [lo, hi]
     double most_curved = 0.0;                 ///< bound of |d2r/dd2| on [lo, hi]
 
@@ -69,7 +68,6 @@ struct LagLaw {
 
 /// Law from polynomial pieces; `sign` -1 turns a lever that points the other way.
 LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign = 1.0);
-
 
 /// Integral of ds / r over a straight move of `length` [mm] with depth linear along it: length * mean(1/r), the
 /// exponent of article (7). The rule, or a split of the move, is chosen by the distance of the nearest complex root of
@@ -148,8 +146,8 @@ template <class T>
 LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
                          const T& t);
 
-/// Carries the state over one move, phase by phase. `phase(law, move, start, begin, end)` is called for every event-free
-/// stretch with the state at its beginning; `start.taut` tells which rule holds in it.
+/// Carries the state over one move, phase by phase. `phase(law, move, start, begin, end)` is called for every
+/// event-free stretch with the state at its beginning; `start.taut` tells which rule holds in it.
 ///
 /// Taut: the lever drags the patch, which never slips sideways (article (4), (7)), until moving on would push it
 /// backwards: g = cos(psi) - dr/ds < 0. Loose: the patch rests and the heading points from it to the TCP (article 2.2),

@@ -22,19 +22,23 @@ struct Gauss<5> {
 };
 template <>
 struct Gauss<12> {
-    static constexpr double x[12] = {-0.9815606342467193, -0.9041172563704749, -0.7699026741943047,
-                                     -0.5873179542866175, -0.3678314989981802, -0.1252334085114689,
-                                     0.1252334085114689,  0.3678314989981802,  0.5873179542866175,
-                                     0.7699026741943047,  0.9041172563704749,  0.9815606342467193};
+    static constexpr double x[12] = {-0.9815606342467193, -0.9041172563704749, -0.7699026741943047, -0.5873179542866175,
+                                     -0.3678314989981802, -0.1252334085114689, 0.1252334085114689,  0.3678314989981802,
+                                     0.5873179542866175,  0.7699026741943047,  0.9041172563704749,  0.9815606342467193};
     static constexpr double w[12] = {0.0235876681932559, 0.0534696629976592, 0.0800391642716731, 0.1015837133615330,
                                      0.1167462682691774, 0.1245735229067014, 0.1245735229067014, 0.1167462682691774,
                                      0.1015837133615330, 0.0800391642716731, 0.0534696629976592, 0.0235876681932559};
 };
 
+/// Mean of 1/r over [middle - half, middle + half]; nodes in mirrored pairs share a division.
 template <int N, class T>
 T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
     T sum(0.0);
-    for (int i = 0; i < N; ++i) sum += T(Gauss<N>::w[i]) / law.at(middle + half * Gauss<N>::x[i]);
+    for (int i = 0; i < N / 2; ++i) {
+        const T step = half * Gauss<N>::x[i], a = law.at(middle + step), b = law.at(middle - step);
+        sum += Gauss<N>::w[i] * (a + b) / (a * b);
+    }
+    if (N % 2 == 1) sum += Gauss<N>::w[N / 2] / law.at(middle);
     return sum;
 }
 
@@ -66,6 +70,24 @@ double first_negative(double begin, double end, Lower&& lower, Value&& value) {
 /// Bernstein coefficients bound it on each half, so no pair of roots is overlooked.
 double first_positive(std::vector<double> polynomial);
 
+/// Carries a taut state from t = begin to t.
+template <class T>
+void drag(const LawPiece<T>& law, const Move<T>& move, const T& begin, const T& t, LagState<T>& state) {
+    using std::exp;
+    const T depth = move.depth(t);
+    if (move.length > T(0.0)) {
+        const T x = lag_exponent(law, move.depth(begin), depth, T(move.length * (t - begin)));
+        state.heading = drag_heading(state.heading, move.along, T(exp(-x)));
+    }
+    state.contact = move.tcp(t) - law.at(depth) * state.heading;  // article (5), (6)
+}
+
+/// psi shrinks while taut, so g >= cos(psi0) - max|dr/ds|: most moves need no search for events.
+template <class T>
+bool stays_taut(const LawPiece<T>& law, const Move<T>& move, double cosine0) {
+    return value_of(move.length) * cosine0 >= std::abs(value_of(move.depth_by)) * law.steepest;
+}
+
 template <class T>
 double cosine_after(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, double begin, double t) {
     const LagState<T> s = within_phase(law, move, start, T(begin), T(t));
@@ -78,10 +100,8 @@ double first_loosening(const LawPiece<T>& law, const Move<T>& move, const LagSta
                        double end) {
     const double length = value_of(move.length), depth_by = value_of(move.depth_by);
     const double cosine0 = value_of(start.heading.dot(move.along));
-    const double pull = std::abs(depth_by) * law.steepest;
-    // psi shrinks while taut, so g >= cos(psi0) - max|dr/ds|: most moves end here
-    if (length * cosine0 >= pull) return 2.0;
-    const double noise = 1e-13 * (length + pull);
+    if (stays_taut(law, move, cosine0)) return 2.0;
+    const double noise = 1e-13 * (length + std::abs(depth_by) * law.steepest);
     const auto g = [&](double t) {
         return length * cosine_after(law, move, start, begin, t) - depth_by * value_of(law.slope(move.depth(T(t))));
     };
@@ -118,13 +138,13 @@ template <class T>
 T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T& length, int splits_left) {
     if (law.degree == 0) return length / law.coefficients[0];
     const T half = 0.5 * (depth1 - depth0), middle = 0.5 * (depth0 + depth1);
-    const double h = value_of(half), m = value_of(middle);
+    const double h = value_of(half), m = value_of(middle), h2 = h * h;
+    if (law.clear2 > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
     double nearest = std::numeric_limits<double>::infinity();
     for (const auto& root : law.roots) {
         const double dx = root.real() - m, dy = root.imag();
         nearest = std::min(nearest, dx * dx + dy * dy);
     }
-    const double h2 = h * h;
     if (nearest > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
     if (nearest > 10.0 * 10.0 * h2) return length * detail::mean_reciprocal<5>(law, middle, half);
     if (nearest > 1.9 * 1.9 * h2 || splits_left == 0) return length * detail::mean_reciprocal<12>(law, middle, half);
@@ -169,20 +189,13 @@ T drag_arc(const T& psi0, const T& k, const T& r, const T& s) {
 template <class T>
 LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
                          const T& t) {
-    using std::exp;
     using std::sqrt;
     LagState<T> state = start;
-    const Vec2<T> tcp = move.tcp(t);
     if (start.taut) {
-        const T depth = move.depth(t);
-        if (move.length > T(0.0)) {
-            const T x = lag_exponent(law, move.depth(begin), depth, T(move.length * (t - begin)));
-            state.heading = drag_heading(start.heading, move.along, T(exp(-x)));
-        }
-        state.contact = tcp - law.at(depth) * state.heading;  // article (5), (6)
+        detail::drag(law, move, begin, t, state);
         return state;
     }
-    const Vec2<T> reach = tcp - start.contact;
+    const Vec2<T> reach = move.tcp(t) - start.contact;
     const T squared = reach.squaredNorm();
     if (squared > T(0.0)) {
         state.heading = reach / sqrt(squared);
@@ -287,7 +300,13 @@ void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state, Phas
     }
     const double d0 = value_of(move.depth_from), dd = value_of(move.depth_by);
     if (law.pieces.size() == 1) {
-        detail::advance_on_piece(law.pieces.front(), move, state, T(0.0), T(1.0), phase);
+        const LawPiece<T>& piece = law.pieces.front();
+        if (state.taut && detail::stays_taut(piece, move, value_of(state.heading.dot(move.along)))) {
+            phase(piece, move, state, T(0.0), T(1.0));
+            detail::drag(piece, move, T(0.0), T(1.0), state);
+        } else {
+            detail::advance_on_piece(piece, move, state, T(0.0), T(1.0), phase);
+        }
         return;
     }
     double begin = 0.0;

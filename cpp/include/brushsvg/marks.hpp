@@ -1,15 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "brushsvg/footprint.hpp"
+#include "brushsvg/ring.hpp"
 
 namespace brushsvg {
-
-/// Outer rings counter-clockwise, holes clockwise, unclosed [mm].
-using Rings = std::vector<Ring>;
 
 /// What the patch does during one pass. Rows are parallel. depth_mm < 0 marks rows where the brush is lifted.
 struct PassMarks {

@@ -10,6 +10,9 @@ namespace brushsvg {
 /// TCP poses, one per row: x, y, z [mm] in the paper frame; z = -depth while painting.
 using Poses = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// No table is larger: a coordinate beyond it is damage, and squares of it still add up.
+inline constexpr double kLargestMm = 1e6;
+
 /// One stroke's motion: straight moves between poses, depth linear along each.
 struct Pass {
     std::string stroke;  ///< id of the stroke it paints

@@ -33,6 +33,9 @@ struct Profile {
     }
 };
 
+/// Greatest degree of a law that is followed.
+inline constexpr int kMaxLawDegree = 8;
+
 /// A polynomial that holds on [lo, hi].
 struct PolynomialPiece {
     double lo, hi;

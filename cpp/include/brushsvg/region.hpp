@@ -1,8 +1,6 @@
 #pragma once
 
-#include <vector>
-
-#include "brushsvg/marks.hpp"
+#include "brushsvg/ring.hpp"
 
 namespace brushsvg {
 

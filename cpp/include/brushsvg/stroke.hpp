@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "brushsvg/marks.hpp"
+#include "brushsvg/ring.hpp"
 
 namespace brushsvg {
 

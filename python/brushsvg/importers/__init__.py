@@ -1,34 +1,34 @@
-"""Drawings in, Design out: one format per file."""
+"""Drawings in, Design out: one format per file. READERS names them all."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from pathlib import Path
+import os
+from typing import TYPE_CHECKING
 
-from ..design import Design
 from ..errors import Error
-from .svg import read_svg
+from ..files import read_bytes
 
-READERS = {".svg": read_svg}  # by extension; each takes (bytes, sheet_mm or None)
+if TYPE_CHECKING:
+    from ..design import Design
 
 
-def read_drawing(path: str | Path, sheet_mm: tuple[float, float] | None = None) -> Design:
+def _svg(data: bytes, sheet_mm: tuple[float, float] | None) -> Design:
+    from .svg import read_svg  # loaded for who reads, not for who only asks what can be read
+
+    return read_svg(data, sheet_mm)
+
+
+READERS = {".svg": _svg}  # by extension; each takes (bytes, sheet_mm or None)
+
+
+def read_drawing(path: str | os.PathLike, sheet_mm: tuple[float, float] | None = None) -> Design:
     """The drawing in a file, its format chosen by extension; sheet_mm (w, h) replaces the drawing's own.
 
     Error if the file cannot be read, is of no known format, or has nothing to paint.
     """
-    path = Path(path)
-    reader = READERS.get(path.suffix.lower())
+    extension = os.path.splitext(path)[1]
+    reader = READERS.get(extension.lower())
     if reader is None:
         known = ", ".join(READERS)
-        raise Error(f"{path.suffix or 'no extension'} is not a drawing format that is read; known: {known}")
-    if not path.exists():
-        raise Error("there is no such file")
-    if path.is_dir():
-        raise Error("this is a directory, not a drawing")
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise Error(f"the file cannot be read: {error.strerror}") from None
-    design = reader(data, sheet_mm)
-    return design if design.title else replace(design, title=path.stem)
+        raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
+    return reader(read_bytes(path), sheet_mm)

@@ -131,7 +131,7 @@ class _Walk:
         try:
             matrix = multiply(matrix, parse_transform(text))
         except Error as error:
-            self._note(node, f"{error}; the transform is ignored", damaged=True)
+            self._note(node, f"{error}; it counts as none", damaged=True)
         if not all(map(math.isfinite, matrix)):
             self._note(node, "its transforms lead beyond all numbers: left out", damaged=True)
             return None
@@ -176,9 +176,11 @@ class _Walk:
         if not line.subpaths:
             return
         if properties["fill"] not in ("", "none"):
-            self._note(node, "its fill is not read yet: only its stroke is painted")
+            self._note(node, "its fill is not read yet, only its stroke is")
         if greatest > _UNEVEN * least:
-            self._note(node, f"its transforms stretch it unevenly: painted {width_mm:.4g} mm wide, the mean")
+            self._note(
+                node, f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
+            )
         for sentence in ([gradient] if gradient else []) + unread(properties, own, tag in _WITH_MARKERS):
             self._note(node, sentence)
         self.elements.append(Element(_one_line(node.get("id", "")), line.subpaths, width_mm, colour, layer))
@@ -188,7 +190,7 @@ class _Walk:
         if name is None:
             return "its geometry lies beyond 1e6 mm: left out"
         found = svg_shapes.snippet(node.get(name), place)
-        return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; drawn up to there"
+        return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; read up to there"
 
     def _unread(self, node: ET.Element, tag: str, parent: dict[str, str]) -> None:
         if tag == "style":

@@ -46,7 +46,7 @@ class _Lengths:
 
 
 def _damage_at(name: str, text: str, error: int, commands: list[Command]) -> DamageError:
-    found = f"found {snippet(text, error)}; drawn up to there"
+    found = f"found {snippet(text, error)}; read up to there"
     return DamageError(f"{name} is damaged at character {error + 1}: {found}", commands)
 
 

@@ -70,7 +70,7 @@ def cascade(
         elif name in ("stroke", "fill", "color"):
             colour = _paint(value)
             if colour is None:
-                problems.append((f"{name} {value[:40]!r} is not a colour: ignored", False))
+                problems.append((f"{name} {value[:40]!r} is not a colour: it counts as not given", False))
             elif name != "color" or colour not in ("none", "currentcolor"):
                 inherited[name] = colour
         elif name == "stroke-width":
@@ -79,7 +79,7 @@ def cascade(
                     raise Error(f"{value[:24]!r} is negative")
                 inherited[name] = value
             except Error as error:
-                problems.append((f"stroke-width: {error}; ignored", True))
+                problems.append((f"stroke-width: {error}; it counts as not given", True))
         else:
             inherited[name] = keyword if name == "visibility" else value
     return inherited, own, problems
@@ -115,7 +115,7 @@ def stroke_colour(properties: dict[str, str]) -> tuple[str, str | None]:
     if found := _URL.match(stroke):
         fallback = parse_colour(found[2]) if found[2].strip() else None
         colour = fallback if fallback not in (None, "none") else "#000000"
-        return colour, f"the stroke's paint {found[1][:40]} is not read yet: painted as {colour}"
+        return colour, f"the stroke's paint {found[1][:40]} is not read yet: it counts as {colour}"
     return stroke, None
 
 
@@ -132,11 +132,11 @@ def unread(properties: dict[str, str], own: dict[str, str], has_vertices: bool) 
     sentences = []
     dashes = properties["stroke-dasharray"].replace(",", " ").split()
     if dashes != ["none"] and not all(map(is_zero, dashes)):
-        sentences.append("dashes are not read yet: painted as one solid line")
+        sentences.append("dashes are not read yet: the line counts as solid")
     if has_vertices and any(properties[f"marker-{place}"] != "none" for place in ("start", "mid", "end")):
         sentences.append("markers are not read yet: left out")
     if properties["stroke-opacity"] not in ("1", "1.0", "100%"):
-        sentences.append("stroke-opacity is not read yet: painted in full")
+        sentences.append("stroke-opacity is not read yet: it counts as 1")
     if own["vector-effect"] != "none":
         sentences.append(f"vector-effect {own['vector-effect'][:40]} is not read yet: left out")
     return sentences
@@ -145,7 +145,7 @@ def unread(properties: dict[str, str], own: dict[str, str], has_vertices: bool) 
 def unread_own(own: dict[str, str]) -> list[str]:
     """Sentences about properties of an element or group that apply to all it holds and are not read yet."""
     effects = [name for name in ("clip-path", "mask", "filter") if own[name] != "none"]
-    sentences = [f"{name} is not read yet: painted without" for name in effects]
+    sentences = [f"{name} is not read yet: it counts as none" for name in effects]
     if own["opacity"] not in ("1", "1.0", "100%"):
-        sentences.append("opacity is not read yet: painted in full")
+        sentences.append("opacity is not read yet: it counts as 1")
     return sentences

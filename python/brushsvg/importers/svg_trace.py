@@ -11,7 +11,7 @@ import numpy as np
 from ..design import SubPath
 from .svg_path import Command
 
-LARGEST_MM = 1e6  # house contract: a number beyond it is damage, no table is that large
+LARGEST_MM = 1e6  # a number beyond it is damage: no table is that large
 _TOLERANCE_MM = 1e-4  # of arcs: far below a brush hair, yet two cubics a quarter serve up to 23 mm radius
 _NOTHING_MM = 1e-6  # segments below it have a direction made of rounding errors
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import unicodedata
 
 import numpy as np
@@ -25,7 +26,7 @@ def gcode(program: Program) -> str:
         for move in section.moves:
             points = _lines(move, decimals)
             if move.meaning not in SAFE_MEANINGS:
-                wanted = f" F{_number(60.0 * move.speed_mm_s, 1)}"
+                wanted = f" F{_feed_mm_min(move.speed_mm_s):.1f}"
                 points[0] += wanted if wanted != feed else ""
                 feed = wanted
             lines += points
@@ -37,6 +38,11 @@ def _lines(move: Move, decimals: int) -> list[str]:
     pattern = f"{word} X%.{decimals}f Y%.{decimals}f Z%.{decimals}f"
     rounded = np.round(move.points_mm, decimals) + 0.0  # -0.0 + 0.0 is 0.0: no minus sign before a zero
     return ("\n".join([pattern] * len(rounded)) % tuple(rounded.ravel().tolist())).split("\n")
+
+
+def _feed_mm_min(speed_mm_s: float) -> float:
+    """Rounded down, so that a limit is kept; but not to 0, at which the machine would stand still."""
+    return max(math.floor(600.0 * speed_mm_s + 1e-6), 1) / 10
 
 
 def _number(value: float, decimals: int) -> str:

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "brushsvg/brush.hpp"
+#include "brushsvg/plan.hpp"
+#include "brushsvg/stroke.hpp"
+
+namespace brushsvg {
+
+/// Distance of the widest point from the middle line, found by simulating the plan: from the first taut row to the
+/// last, so that the landing and a slack lift do not count and a turn in place does.
+struct Miss {
+    double largest_mm = 0.0;
+    double mean_mm = 0.0;
+    bool within_tolerance = false;
+    bool has_turn_in_place = false;  ///< set by compensate(): a corner too sharp for the lever, where the miss stays
+};
+
+Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm);
+
+}  // namespace brushsvg

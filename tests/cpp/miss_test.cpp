@@ -1,0 +1,36 @@
+#include "brushsvg/miss.hpp"
+
+#include <doctest/doctest.h>
+
+#include "round6.hpp"
+
+using namespace brushsvg;
+using V = Eigen::Vector2d;
+
+TEST_CASE("a pass beside its stroke misses by what lies between them") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "s";
+    stroke.middle_mm = polyline({V(10, 20), V(110, 20)});  // beyond where the lift drags the brush
+    stroke.half_width = {{0.0, brush.half_width(4.0)}};
+    Pass pass;
+    pass.poses_mm.resize(4, 3);
+    pass.poses_mm << 20, 20.3, 0, 20, 20.3, -4, 85, 20.3, -4, 85, 20.3, 0;
+    const Miss miss = miss_of(pass, stroke, brush, 0.05);
+    CHECK(miss.largest_mm == doctest::Approx(0.3).epsilon(1e-6));
+    CHECK(miss.mean_mm == doctest::Approx(0.3).epsilon(1e-6));
+    CHECK_FALSE(miss.within_tolerance);
+    CHECK(miss_of(pass, stroke, brush, 0.4).within_tolerance);
+}
+
+TEST_CASE("a pass that never pulls the brush tight misses nothing") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "s";
+    stroke.middle_mm = polyline({V(0, 0), V(1, 0)});
+    stroke.half_width = {{0.0, 1.0}};
+    Pass pass;
+    pass.poses_mm.resize(2, 3);
+    pass.poses_mm << 50, 50, 0, 52, 50, 0;
+    CHECK(miss_of(pass, stroke, brush, 0.05).largest_mm == 0.0);
+}

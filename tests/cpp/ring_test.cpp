@@ -1,0 +1,16 @@
+#include "brushsvg/ring.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace brushsvg;
+
+TEST_CASE("signed area of a triangle, either way round and far from the origin") {
+    Ring r(3, 2);
+    r << 0, 0, 4, 0, 0, 3;
+    CHECK(signed_area(r) == doctest::Approx(6.0));
+    Ring reversed = r.colwise().reverse();
+    CHECK(signed_area(reversed) == doctest::Approx(-6.0));
+    r.array() += 1e7;
+    CHECK(signed_area(r) == doctest::Approx(6.0));
+    CHECK(signed_area(Ring(0, 2)) == 0.0);
+}

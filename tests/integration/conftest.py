@@ -1,0 +1,73 @@
+"""Drawings to feed the installed command, and what it makes of them."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from command import COMMAND, SOUND, brushsvg
+from drawings import SOURCES, Inkscape, enlarged_kanji, kanji_file
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _installed():
+    assert COMMAND.exists(), f"{COMMAND} is missing: run make setup"
+    for tool, package in (("rs274", "linuxcnc-uspace"), ("inkscape", "inkscape")):
+        assert shutil.which(tool), f"{tool} is missing: apt-get install --no-install-recommends {package}"
+
+
+@pytest.fixture(scope="session")
+def inkscape(tmp_path_factory):
+    return Inkscape(tmp_path_factory.mktemp("inkscape"))
+
+
+@pytest.fixture(scope="session")
+def drawing(tmp_path_factory, inkscape):
+    """A function: name of a source -> its SVG file, made when first asked for."""
+    folder = tmp_path_factory.mktemp("drawings")
+    make = {
+        "vincent": lambda _: ROOT / "examples" / "vincent.svg",
+        "robot": lambda _: ROOT / "examples" / "robot.svg",
+        "kanji-eternity": lambda out: Path(shutil.copy(kanji_file("\u6c38"), out)),
+        "kanji-write": lambda out: enlarged_kanji("\u66f8", out),
+        "inkscape": lambda out: inkscape.save(out, plain=False),
+        "inkscape-plain": lambda out: inkscape.save(out, plain=True),
+    }
+    known: dict[str, Path] = {}
+
+    def get(name: str) -> Path:
+        if name not in known:
+            known[name] = make[name](folder / f"{name}.svg")
+        return known[name]
+
+    return get
+
+
+@pytest.fixture(scope="session")
+def converted(tmp_path_factory, drawing):
+    """A function: source, flags -> the folder with plan.json and program.ngc made of it."""
+    known: dict[tuple, Path] = {}
+
+    def get(name: str, *flags: str) -> Path:
+        key = (name, *flags)
+        if key not in known:
+            folder = known[key] = tmp_path_factory.mktemp(name)
+            for out in ("plan.json", "program.ngc"):
+                brushsvg("convert", drawing(name), out, *flags, cwd=folder, status=0)
+        return known[key]
+
+    return get
+
+
+@pytest.fixture(params=SOURCES)
+def source(request) -> str:
+    return request.param
+
+
+@pytest.fixture
+def desk(tmp_path):
+    """A folder with a sound drawing, and a program that was there before."""
+    (tmp_path / "sound.svg").write_text(SOUND)
+    (tmp_path / "old.ngc").write_text("kept\n")
+    return tmp_path

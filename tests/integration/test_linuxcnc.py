@@ -1,0 +1,267 @@
+"""What LinuxCNC makes of our programs: the plan, pose by pose, and never too fast or too low."""
+
+import json
+import re
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from command import brush_file, brushsvg
+from drawings import SOURCES
+
+INTERPRET = Path(__file__).with_name("interpret.py")
+NEAR_MM = 1e-3
+WAYS = {
+    **{source: (source, ()) for source in SOURCES},
+    "uncompensated": ("robot", ("--compensation", "none")),
+    "constant lag": ("robot", ("--compensation", "constant", "--lag", "9")),
+    "fine": ("robot", ("--tolerance", "0.0005")),
+    "rigid pen": ("vincent", ("--brush", "rigid")),
+}
+BRUSHES = {"rigid pen": "rigid"}
+
+
+@dataclass
+class Section:
+    """What one stroke's part of a program does: rapids and feeds in order, as LinuxCNC understands them."""
+
+    stroke: str
+    events: list = field(default_factory=list)
+
+
+def interpreted(program, tmp_path):
+    """(events before the first stroke, sections); AssertionError with LinuxCNC's words if it refuses."""
+    parameters = tmp_path / "linuxcnc.var"
+    parameters.touch()
+    done = subprocess.run(
+        ["/usr/bin/python3", INTERPRET, program, parameters], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    return in_sections(json.loads(done.stdout))
+
+
+def in_sections(events):
+    before, sections = [], []
+    for event in events:
+        if event[0] == "comment":
+            if found := re.match(r"stroke \d+ of \d+: (.*)", event[1]):
+                sections.append(Section(found[1]))
+        else:
+            (sections[-1].events if sections else before).append(event)
+    return before, sections
+
+
+def canonical(program, tmp_path):
+    """The same from the canonical commands that the stand-alone interpreter rs274 prints, to 1e-4 mm."""
+    done = subprocess.run(["rs274", "-g", program], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stdout[-500:] + done.stderr
+    events, feed = [], 0.0
+    for line in done.stdout.splitlines():
+        if not (found := re.fullmatch(r" *\d+ N\.* +(\w+)\((.*)\)", line)):
+            continue
+        name, words = found.groups()
+        if name == "COMMENT":
+            events.append(["comment", words.strip('"')])
+        elif name == "SET_FEED_RATE":
+            feed = float(words)
+        elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
+            x, y, z, *turned = map(float, words.split(","))
+            assert not any(turned), line
+            events.append(["rapid", x, y, z] if name == "STRAIGHT_TRAVERSE" else ["feed", x, y, z, feed])
+        else:
+            assert not re.search("ARC|NURBS|PROBE|TAP|DWELL|START_SPINDLE|TOOL", name), line
+    return in_sections(events)
+
+
+def check_points(before, sections, passes):
+    """Per stroke: over its start, down, the plan's poses, up where it ends. Nothing else, in this order."""
+    (first,) = before
+    safe = first[3]
+    assert first[0] == "rapid"
+    assert safe >= 5
+    assert len(sections) == len(passes)
+    for section, wanted in zip(sections, passes, strict=True):
+        assert section.stroke == wanted["stroke"]
+        poses = wanted["poses_mm"]
+        (x0, y0, _), (x1, y1, _) = poses[0], poses[-1]
+        kinds = [event[0] for event in section.events]
+        assert kinds == ["rapid", *["feed"] * (len(poses) + 2), "rapid"]
+        clearance = section.events[1][3]
+        assert 0 < clearance < safe
+        points = [(x0, y0, safe), (x0, y0, clearance), *poses, (x1, y1, clearance), (x1, y1, safe)]
+        for event, point in zip(section.events, points, strict=True):
+            assert event[1:4] == pytest.approx(point, abs=NEAR_MM, rel=0)
+
+
+def check_rapids(before, sections):
+    """A rapid ends at safe height, and moves sideways only when it starts there; none begins in the paper."""
+    here = [0.0, 0.0, before[0][3]]
+    safe = before[0][3]
+    for event in (event for section in sections for event in section.events):
+        assert event[0] in ("rapid", "feed"), event
+        there = event[1:4]
+        if event[0] == "rapid":
+            assert there[2] == pytest.approx(safe)
+            assert here[2] > 0
+            assert here[2] == pytest.approx(safe) or here[:2] == pytest.approx(there[:2])
+        here = there
+
+
+def check_feeds(sections, passes, limit_mm_s):
+    """No feed faster than the brush endures; each stroke painted at its own speed."""
+    for section, wanted in zip(sections, passes, strict=True):
+        feeds = [event[4] for event in section.events if event[0] == "feed"]
+        assert min(feeds) > 0
+        assert max(feeds) <= 60 * limit_mm_s + 1e-6
+        speed = 60 * wanted["speed_mm_s"]
+        assert feeds[2:-1] == pytest.approx([speed] * len(feeds[2:-1]), abs=0.051)
+        assert feeds[1] <= speed + 0.051
+        assert feeds[-1] <= speed + 0.051
+
+
+def passes_in(folder):
+    return json.loads((folder / "plan.json").read_text(encoding="utf-8"))["passes"]
+
+
+@pytest.fixture(params=WAYS)
+def way(request):
+    return request.param
+
+
+@pytest.fixture
+def made(way, converted):
+    source, flags = WAYS[way]
+    return converted(source, *flags)
+
+
+def test_points_are_the_plans(made, tmp_path):
+    check_points(*interpreted(made / "program.ngc", tmp_path), passes_in(made))
+
+
+def test_the_stand_alone_interpreter_agrees(made, tmp_path):
+    before, sections = canonical(made / "program.ngc", tmp_path)
+    check_points(before, sections, passes_in(made))
+    check_rapids(before, sections)
+
+
+def test_rapids_keep_off_the_paper(made, tmp_path):
+    check_rapids(*interpreted(made / "program.ngc", tmp_path))
+
+
+def test_feeds_stay_under_the_brushs_limit(way, made, tmp_path):
+    _, sections = interpreted(made / "program.ngc", tmp_path)
+    limit_mm_s = brush_file(BRUSHES.get(way, "round-6"))["max_speed_mm_s"]
+    check_feeds(sections, passes_in(made), limit_mm_s)
+
+
+def test_a_plan_gives_the_same_moves_as_its_drawing(source, converted, tmp_path):
+    folder = converted(source)
+    brushsvg("convert", folder / "plan.json", tmp_path / "by_plan.ngc", cwd=tmp_path, status=0)
+    check_points(*interpreted(tmp_path / "by_plan.ngc", tmp_path), passes_in(folder))
+
+
+def test_text_is_plain(made):
+    data = (made / "program.ngc").read_bytes()
+    assert data.isascii()
+    for line in data.decode("ascii").splitlines():
+        assert len(line) < 250  # LinuxCNC reads 255
+        code = re.sub(r"\(.*\)", "", line)
+        assert re.fullmatch(r"([A-Z]-?\d+(\.\d+)? ?)*", code), line
+        assert not re.search(r"-0\.0*(?!\d)", code), line
+
+
+def test_names_in_a_drawing_are_not_orders(tmp_path):
+    """LinuxCNC acts on some comments, and a bracket or line end would let a name out of its comment."""
+    title = "%;M2) G0 Z-50 (MSG, hi) (PRINT,#1)&#10;G0 Z-5 " + "\u00e9\u66f8x" * 100
+    name = "(o100 call) M30&#10;% (debug,#5)"
+    (tmp_path / "x.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+        f'<title>{title}</title><path id="{name}" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#000" '
+        'stroke-width="3"/><path id="MSG,hello" d="M20 50h20" stroke="#000" stroke-width="3"/></svg>',
+        encoding="utf-8",
+    )
+    for out in ("plan.json", "program.ngc"):
+        brushsvg("convert", "x.svg", out, cwd=tmp_path, status=0)
+    passes = passes_in(tmp_path)
+    assert passes[1]["stroke"] == "MSG,hello"
+    before, sections = interpreted(tmp_path / "program.ngc", tmp_path)
+    check_rapids(before, sections)
+    for section, each in zip(sections, passes, strict=True):
+        each["stroke"] = section.stroke
+    check_points(before, sections, passes)
+    assert all(line.isprintable() for line in (tmp_path / "program.ngc").read_text().splitlines())
+
+
+FAULTS = {
+    "no feed rate": lambda text: re.sub(r" F[\d.]+", "", text),
+    "feed rate zero": lambda text: re.sub(r" F[\d.]+", " F0", text),
+    "a word that is none": lambda text: text.replace("G1 ", "J1 ", 1),
+    "a word twice": lambda text: re.sub(r"(G1 X[\d.]+)", r"\1 X1", text, count=1),
+    "an exponent": lambda text: re.sub(r"Z-(\d)", r"Z-2.77e-17 Z-\1", text, count=1),
+    "a comma as decimal mark": lambda text: re.sub(r"X(\d+)\.(\d+)", r"X\1,\2", text, count=1),
+    "an open comment": lambda text: text.replace(")", "", 1),
+    "no end": lambda text: text.replace("M2", ""),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_linuxcnc_refuses_a_broken_program(fault, converted, tmp_path):
+    """So that the acceptance above says something."""
+    text = (converted("robot") / "program.ngc").read_text(encoding="ascii")
+    broken = FAULTS[fault](text)
+    assert broken != text
+    (tmp_path / "broken.ngc").write_text(broken)
+    done = subprocess.run(
+        ["rs274", "-g", "broken.ngc"], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 1
+
+
+def moved(text):
+    lines = text.splitlines()
+    k = len(lines) // 2
+    lines[k] = re.sub(r"X(-?[\d.]+)", lambda found: f"X{float(found[1]) + 0.002:.4f}", lines[k])
+    return "\n".join(lines)
+
+
+def without_a_line(text):
+    lines = text.splitlines()
+    del lines[len(lines) // 2]
+    return "\n".join(lines)
+
+
+def strokes_swapped(text):
+    head, first, second, *rest = re.split(r"(?m)^(?=\(stroke )", text)
+    return "".join([head, second, first, *rest])
+
+
+TAMPERED = {
+    "a pose 0.002 mm off": (moved, "points"),
+    "a pose left out": (without_a_line, "points"),
+    "two strokes in the other order": (strokes_swapped, "points"),
+    "inches": (lambda text: text.replace("G21", "G20"), "points"),
+    "relative moves": (lambda text: text.replace("G90", "G91"), "points"),
+    "a rapid down to the paper": (lambda text: re.sub(r"(?m)^G1 (.*Z0\.0000)", r"G0 \1", text), "rapids"),
+    "low travel": (lambda text: re.sub(r"(?m)^(G0 X.* Z)10\.0", r"\g<1>2.0", text), "rapids"),
+    "painting too fast": (lambda text: text.replace("F1200", "F1600"), "feeds"),
+    "pressing too fast": (lambda text: text.replace("F480", "F1400"), "feeds"),
+}
+
+
+@pytest.mark.parametrize("change", TAMPERED)
+def test_the_checks_see_a_wrong_program(change, converted, tmp_path):
+    """So that what LinuxCNC accepts and is yet wrong is found."""
+    folder = converted("robot")
+    edit, check = TAMPERED[change]
+    text = (folder / "program.ngc").read_text(encoding="ascii")
+    assert edit(text) != text
+    (tmp_path / "wrong.ngc").write_text(edit(text))
+    before, sections = interpreted(tmp_path / "wrong.ngc", tmp_path)
+    with pytest.raises(AssertionError):
+        if check == "points":
+            check_points(before, sections, passes_in(folder))
+        elif check == "rapids":
+            check_rapids(before, sections)
+        else:
+            check_feeds(sections, passes_in(folder), 25)

@@ -1,0 +1,101 @@
+"""The same drawing gives the same bytes, wherever it lies and whoever converts it."""
+
+import os
+import subprocess
+import sys
+from functools import partial
+
+import pytest
+from command import SOUND, brushsvg
+
+
+def everything(folder, name="sound.svg", env=None, command=None):
+    """Bytes of all that can be made of a drawing."""
+    run = command or partial(brushsvg, cwd=folder, env=env)
+    made = {}
+    for words in (
+        ("convert", name, "o.ngc"),
+        ("convert", name, "o.json"),
+        ("predict", name, "o.png"),
+        ("predict", name, "o.svg"),
+        ("predict", name, "o-marks.json"),
+        ("convert", name, "o2.ngc", "--report", "o.txt", "--preview", "o2.svg"),
+    ):
+        run(*words, status=0)
+    for each in sorted(folder.glob("o*")):
+        if each.name != "old.ngc":
+            made[each.name] = each.read_bytes()
+            each.unlink()
+    made["report"] = run("report", name, "--json", status=0).out
+    assert len(made) == 9
+    return made
+
+
+@pytest.fixture(scope="module")
+def usual(tmp_path_factory):
+    """What is made of the sound drawing in an English-speaking place."""
+    folder = tmp_path_factory.mktemp("usual")
+    (folder / "sound.svg").write_text(SOUND)
+    return everything(folder, env={"LC_ALL": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "1"})
+
+
+def elsewhere(desk, text):
+    other = desk / "another folder"
+    other.mkdir()
+    (other / "another name.svg").write_text(text)
+    os.utime(other / "another name.svg", (0, 0))
+    env = {"PYTHONHASHSEED": "2", "TZ": "Asia/Tokyo", "USER": "x", "HOSTNAME": "x", "LC_ALL": "C"}
+    return everything(other, "another name.svg", env=env)
+
+
+def test_the_same_drawing_gives_the_same_bytes(desk, usual):
+    assert elsewhere(desk, SOUND) == usual
+
+
+def test_nor_does_a_file_name_stand_in_for_a_title(desk):
+    text = SOUND.replace("<title>A line</title>", "")
+    (desk / "sound.svg").write_text(text)
+    assert elsewhere(desk, text) == everything(desk)
+
+
+@pytest.fixture(scope="session")
+def german(tmp_path_factory):
+    """Environment of a place with a decimal comma."""
+    folder = tmp_path_factory.mktemp("locale")
+    compiled = subprocess.run(
+        ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")], capture_output=True
+    )
+    if not (folder / "de_DE.UTF-8").exists():
+        pytest.skip(f"de_DE cannot be compiled: {compiled.stderr.decode()}")
+    return {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "LOCPATH": str(folder)}
+
+
+def test_a_decimal_comma_changes_nothing(desk, german, usual):
+    assert everything(desk, env=german) == usual
+
+
+def test_nor_in_a_program_that_has_set_its_locale(desk, german, usual):
+    """As a window toolkit does at its start: then C and C++ would write and read commas."""
+    code = (
+        "import locale, sys; locale.setlocale(locale.LC_ALL, ''); "
+        "assert '%s' % locale.localeconv()['decimal_point'] == ','; "
+        "from brushsvg.cli import main; sys.exit(main())"
+    )
+
+    def run(*words, status):
+        done = subprocess.run(
+            [sys.executable, "-c", code, *words],
+            cwd=desk,
+            env={**os.environ, **german},
+            capture_output=True,
+            encoding="utf-8",
+            timeout=60,
+        )
+        assert done.returncode == status, done.stderr
+        return type("Done", (), {"out": done.stdout})
+
+    assert everything(desk, command=run) == usual
+    brushsvg("convert", "sound.svg", "plan.json", cwd=desk, status=0)
+    run("convert", "plan.json", "p.ngc", status=0)
+    brushsvg("convert", "plan.json", "q.ngc", cwd=desk, status=0)
+    assert (desk / "p.ngc").read_bytes() == (desk / "q.ngc").read_bytes()

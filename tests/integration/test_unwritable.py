@@ -1,0 +1,126 @@
+"""Where nothing can be written, or not enough: one sentence, and all is as it was before."""
+
+import os
+import re
+import resource
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import pytest
+from command import COMMAND, SOUND, brushsvg, listing, refused
+
+
+def test_output_into_a_directory_that_is_not_there(desk):
+    told = refused(desk, "convert", "sound.svg", "no/where/out.ngc")
+    assert told == "no/where/out.ngc: the file cannot be written: its directory does not exist"
+    told = refused(desk, "convert", "sound.svg", "out.ngc", "--preview", "no/where/out.png")
+    assert told.startswith("no/where/out.png: ")
+    (desk / "out.ngc").mkdir()
+    told = refused(desk, "convert", "sound.svg", "out.ngc")
+    assert told == "out.ngc: the file cannot be written: it is a directory"
+
+
+@pytest.fixture
+def as_nobody():
+    """(a folder that others may enter, settings to run the command without root's rights)."""
+    folder = Path(tempfile.mkdtemp(prefix="brushsvg-"))
+    folder.chmod(0o755)
+    before = ()
+    if os.geteuid() == 0:
+        before = ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups")
+        reached = subprocess.run([*before, COMMAND, "brush", "list"], capture_output=True)
+        if reached.returncode != 0:
+            shutil.rmtree(folder)
+            pytest.skip("root may write anywhere, and nobody cannot reach the installed command")
+    yield folder, {"before": before}
+    for each in (folder, *folder.rglob("*")):
+        each.chmod(0o755)
+    shutil.rmtree(folder)
+
+
+def test_without_the_right_to_write_or_read(as_nobody):
+    folder, settings = as_nobody
+    (folder / "sound.svg").write_text(SOUND)
+    (folder / "secret.svg").write_text(SOUND)
+    (folder / "secret.svg").chmod(0)
+    (folder / "open").mkdir()
+    (folder / "open" / "old.ngc").write_text("kept\n")
+    (folder / "open" / "old.ngc").chmod(0o444)
+    (folder / "open").chmod(0o777)
+    folder.chmod(0o555)
+
+    def told(*words):
+        done = brushsvg(*words, cwd=folder, status=1, **settings)
+        assert len(done.err) == 1
+        return done.err[0]
+
+    assert "out.ngc: the file cannot be written: its directory is not writable" in told(
+        "convert", "sound.svg", "out.ngc"
+    )
+    assert "permission denied" in told("convert", "sound.svg", "open/old.ngc")
+    assert "permission denied" in told("convert", "secret.svg", "open/out.ngc")
+    assert (folder / "open" / "old.ngc").read_text() == "kept\n"
+    assert sorted(os.listdir(folder / "open")) == ["old.ngc"]
+    assert sorted(os.listdir(folder)) == ["open", "secret.svg", "sound.svg"]
+
+
+@pytest.mark.parametrize("out", ["out.ngc", "old.ngc", "out.json", "link.ngc"])
+def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
+    """As a full disk or a quota would stop it, without one."""
+    (desk / "link.ngc").symlink_to("old.ngc")
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+    told = refused(desk, "convert", "sound.svg", out, preexec_fn=limit)
+    assert re.match(rf"{out}: .*cannot be written: file too large", told)
+
+
+def test_standard_output_that_is_closed_or_full(desk):
+    for output, sentence in (("&-", "it is closed"), ("/dev/full", "no space left on device")):
+        before = ["sh", "-c", f'exec "$@" >{output}', "sh"]
+        for words in (("report", "sound.svg"), ("brush", "list")):
+            assert refused(desk, *words, before=before) == f"standard output: {sentence}"
+
+
+FULL_DISK = """
+mount -t tmpfs -o size=64k none "$PWD/full" || exit 77
+cp old.ngc full/old.ngc
+head -c 64k /dev/zero >full/filler 2>/dev/null
+"$@"
+status=$?
+ls -A full | sort | tr '\\n' ' '
+cat full/old.ngc
+exit $status
+"""
+
+
+@pytest.fixture
+def full_disk(desk):
+    """Words to start the command with: desk/full is then a disk without a byte left, gone when it ends."""
+    (desk / "full").mkdir()
+    unshare = ["unshare", "-m"] if os.geteuid() == 0 else ["unshare", "-r", "-m"]
+    before = [*unshare, "sh", "-c", FULL_DISK, "sh"]
+    if subprocess.run([*before, "true"], cwd=desk, capture_output=True).returncode != 0:
+        pytest.skip("a small tmpfs cannot be mounted here")
+    return before
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["full/out.json"],
+        ["full/old.ngc"],
+        ["out.ngc", "--preview", "full/out.png"],
+        ["out.ngc", "--preview", "out.png", "--report", "full/out.json"],
+    ],
+)
+def test_a_full_disk_leaves_nothing(desk, full_disk, words):
+    before = listing(desk)
+    done = brushsvg("convert", "sound.svg", *words, cwd=desk, before=full_disk, status=1)
+    assert len(done.err) == 1
+    assert "cannot be written: no space left on device" in done.err[0]
+    assert done.out == "filler old.ngc kept\n"
+    assert listing(desk) == before

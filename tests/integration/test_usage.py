@@ -1,0 +1,101 @@
+"""Wrong usage, and help that promises only what there is."""
+
+import re
+
+import pytest
+from command import brushsvg, refused
+
+USAGE = [
+    "",
+    "paint sound.svg out.ngc",
+    "convert",
+    "convert sound.svg",
+    "convert sound.svg out.ngc more",
+    "convert sound.svg out",
+    "convert sound.svg out.txt",
+    "convert sound.svg out.png",
+    "convert sound out.ngc",
+    "convert sound.pdf out.ngc",
+    "predict sound.svg out.ngc",
+    "predict sound.svg out.pdf",
+    "report",
+    "report sound.svg --yaml",
+    "convert sound.svg out.ngc --quick",
+    "convert sound.svg out.ngc --brush",
+    "convert sound.svg out.ngc --sheet large",
+    "convert sound.svg out.ngc --sheet -1x5",
+    "convert sound.svg out.ngc --tolerance nan",
+    "convert sound.svg out.ngc --tolerance 0",
+    "convert sound.svg out.ngc --compensation best",
+    "convert sound.svg out.ngc --compensation constant --lag 1e9",
+    "convert sound.svg out.ngc --report out.ngc",
+    "convert sound.svg ./sound.svg",
+    "brush",
+    "brush wash round-6",
+]
+# of house rules, but not there yet: neither understood nor promised
+LATER = {
+    "flags": ["--cell", "--width", "--fit", "--units", "--caps", "--as", "--wide", "--scale"],
+    "commands": ["import", "chart", "calibrate", "cell", "check"],
+    "brush commands": ["plot", "new"],
+    "formats": [".dxf", ".script", ".mod", ".pdf", ".krl", ".gcode"],
+}
+PAGES = [
+    [],
+    ["convert"],
+    ["predict"],
+    ["report"],
+    ["brush"],
+    ["brush", "list"],
+    ["brush", "show"],
+    ["brush", "check"],
+]
+
+
+@pytest.mark.parametrize("words", USAGE)
+def test_wrong_usage(desk, words):
+    assert "--help" in refused(desk, *words.split(), status=2)
+
+
+def test_what_is_not_there_yet_is_wrong_usage(desk):
+    for flag in LATER["flags"]:
+        refused(desk, "convert", "sound.svg", "out.ngc", flag, "5", status=2)
+    for command in LATER["commands"]:
+        refused(desk, command, "sound.svg", "out.svg", status=2)
+    for command in LATER["brush commands"]:
+        refused(desk, "brush", command, "round-6", "out.svg", status=2)
+    for suffix in LATER["formats"]:
+        refused(desk, "convert", "sound.svg", f"out{suffix}", status=2)
+
+
+def test_help_names_what_there_is_and_nothing_else(desk):
+    pages = {tuple(page): brushsvg(*page, "--help", cwd=desk, status=0).out for page in PAGES}
+    text = "\n".join(pages.values())
+    for absent in (*LATER["flags"], *LATER["formats"]):
+        assert not re.search(rf"{re.escape(absent)}\b", text), absent
+    commands = set(re.findall(r"(?m)^    ([a-z]+) ", pages[()]))
+    assert commands == {"convert", "predict", "report", "brush"}
+    assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {"list", "show", "check"}
+    for page, text in pages.items():
+        for flag in set(re.findall(r"--[a-z-]+", text)) - {"--help"}:
+            done = brushsvg(*page, flag, cwd=desk)  # operands are missing: the flag must not be what is wrong
+            assert "unrecognized arguments" not in " ".join(done.err), (page, flag)
+    # every extension that help names is one the command takes
+    values = {"IN": "sound.svg", "--brush": "round-6"}
+    for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("convert",)])[0]):
+        brushsvg("convert", values["IN"], f"made{suffix}", cwd=desk, status=0)
+    for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
+        brushsvg("predict", values["IN"], f"seen{suffix}", cwd=desk, status=0)
+    for flag in ("preview", "report"):
+        says = re.search(rf"(?s)--{flag} FILE .*?\((.*?)\)", pages[("convert",)])[1]
+        for suffix in says.split():
+            brushsvg("convert", values["IN"], "made.ngc", f"--{flag}", f"{flag}{suffix}", cwd=desk, status=0)
+    made = {each.name for each in desk.iterdir()} - {"sound.svg", "old.ngc"}
+    assert made == {
+        *("made.json", "made.ngc", "seen.png", "seen.svg", "seen.json"),
+        *("preview.png", "preview.svg", "report.txt", "report.json"),
+    }
+
+
+def test_the_version_is_told(desk):
+    assert re.fullmatch(r"brushsvg \d+\.\d+\.\d+\n", brushsvg("--version", cwd=desk, status=0).out)

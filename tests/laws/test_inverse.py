@@ -1,0 +1,459 @@
+"""Compensate, then simulate finely: the widest point must run along the middle line, and P must come back."""
+
+import itertools
+
+import numpy as np
+import oracle
+import pytest
+from conftest import LAGS, WIDEST, make_brush, make_plan
+from scipy.integrate import solve_ivp
+
+core = pytest.importorskip("brushsvg._core")
+find_brush = pytest.importorskip("brushsvg.brushes").find_brush
+
+ROUND = find_brush("round-6")
+LAG = oracle.Law(*LAGS["round"])
+
+
+def lever(depth):
+    """e = x_w - b of the article's brush."""
+    return WIDEST(depth) - 0.52 * depth
+
+
+def line(*points):
+    """Straight cubics through points."""
+    p = np.array(points, float)
+    return np.array(
+        [np.concatenate([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b]) for a, b in itertools.pairwise(p)]
+    )
+
+
+def corner(degrees, arm=30.0):
+    turn = np.radians(degrees)
+    return line((0, 0), (arm, 0), (arm + arm * np.cos(turn), arm * np.sin(turn)))
+
+
+def arc(radius, sweep, start=(0.0, 0.0), pieces_per_turn=48):
+    """Cubics along a circle from `start`, heading along +x, turning left; off the circle by 1e-10 radius."""
+    count = max(1, int(np.ceil(sweep / (2 * np.pi) * pieces_per_turn)))
+    knots = np.linspace(-np.pi / 2, -np.pi / 2 + sweep, count + 1)
+    k = 4 / 3 * np.tan(sweep / count / 4)
+    centre = np.add(start, [0, radius])
+    out = []
+    for a, b in itertools.pairwise(knots):
+        ends, along = (
+            centre + radius * oracle.unit(np.array([a, b])),
+            radius * k * oracle.unit(np.array([a, b]) + np.pi / 2),
+        )
+        out.append(np.concatenate([ends[0], ends[0] + along[0], ends[1] - along[1], ends[1]]))
+    return np.array(out)
+
+
+def smooth(rng, pieces, turn=1.2):
+    """Cubics that join without a corner."""
+    xy, heading, out = np.zeros(2), rng.uniform(-np.pi, np.pi), []
+    for _ in range(pieces):
+        length, turned = rng.uniform(8, 18), heading + rng.uniform(-turn, turn)
+        end = xy + length * oracle.unit(0.5 * (heading + turned))
+        third = length / 3
+        out.append(
+            np.concatenate([xy, xy + third * oracle.unit(heading), end - third * oracle.unit(turned), end])
+        )
+        xy, heading = end, turned
+    return np.array(out)
+
+
+def zigzag(rng, corners):
+    xy, heading, points = np.zeros(2), rng.uniform(-np.pi, np.pi), [np.zeros(2)]
+    for _ in range(corners + 1):
+        xy = xy + rng.uniform(6, 20) * oracle.unit(heading)
+        points.append(xy)
+        heading += rng.choice([-1, 1]) * rng.uniform(0.1, np.pi / 2)
+    return line(*points)
+
+
+def widths(rng, length, least=0.125):
+    """Half widths that change by at most 0.13 mm per mm; half of the strokes taper down to 0.25 mm."""
+    count = int(length // 9) + 1
+    h = [rng.uniform(0.3, 2.5)]
+    for _ in range(count):
+        h.append(np.clip(h[-1] + rng.uniform(-1, 1) * 0.13 * length / count, least, 3))
+    if rng.random() < 0.5:
+        h[rng.integers(0, count + 1)] = least
+    return [(i / count, float(x)) for i, x in enumerate(h)]
+
+
+def stroke_of(middle, half_width, closed=False):
+    return core.Stroke(id="s", middle_mm=middle, half_width=half_width, closed=closed)
+
+
+class Painted:
+    """A compensated stroke, simulated with every move cut in parts: where the widest point really goes."""
+
+    def __init__(self, stroke, tolerance_mm, brush=ROUND, parts=6, step=0.25, **options):
+        found = core.compensate([stroke], brush, (200.0, 200.0), tolerance_mm=tolerance_mm, **options)
+        self.miss, self.poses, self.warnings = found.misses[0], found.plan.passes[0].poses_mm, found.warnings
+        plan = make_plan(oracle.subdivide(self.poses, parts, step))
+        self.rows = core.simulate(plan, brush, max(tolerance_mm, 2e-3)).passes[0]
+        depth = self.rows.depth_mm
+        self.widest = self.rows.contact_mm + lever(depth)[:, None] * oracle.unit(self.rows.heading_rad)
+        self.middle = oracle.Middle(stroke.middle_mm)
+        self.distance, self.s = self.middle.nearest(self.widest)
+        self.taut = np.flatnonzero(self.rows.taut & (depth >= 0))
+
+    def once_taut(self):
+        """Distances from the first taut row to the last, resting rows in between included."""
+        return self.distance[self.taut[0] : self.taut[-1] + 1]
+
+
+def assert_follows(painted, tolerance_mm):
+    assert painted.distance[painted.taut].max() <= tolerance_mm
+    assert painted.miss.largest_mm <= tolerance_mm
+    assert painted.miss.within_tolerance
+    measured = painted.distance[painted.taut].max()
+    assert (
+        painted.miss.largest_mm
+        >= (0.85 if measured > 0.4 * tolerance_mm else 0.5) * measured - 1e-3 * tolerance_mm
+    )
+    assert painted.miss.mean_mm <= painted.miss.largest_mm
+    forward = np.maximum.accumulate(painted.s[painted.taut]) - painted.s[painted.taut]
+    assert forward.max() <= max(tolerance_mm, 1e-6)  # the way it was drawn
+    poses = painted.poses
+    assert poses[0, 2] == 0
+    assert poses[-1, 2] == 0
+    assert poses[:, 2].min() >= -10
+    assert poses[:, 2].max() <= 0
+    assert np.all(np.isfinite(poses))
+
+
+# The widest point ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
+def test_smooth_strokes_with_tapers_stay_within_the_tolerance(tolerance):
+    rng = np.random.default_rng(21)
+    for _ in range(100 if tolerance > 1e-3 else 40):
+        middle = smooth(rng, rng.integers(2, 5))
+        stroke = stroke_of(middle, widths(rng, oracle.Middle(middle).length))
+        assert_follows(Painted(stroke, tolerance), tolerance)
+
+
+@pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
+def test_turns_up_to_90_degrees_stay_within_the_tolerance(tolerance):
+    rng = np.random.default_rng(22)
+    for _ in range(25):
+        middle = zigzag(rng, rng.integers(1, 4))
+        stroke = stroke_of(middle, [(0.0, rng.uniform(0.7, 2.5)), (1.0, rng.uniform(0.7, 2.5))])
+        assert_follows(Painted(stroke, tolerance), tolerance)
+
+
+@pytest.mark.parametrize(
+    ("middle", "half_width"),
+    [
+        (smooth(np.random.default_rng(1), 3), [(0.0, 0.25)]),
+        (smooth(np.random.default_rng(2), 3), [(0.0, 2.0), (0.5, 0.125), (1.0, 2.0)]),
+        (smooth(np.random.default_rng(3), 3), [(0.0, 0.125), (0.5, 2.0), (1.0, 0.125)]),
+        (corner(90), [(0.0, 1.68)]),
+        (corner(90), [(0.0, 0.25)]),
+        (corner(60), [(0.0, 0.5)]),
+        (zigzag(np.random.default_rng(4), 3), [(0.0, 1.0), (1.0, 1.9)]),
+        (arc(9.0, 5.0), [(0.0, 0.4), (1.0, 1.6)]),
+    ],
+    ids=[
+        "0.5 mm line",
+        "taper 4 0.25 4",
+        "taper 0.25 4 0.25",
+        "corner",
+        "corner 0.5 mm",
+        "60 degrees",
+        "zigzag",
+        "arc",
+    ],
+)
+@pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3, 1e-5])
+def test_widest_point_stays_within_the_tolerance(middle, half_width, tolerance):
+    painted = Painted(stroke_of(middle, half_width), tolerance, parts=6 if tolerance > 1e-4 else 3)
+    assert_follows(painted, tolerance)
+    covered = np.unique(np.round(painted.s[painted.taut], 1))
+    assert len(covered) > 0.85 * painted.middle.length / 0.1 * min(1.0, 0.1 / 0.25)
+
+
+@pytest.mark.parametrize("half_width", [0.25, 1.0, 1.68, 2.5])
+def test_taut_rows_reach_from_the_landing_to_the_end(half_width):
+    """The tolerance would mean little if the brush hung loose most of the way."""
+    painted = Painted(stroke_of(smooth(np.random.default_rng(6), 4), [(0.0, half_width)]), 1e-3)
+    s = np.sort(painted.s[painted.taut])
+    depth = half_width / 0.42
+    assert s[0] <= max(0.0, WIDEST(depth) - half_width) + 0.01
+    assert s[-1] >= painted.middle.length - 0.01
+    assert np.diff(s).max() < 0.3
+
+
+@pytest.mark.parametrize("name", LAGS)
+def test_any_lag_law(name):
+    rng, brush = np.random.default_rng(23), make_brush(LAGS[name])
+    for _ in range(4):
+        middle = smooth(rng, 3)
+        stroke = stroke_of(middle, [(0.0, rng.uniform(0.6, 2)), (1.0, rng.uniform(0.6, 2))])
+        painted = Painted(stroke, 1e-3, brush)
+        if name != "small near 0":
+            assert_follows(painted, 1e-3)
+            continue
+        # r = 0.8 d hangs between taut and loose all through landing and lift: look at the stroke proper
+        drawn = np.interp(painted.s / painted.middle.length, *zip(*stroke.half_width, strict=True)) / 0.42
+        proper = painted.taut[np.abs(painted.rows.depth_mm - drawn)[painted.taut] < 1e-3]
+        assert len(proper) > 100
+        assert painted.distance[proper].max() <= 1e-3
+
+
+@pytest.mark.parametrize(("degrees", "remains"), [(100, 0.02), (120, 0.19), (150, 0.69), (180, 1.38)])
+@pytest.mark.parametrize("tolerance", [0.05, 1e-3])
+def test_sharper_turns_report_what_remains(degrees, remains, tolerance):
+    painted = Painted(stroke_of(corner(degrees), [(0.0, 1.68)]), tolerance, step=0.02)
+    measured = painted.once_taut().max()
+    assert painted.miss.largest_mm == pytest.approx(measured, rel=0.02, abs=0.05 * tolerance)
+    assert painted.miss.largest_mm == pytest.approx(remains, abs=0.01)
+    assert painted.miss.has_turn_in_place
+    assert painted.miss.within_tolerance == (measured <= tolerance)
+
+
+# P ------------------------------------------------------------------------------------------------
+
+
+def contact_behind(parts, depth_at, s, points):
+    """P where m has run s along parts (length, curvature, corner before it) to `points`: what m drags on the
+    lever e > 0, started along the middle line."""
+    heading, psi, begin, found = 0.0, 0.0, 0.0, np.full((len(s), 2), np.nan)
+    for length, curvature, corner_before in parts:
+        heading, psi = heading + corner_before, psi - corner_before
+
+        def rate(x, y, k=curvature):
+            return -np.sin(y) / lever(depth_at(x)) - k
+
+        path = solve_ivp(
+            rate,
+            (begin, begin + length),
+            [psi],
+            method="DOP853",
+            rtol=1e-11,
+            atol=1e-12,
+            dense_output=True,
+            max_step=0.5,
+        )
+        rows = (s >= begin) & (s <= begin + length)
+        theta = heading + curvature * (s[rows] - begin) + path.sol(s[rows])[0]
+        found[rows] = points[rows] - lever(depth_at(s[rows]))[:, None] * oracle.unit(theta)
+        heading, psi, begin = heading + curvature * length, path.y[0, -1], begin + length
+    return found
+
+
+BENDS = {
+    "arc": (np.vstack([line((-20, 0), (0, 0)), arc(12.0, np.pi)]), [(20, 0, 0), (12 * np.pi, 1 / 12, 0)]),
+    "corner": (corner(60), [(30, 0, 0), (30, 0, np.pi / 3)]),
+    "line": (line((3, 3), (43, 3)), [(40, 0, 0)]),
+}
+
+
+@pytest.mark.parametrize("wide", [(1.68, 1.68), (1.0, 2.0)])
+@pytest.mark.parametrize("bend", BENDS)
+def test_contact_comes_back(bend, wide):
+    middle_mm, parts = BENDS[bend]
+    painted = Painted(stroke_of(middle_mm, [(0.0, wide[0]), (1.0, wide[1])]), 1e-6, parts=2, step=1.0)
+    length = sum(p[0] for p in parts)
+
+    def depth_at(s):
+        return (wide[0] + (wide[1] - wide[0]) * np.asarray(s) / length) / 0.42
+
+    rows = painted.taut[(painted.s[painted.taut] > 5) & (painted.s[painted.taut] < length - 1e-3)]
+    wanted = contact_behind(parts, depth_at, painted.s[rows], painted.widest[rows])
+    assert len(rows) > 10
+    assert painted.rows.contact_mm[rows] == pytest.approx(wanted, abs=1e-6)
+
+
+@pytest.mark.parametrize("half_width", [0.25, 0.4, 1.0, 2.0])
+def test_contact_settles_on_its_own_circle(half_width):
+    """m on a circle of radius R, lever e: P runs at sqrt(R^2 - e^2), ahead of m where e is negative."""
+    radius, depth = 12.0, half_width / 0.42
+    painted = Painted(stroke_of(arc(radius, 4.0), [(0.0, half_width)]), 1e-6, parts=2, step=1.0)
+    e = float(lever(depth))
+    far = 20 * abs(e)  # the start, for e < 0 the end, is forgotten by exp(-s/|e|)
+    s = painted.s[painted.taut]
+    length = painted.middle.length
+    rows = (
+        painted.taut[(s > far) & (s < length - 0.1)] if e > 0 else painted.taut[(s > 1) & (s < length - far)]
+    )
+    away = painted.rows.contact_mm[rows] - [0, radius]
+    assert len(rows) > 100
+    assert np.hypot(*away.T) == pytest.approx(np.sqrt(radius**2 - e**2), abs=1e-6)
+    behind = np.angle((painted.widest[rows] - [0, radius]) @ [1, 1j] / (away @ [1, 1j]))
+    assert behind == pytest.approx(np.arcsin(e / radius), abs=1e-6)
+    assert painted.rows.depth_mm[rows] == pytest.approx(depth, abs=1e-9)
+
+
+def test_tcp_is_a_lag_ahead_along_the_heading():
+    """q = P + r T wherever the brush is taut, at the poses themselves."""
+    painted = Painted(stroke_of(smooth(np.random.default_rng(8), 3), [(0.0, 0.8), (1.0, 2.0)]), 1e-3, parts=1)
+    rows, k = painted.rows, painted.taut
+    ahead = LAG(rows.depth_mm[k])[:, None] * oracle.unit(rows.heading_rad[k])
+    assert rows.tcp_mm[k] == pytest.approx(rows.contact_mm[k] + ahead, abs=1e-9)
+    step = np.diff(rows.contact_mm[k], axis=0)
+    moved = np.hypot(*step.T) > 1e-3
+    along = np.angle((step @ [1, 1j]) / np.exp(0.5j * (rows.heading_rad[k][1:] + rows.heading_rad[k][:-1])))
+    assert np.abs(along[moved]).max() < 0.02
+
+
+# Ends ---------------------------------------------------------------------------------------------
+
+
+def reach(painted, point, direction, rows):
+    """How far the footprints of some rows reach beyond a point [mm]."""
+    marks, farthest = painted.rows, -np.inf
+    for k in rows:
+        if marks.depth_mm[k] > 0:
+            outline = core.footprint_at(ROUND.footprints, marks.depth_mm[k], marks.pull[k])
+            outline = oracle.placed(
+                outline, marks.contact_mm[k], marks.heading_rad[k], 0.52 * marks.depth_mm[k]
+            )
+            farthest = max(farthest, ((outline - point) @ direction).max())
+    return farthest
+
+
+@pytest.mark.parametrize("half_width", [0.25, 0.5, 1.0, 1.68, 2.5, 4.0])
+@pytest.mark.parametrize("seed", [11, 12])
+def test_ends_of_the_mark(half_width, seed):
+    """No tail after the lift, nothing before the wanted start; the patch rests while the brush is lifted."""
+    painted = Painted(
+        stroke_of(smooth(np.random.default_rng(seed), 3), [(0.0, half_width)]), 1e-3, parts=12, step=0.5
+    )
+    (start, end), (first, last) = painted.middle.at([0, painted.middle.length])
+    near = np.array_split(np.arange(len(painted.rows.pose)), 2)
+    halves = [
+        rows[np.hypot(*(painted.widest[rows] - p).T) < 12][::2]
+        for rows, p in zip(near, (start, end), strict=True)
+    ]
+    assert reach(painted, end, last, halves[1]) <= half_width + 2e-3
+    assert reach(painted, start, -first, halves[0]) <= half_width + 2e-3
+    depth = half_width / 0.42
+    front = min(half_width, max(7 - WIDEST(depth), 0.25 * half_width))
+    assert reach(painted, end, last, halves[1]) >= front - 0.06
+    assert reach(painted, start, -first, halves[0]) >= min(half_width, WIDEST(depth)) - 0.06
+    lifting = np.flatnonzero(painted.rows.depth_mm < 0.999 * depth)
+    lifting = lifting[lifting > len(painted.rows.pose) // 2]
+    held = painted.rows.contact_mm[lifting[0]]
+    assert np.hypot(*(painted.rows.contact_mm[lifting] - held).T).max() < 1e-6
+    landing = painted.rows.contact_mm[: painted.taut[0]]
+    assert np.hypot(*(landing - landing[0]).T).max() < 1e-6
+
+
+def test_a_plain_lift_would_leave_a_tail():
+    """The same measure does find the tail of an uncompensated stroke."""
+    painted = Painted(
+        stroke_of(line((0, 0), (40, 0)), [(0.0, 1.68)]), 1e-3, method="none", parts=12, step=0.5
+    )
+    contact = painted.rows.contact_mm
+    lifting = painted.rows.pose >= painted.rows.pose[-1] - 12
+    assert contact[-1, 0] - contact[lifting][0, 0] == pytest.approx(LAG(4.0) - LAG(0.0), abs=1e-8)
+
+
+def test_a_dab_has_its_widest_section_where_it_was_drawn():
+    stroke = stroke_of(np.array([[3.0, 4.0] * 4]), [(0.0, 1.0)])
+    painted = Painted(stroke, 0.05)
+    deepest = np.argmax(painted.rows.depth_mm)
+    assert painted.rows.depth_mm[deepest] == pytest.approx(1 / 0.42, abs=1e-9)
+    assert painted.widest[deepest] == pytest.approx([3, 4], abs=0.05)
+    assert (
+        reach(painted, np.array([3.0, 4.0]), np.array([0.0, 1.0]), range(len(painted.rows.pose)))
+        <= 1.0 + 1e-6
+    )
+
+
+# None, constant, and what is refused --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
+def test_none_keeps_the_tcp_on_the_middle_line(tolerance):
+    middle = np.vstack([smooth(np.random.default_rng(5), 3)])
+    found = core.compensate(
+        [stroke_of(middle, [(0.0, 0.8), (1.0, 2.0)])], ROUND, (99.0, 99.0), "none", tolerance
+    )
+    poses, on = found.plan.passes[0].poses_mm, oracle.Middle(middle)
+    assert poses[[0, -1], 2] == pytest.approx(0, abs=0)
+    assert poses[[0, 1], :2] == pytest.approx(np.tile(middle[0, :2], (2, 1)), abs=1e-9)
+    assert poses[[-2, -1], :2] == pytest.approx(np.tile(middle[-1, 6:], (2, 1)), abs=1e-9)
+    distance, s = on.nearest(poses[1:-1, :2])
+    assert distance.max() < 1e-9
+    assert -poses[1:-1, 2] == pytest.approx((0.8 + 1.2 * s / on.length) / 0.42, abs=1e-6)
+    assert np.all(np.diff(s) > 0)
+    between = oracle.subdivide(poses[1:-1], 8)
+    distance, s = on.nearest(between[:, :2])
+    assert distance.max() <= tolerance
+    assert -between[:, 2] == pytest.approx((0.8 + 1.2 * s / on.length) / 0.42, abs=max(tolerance, 1e-6))
+
+
+@pytest.mark.parametrize("lag", [None, 5.0])
+@pytest.mark.parametrize("tolerance", [0.05, 1e-3])
+def test_constant_runs_a_constant_lag_ahead(lag, tolerance):
+    middle = line((0, 0), (20, 0), (20, 18))
+    curve = smooth(np.random.default_rng(5), 3)
+    for cubics, has_corner in ((middle, True), (curve, False)):
+        stroke = stroke_of(cubics, [(0.0, 0.8), (0.6, 1.2), (1.0, 2.0)])
+        found = core.compensate([stroke], ROUND, (99.0, 99.0), "constant", tolerance, lag)
+        poses, on = found.plan.passes[0].poses_mm, oracle.Middle(cubics)
+        grid = (np.arange(200001) + 0.5) / 200001
+        r0 = lag or float(LAG(np.median(np.interp(grid, [0, 0.6, 1], [0.8, 1.2, 2.0]) / 0.42)))
+        (start, end), (first, last) = on.at([0, on.length])
+        assert poses[0] == pytest.approx([*start, 0], abs=1e-9)
+        assert poses[1] == pytest.approx([*(start + r0 * first), -0.8 / 0.42], abs=2e-3)
+        assert poses[-2] == pytest.approx([*(end + r0 * last), -2 / 0.42], abs=2e-3)
+        assert poses[-1] == pytest.approx([*poses[-2, :2], 0], abs=0)
+        s = np.linspace(0, on.length, 40001)
+        points, tangents = on.at(s)
+        wanted = points + r0 * tangents
+        if has_corner:
+            turn = np.linspace(0, np.pi / 2, 4001)
+            wanted = np.vstack([wanted, [20, 0] + r0 * oracle.unit(turn)])
+        near, _ = oracle.cKDTree(wanted).query(oracle.subdivide(poses[1:-1], 4)[:, :2])
+        assert near.max() <= tolerance + 2e-3  # 2e-3: spacing of the samples, rounding of the median
+        far, _ = oracle.cKDTree(oracle.subdivide(poses[1:-1], 1, 1e-2)[:, :2]).query(wanted[::20])
+        assert far.max() <= tolerance + 8e-3
+
+
+def test_rigid_pen_follows_the_line():
+    rigid = find_brush("rigid")
+    middle = smooth(np.random.default_rng(7), 3)
+    for method in ("none", "closed"):
+        stroke = stroke_of(middle, [(0.0, rigid.half_width_range_mm()[1])])
+        found = core.compensate([stroke], rigid, (99.0, 99.0), method, 1e-3)
+        rows = core.simulate(found.plan, rigid).passes[0]
+        distance, _ = oracle.Middle(middle).nearest(rows.contact_mm)
+        assert distance.max() <= 1e-3
+
+
+def test_widths_out_of_reach_are_refused_with_the_range():
+    for half_width in (4.3, -1.0, np.nan):
+        with pytest.raises(ValueError, match="width") as refusal:
+            core.compensate([stroke_of(line((0, 0), (40, 0)), [(0.0, half_width)])], ROUND, (99.0, 99.0))
+        assert refusal.value.where == "s"
+    with pytest.raises(ValueError, match=r"8\.4") as refusal:
+        core.compensate([stroke_of(line((0, 0), (40, 0)), [(0.0, 1.0), (1.0, 4.5)])], ROUND, (99.0, 99.0))
+    assert refusal.value.range is not None
+
+
+def test_strokes_keep_their_order_and_names():
+    strokes = [
+        core.Stroke(id=f"n{k}", middle_mm=line((k, 0), (k + 20, 5)), half_width=[(0.0, 1.0)])
+        for k in range(5)
+    ]
+    found = core.compensate(strokes, ROUND, (99.0, 99.0))
+    assert [p.stroke for p in found.plan.passes] == [f"n{k}" for k in range(5)]
+    assert len(found.misses) == 5
+    assert all(p.speed_mm_s <= 25 for p in found.plan.passes)
+
+
+def test_compensation_turns_with_the_sheet():
+    middle, c, s = smooth(np.random.default_rng(9), 3), np.cos(0.7), np.sin(0.7)
+    turned = (middle.reshape(-1, 2) @ [[c, s], [-s, c]] + [50, 20]).reshape(-1, 8)
+    here, there = (Painted(stroke_of(m, [(0.0, 1.0), (1.0, 1.8)]), 0.05).poses for m in (middle, turned))
+    assert len(here) == len(there)
+    assert there[:, :2] == pytest.approx(here[:, :2] @ [[c, s], [-s, c]] + [50, 20], abs=1e-6)
+    assert there[:, 2] == pytest.approx(here[:, 2], abs=1e-6)

@@ -1,0 +1,302 @@
+"""Includes and imports held against the table of rooms in ARCHITECTURE.md; one stem everywhere."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CPP = ROOT / "cpp"
+PACKAGE = ROOT / "python" / "brushsvg"
+HEADERS = CPP / "include" / "brushsvg"
+
+# Headers that need no test of their own stem, and why.
+UNTESTED = {
+    "brushsvg": "includes the others and nothing else",
+    "error": "two value types; what is said with them is tested where it is said",
+    "lag_impl": "the bodies of lag.hpp, tested with it",
+    "marks": "value types; simulate, coverage and io fill and carry them",
+    "plan": "value types; compensate and io fill and carry them",
+}
+
+
+# The table ------------------------------------------------------------------------------------------
+
+
+@cache
+def table() -> tuple[tuple[tuple[str, ...], frozenset[str]], ...]:
+    """(Rooms of a row, what they may touch), from top to bottom."""
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    lines = iter(text.splitlines())
+    next(line for line in lines if line.startswith("| room | may touch |"))
+    next(lines)
+    rows = []
+    for line in lines:
+        if not line.startswith("|"):
+            break
+        rooms, touched = (re.findall("`([^`]+)`", cell) for cell in line.split("|")[1:3])
+        rows.append((tuple(rooms), frozenset(touched)))
+    return tuple(rows)
+
+
+def row_of(room: str) -> int | None:
+    return next((number for number, (rooms, _) in enumerate(table()) if room in rooms), None)
+
+
+# What a file touches --------------------------------------------------------------------------------
+
+
+def cpp_room(path: Path) -> str:
+    """Stem of a header or source of the core, folder of anything else."""
+    folder = path.relative_to(CPP).parts[0]
+    return path.stem if folder in ("include", "src") else folder
+
+
+def cpp_touches(path: Path, text: str) -> set[str]:
+    touched = set()
+    for line in re.findall(r"^[ \t]*#[ \t]*include\b(.*)", text, re.MULTILINE):
+        found = re.match(r'\s*(?:"([^"]+)"|<([^>]+)>)', line)
+        assert found, f"{path}: #include{line} does not say what it includes"
+        quoted, angled = found.groups()
+        if angled:
+            if not re.fullmatch("[a-z0-9_]+", angled):  # <vector> is the standard library's
+                touched.add(angled.split("/")[0])
+            continue
+        name = Path(quoted).name
+        homes = {cpp_room(home) for home in CPP.rglob(name)} or {quoted}
+        assert len(homes) == 1, f"there are several {name}: {sorted(homes)}"
+        touched |= homes
+    for module in re.findall(r'\bimport\(\s*"([^"]+)"', text):  # pybind11's
+        touched.add(python_target(module.split(".")))
+    return touched - {cpp_room(path)}
+
+
+def python_room(path: Path) -> str:
+    return path.relative_to(PACKAGE).with_suffix("").parts[0]
+
+
+def python_target(parts: list[str]) -> str:
+    """Room of a module by its full name; a name that is no module of the package comes from __init__."""
+    if parts[0] != "brushsvg":
+        return parts[0]
+    inside = parts[1] if len(parts) > 1 else "__init__"
+    is_module = inside == "_core" or (PACKAGE / inside).is_dir() or (PACKAGE / f"{inside}.py").is_file()
+    return inside if is_module else "__init__"
+
+
+def python_touches(path: Path, text: str) -> set[str]:
+    """Every import anywhere in the file, those inside functions and for type checkers too."""
+    folder = ["brushsvg", *path.relative_to(PACKAGE).parts[:-1]]
+    names: list[list[str]] = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            names += [alias.name.split(".") for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = folder[: len(folder) - node.level + 1] if node.level else []
+            base = [*base, *(node.module.split(".") if node.module else [])]
+            names += [[*base, alias.name] for alias in node.names]
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "__import__")):
+            constant = node.args and isinstance(node.args[0], ast.Constant)
+            assert constant or path == PACKAGE / "__init__.py", f"{path}: an import that cannot be followed"
+            names += [node.args[0].value.split(".")] if constant else []
+    touched = {python_target(name) for name in names}
+    return {name for name in touched if name not in sys.stdlib_module_names} - {python_room(path)}
+
+
+def complaints(path: Path, text: str) -> list[str]:
+    """What a file does that its room may not, in sentences."""
+    is_python = path.suffix == ".py"
+    room = python_room(path) if is_python else cpp_room(path)
+    where = path.relative_to(ROOT).as_posix()
+    number = row_of(room)
+    if number is None:
+        return [f"{where} belongs to room {room}, which has no row in ARCHITECTURE.md"]
+    rooms, may = table()[number]
+    allowed = {*may, *rooms}
+    if "*" in may:
+        allowed.update(*(names for names, _ in table()[:number]))
+    touched = python_touches(path, text) if is_python else cpp_touches(path, text)
+    found = [
+        f"{where} touches {name}, which room {room} may not: see the table in ARCHITECTURE.md"
+        for name in sorted(touched - allowed)
+    ]
+    if "boost" in touched and path != CPP / "src" / "region.cpp":
+        found.append(f"{where} includes Boost, which is private to cpp/src/region.cpp")
+    return found
+
+
+@cache
+def files() -> dict[Path, str]:
+    paths = [path for path in CPP.rglob("*") if path.suffix in (".hpp", ".cpp", ".h")]
+    paths += PACKAGE.rglob("*.py")
+    return {path: path.read_text(encoding="utf-8") for path in sorted(paths)}
+
+
+# The house ------------------------------------------------------------------------------------------
+
+
+def test_every_file_keeps_to_its_room():
+    assert len(files()) > 60
+    found = [sentence for path, text in files().items() for sentence in complaints(path, text)]
+    assert not found, "\n" + "\n".join(found)
+
+
+def test_the_table_allows_what_is_needed_and_no_more():
+    touched: dict[int, set[str]] = {number: set() for number in range(len(table()))}
+    inhabited = set()
+    for path, text in files().items():
+        room = python_room(path) if path.suffix == ".py" else cpp_room(path)
+        inhabited.add(room)
+        touches = python_touches if path.suffix == ".py" else cpp_touches
+        if (number := row_of(room)) is not None:
+            touched[number] |= touches(path, text)
+    for number, (rooms, may) in enumerate(table()):
+        empty = set(rooms) - inhabited - {"_core"}  # the built module
+        assert not empty, f"the table has a row for {sorted(empty)}, where there is no file"
+        unused = may - touched[number] - {"*"}
+        assert not unused, f"the table lets {rooms[0]} touch {sorted(unused)}, which it does not"
+
+
+def test_nothing_points_left():
+    rooms = [name for names, _ in table() for name in names]
+    assert len(rooms) == len(set(rooms)), "a room has two rows"
+    for number, (names, may) in enumerate(table()):
+        for name in may & set(rooms):
+            assert row_of(name) < number, f"the row of {names[0]} touches {name}, which is not above it"
+
+
+def test_arrows_that_must_not_be():
+    def reach(room: str, seen: frozenset[str] = frozenset()) -> set[str]:
+        below = set(table()[row_of(room)][1]) - seen if row_of(room) is not None else set()
+        return below.union(*(reach(name, seen | below) for name in below))
+
+    for room, others in {
+        "simulate": {"compensate", "stroke", "wanted"},
+        "compensate": {"io", "bindings"},
+        "importers": {"_core", "strokes", "brushes", "cell", "program"},
+        "program": {"_core", "design", "brushes", "strokes"},
+        "posts": {"_core", "design", "brushes", "strokes", "importers", "cv2"},
+        "render": {"design", "brushes", "cell", "program"},
+    }.items():
+        assert not reach(room) & others, f"{room} reaches {sorted(reach(room) & others)}"
+
+
+def test_the_core_knows_no_vendor_and_no_format():
+    foreign = re.compile(r"\b(svg|dxf|g-?code|linuxcnc|rs274|toml|nlohmann|pybind11|python)\b", re.IGNORECASE)
+    for path, text in files().items():
+        if path.is_relative_to(HEADERS) or path.is_relative_to(CPP / "src"):
+            found = foreign.search(text)
+            assert not found, f"{path.relative_to(ROOT)} speaks of {found[0]}"
+
+
+@pytest.mark.parametrize("header", sorted(HEADERS.glob("*.hpp")), ids=lambda path: path.stem)
+def test_one_stem_everywhere(header):
+    stem = header.stem
+    test = ROOT / "tests" / "cpp" / f"{stem}_test.cpp"
+    if stem in UNTESTED:
+        assert not test.exists(), f"{test.name} exists: take {stem} off the list of headers without a test"
+    else:
+        assert test.exists(), f"{header.name} has no {test.name}"
+    if stem not in ("brushsvg", "lag_impl"):
+        assert f'#include "brushsvg/{stem}.hpp"' in files()[HEADERS / "brushsvg.hpp"], (
+            f"brushsvg.hpp lacks {stem}.hpp"
+        )
+    source = CPP / "src" / f"{stem}.cpp"
+    if source.exists():
+        assert files()[source].startswith(f'#include "brushsvg/{stem}.hpp"\n'), (
+            f"{source.name} must include its own header first: that shows the header stands alone"
+        )
+
+
+def test_no_test_and_no_binding_is_forgotten():
+    listed = (ROOT / "tests" / "cpp" / "CMakeLists.txt").read_text()
+    for test in (ROOT / "tests" / "cpp").glob("*_test.cpp"):
+        assert test.name in listed, f"{test.name} is not built: name it in tests/cpp/CMakeLists.txt"
+        stem = test.stem.removesuffix("_test")
+        assert (HEADERS / f"{stem}.hpp").exists() or (CPP / stem).is_dir(), f"{test.name} tests no header"
+    called = files()[CPP / "bindings" / "module.cpp"]
+    for binding in (CPP / "bindings").glob("bind_*.cpp"):
+        stem = binding.stem.removeprefix("bind_")
+        assert f"    {binding.stem}(m);" in called, f"module.cpp does not call {binding.stem}"
+        assert (HEADERS / f"{stem}.hpp").exists() or (CPP / stem).is_dir(), f"{binding.name} binds no header"
+
+
+# The documents --------------------------------------------------------------------------------------
+
+DOCUMENTS = ("ARCHITECTURE.md", "docs/equations.md", "docs/brush.md")
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_documents_name_files_that_exist(document):
+    quoted = re.findall(r"`([\w.-]+/[\w./-]+)`", (ROOT / document).read_text(encoding="utf-8"))
+    assert quoted
+    for path in quoted:
+        if path.isupper() or "NAME" in path or path.startswith("brushsvg/"):  # a pattern; a format's name
+            continue
+        assert (ROOT / path).exists() or (PACKAGE / path).exists(), f"{document} names {path}, which is gone"
+
+
+def test_equations_name_code_and_tests_that_exist():
+    """In a cell of a table, names in backquotes stand in a file that the same cell names."""
+    rows = 0
+    for line in (ROOT / "docs" / "equations.md").read_text(encoding="utf-8").splitlines():
+        for cell in line.split("|") if line.startswith("|") else ():
+            words = re.findall("`([^`]+)`", cell)
+            paths = [word for word in words if re.fullmatch(r"[\w./-]+\.(hpp|cpp|py|json)", word)]
+            if not paths:
+                continue
+            text = "".join((ROOT / path).read_text(encoding="utf-8") for path in paths)
+            for name in set(words) - set(paths):
+                assert name in text, f"docs/equations.md: {name} is not in {' or '.join(paths)}"
+                rows += 1
+    assert rows > 20
+
+
+# The watchman is awake ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "named"),
+    [
+        ("cpp/src/simulate.cpp", '#include "brushsvg/compensate.hpp"', "touches compensate"),
+        ("cpp/include/brushsvg/plan.hpp", '  #  include  "brushsvg/brush.hpp"', "touches brush"),
+        ("cpp/src/brush.cpp", "#include <nlohmann/json.hpp>", "touches nlohmann"),
+        ("cpp/src/lag.cpp", "#include <pybind11/eigen.h>", "touches pybind11"),
+        ("cpp/src/coverage.cpp", "#include <boost/polygon/polygon.hpp>", "touches boost"),
+        (
+            "cpp/include/brushsvg/region.hpp",
+            "#include <boost/polygon/polygon.hpp>",
+            "private to cpp/src/region",
+        ),
+        ("cpp/src/sweep.hpp", '#include "brush_json.hpp"', "touches io"),
+        ("cpp/bindings/bind_io.cpp", 'py::module_::import("brushsvg.convert")', "touches convert"),
+        ("cpp/src/spline.cpp", "", "room spline, which has no row"),
+        ("cpp/fit/refine.cpp", "", "room fit, which has no row"),
+        ("python/brushsvg/posts/gcode.py", "def f():\n    from ..design import Design", "touches design"),
+        ("python/brushsvg/posts/abc.py", "from shapely.geometry import Point", "touches shapely"),
+        ("python/brushsvg/importers/dxf.py", "from .. import _core", "touches _core"),
+        ("python/brushsvg/importers/dxf.py", "import brushsvg.cell as c", "touches cell"),
+        ("python/brushsvg/program.py", "from brushsvg import find_brush", "touches __init__"),
+        ("python/brushsvg/program.py", "if TYPE_CHECKING:\n    from .design import Design", "touches design"),
+        ("python/brushsvg/report.py", "import importlib\nimportlib.import_module('cv2')", "touches cv2"),
+        ("python/brushsvg/chart.py", "", "room chart, which has no row"),
+    ],
+)
+def test_a_planted_fault_is_named(path, text, named):
+    found = complaints(ROOT / path, text)
+    assert any(named in sentence for sentence in found), found
+
+
+def test_what_is_allowed_is_not_named():
+    assert not complaints(CPP / "src" / "simulate.cpp", '#include <vector>\n#include "brushsvg/lag.hpp"')
+    assert not complaints(PACKAGE / "posts" / "new.py", "import math\nfrom ..program import Move\n")
+
+
+def test_an_import_that_cannot_be_followed_is_refused():
+    with pytest.raises(AssertionError, match="cannot be followed"):
+        complaints(PACKAGE / "report.py", "import importlib\nimportlib.import_module(name)")
