@@ -8,10 +8,11 @@ SHELL := /bin/bash
 PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
-SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libboost-dev nlohmann-json3-dev doctest-dev python3 python3-dev python3-venv
+SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libboost-dev nlohmann-json3-dev python3 python3-dev python3-venv
+TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: help setup system demo test lint format cpp-test python-test integration fuzz bench asan clean
+.PHONY: help setup system test-system demo test lint format cpp-test python-test integration fuzz bench asan clean
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -63,26 +64,30 @@ $(VENV)/.dev: $(VENV)/.installed pyproject.toml
 demo: setup
 	@$(BIN)/python examples/demo.py examples/vincent.svg demo
 
-test: setup
+test-system:
+	@$(call install,$(TEST_PACKAGES))
+
+test: setup test-system
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	$(MAKE) --no-print-directory lint cpp-test python-test
 
-lint: $(VENV)/.dev
+lint: $(VENV)/.dev test-system
 	@$(BIN)/ruff check .
 	$(BIN)/ruff format --check -q .
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
+	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io cpp examples benchmarks
 
 format: $(VENV)/.dev
 	@$(BIN)/ruff check --fix -q .
 	$(BIN)/ruff format -q .
 	$(BIN)/clang-format -i $$(git ls-files '*.cpp' '*.hpp')
 
-cpp-test:
+cpp-test: test-system
 	@cmake --preset dev >/dev/null
 	cmake --build --preset dev
 	ctest --preset dev
 
-asan:
+asan: test-system
 	@cmake --preset asan >/dev/null
 	cmake --build --preset asan --target brushsvg_tests
 	ctest --preset asan -R '^cpp$$'

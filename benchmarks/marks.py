@@ -1,8 +1,9 @@
-"""Predicted mark of a 200 mm stroke with a 14 x 10 mm footprint at 20 px/mm on 4000 x 4000 pixels: our coverage beside
-the article's loop (rotate and put down a footprint's picture for every dab) and the floor (filling the touched area).
+"""Predicted mark of a 200 mm stroke, footprint 14 x 10 mm, at 20 px/mm on 4000 x 4000 pixels: our coverage
+beside the article's loop (rotate and put down a footprint's picture for every dab) and the floor (filling the
+touched area).
 
-Edge error: along the normal of a dense shapely union's outline, the distance between that outline and the edge that the
-coverage shows, mean of its absolute value over all points of the outline.
+Edge error: along the normal of a dense shapely union's outline, the distance between that outline and the edge
+that the coverage shows, mean of its absolute value over all points of the outline.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def stroke_200_mm():
 
 
 def dab_loop(marks, outline: np.ndarray, px_per_mm: float, dabs: int) -> np.ndarray:
-    """The article's way: turn the footprint's picture to every heading and keep the darker pixel, on a small region."""
+    """The article's way: turn the footprint's picture to every heading, keep the darker pixel, in a window."""
     canvas = np.zeros((CANVAS_MM * PX_PER_MM,) * 2, np.uint8)
     sharp = 8
     w, h = 14 * PX_PER_MM + 8, 10 * PX_PER_MM + 8
@@ -107,15 +108,17 @@ def edge_error_px(coverage: np.ndarray, shape, px_per_mm: float) -> float:
     at = np.arange(0.0, ring.length, 1.0 / px_per_mm)
     points = shapely.get_coordinates(shapely.line_interpolate_point(ring, at))
     step = 0.2 / px_per_mm
-    along = shapely.get_coordinates(shapely.line_interpolate_point(ring, at + step)) - shapely.get_coordinates(
-        shapely.line_interpolate_point(ring, at - step)
-    )
+    along = shapely.get_coordinates(
+        shapely.line_interpolate_point(ring, at + step)
+    ) - shapely.get_coordinates(shapely.line_interpolate_point(ring, at - step))
     along /= np.linalg.norm(along, axis=1)[:, None]
     outward = np.column_stack([along[:, 1], -along[:, 0]]) * (1 if ring.is_ccw else -1)
     reach = np.arange(-4.0, 4.0, 0.05) + 0.025
     x = points[:, None, 0] * px_per_mm + outward[:, None, 0] * reach - 0.5
     y = (CANVAS_MM - points[:, None, 1]) * px_per_mm - outward[:, None, 1] * reach - 0.5
-    inside = cv2.remap(coverage, x.astype(np.float32), y.astype(np.float32), cv2.INTER_LINEAR).sum(axis=1) * 0.05
+    inside = (
+        cv2.remap(coverage, x.astype(np.float32), y.astype(np.float32), cv2.INTER_LINEAR).sum(axis=1) * 0.05
+    )
     error = np.abs(inside - 4.0)
     # at the tip and where edges meet in a corner the normal crosses another edge: no distance to speak of
     return float(error[error < 1.5].mean())
@@ -157,7 +160,8 @@ def main() -> None:
         text = f"  {name:<58} {ms:9.2f} ms"
         if picture is not None:
             painted = float(picture.sum(dtype=np.float64)) / PX_PER_MM**2
-            text += f"   edge {edge_error_px(picture, shape, PX_PER_MM):.3f} px   area {100 * (painted / shape.area - 1):+.3f} %"
+            edge_px, excess = edge_error_px(picture, shape, PX_PER_MM), 100 * (painted / shape.area - 1)
+            text += f"   edge {edge_px:.3f} px   area {excess:+.3f} %"
         print(text)
 
     print(f"mark of 200 mm, footprint 14 x 10 mm, {PX_PER_MM} px/mm, {len(rows.pose)} rows, medians")

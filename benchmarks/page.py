@@ -1,5 +1,5 @@
-"""Seconds for a page of 1,000 strokes through `convert`, by stage, beside what reading the same file with svgpathtools
-alone takes and the floor (parsing the XML)."""
+"""Seconds for a page of 1,000 strokes through `convert`, by stage, beside what reading the same file with
+svgpathtools alone takes and the floor (parsing the XML)."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ import numpy as np
 
 from brushsvg import _core
 from brushsvg.brushes import find_brush
-from brushsvg.convert import encode, problems
 from brushsvg.cell import load_cell
+from brushsvg.convert import encode, problems
 from brushsvg.importers import read_drawing
 from brushsvg.strokes import strokes as strokes_of
 
@@ -68,7 +68,11 @@ def main() -> None:
         stage("limits", lambda: problems(done.plan, brush, marks, load_cell()))
         stage("G-code", lambda: encode(".ngc", done.plan, brush, "page"))
         begin = time.perf_counter()
-        ran = subprocess.run([Path(sys.executable).with_name("brushsvg"), "convert", drawing, program], capture_output=True, text=True)
+        ran = subprocess.run(
+            [Path(sys.executable).with_name("brushsvg"), "convert", drawing, program],
+            capture_output=True,
+            text=True,
+        )
         whole = time.perf_counter() - begin
         assert ran.returncode == 0, ran.stderr
         begin = time.perf_counter()

@@ -9,9 +9,10 @@
 namespace brushsvg {
 namespace {
 
-std::string format(const char* pattern, double a = 0.0, double b = 0.0, double c = 0.0) {
+template <class... Numbers>
+std::string format(const char* pattern, Numbers... numbers) {
     char text[256];
-    std::snprintf(text, sizeof text, pattern, a, b, c);
+    std::snprintf(text, sizeof text, pattern, numbers...);
     return text;
 }
 

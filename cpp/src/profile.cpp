@@ -66,17 +66,16 @@ std::vector<PolynomialPiece> pieces(const Profile& profile, double lo, double hi
 }
 
 std::vector<PolynomialPiece> difference(const Profile& a, const Profile& b, double lo, double hi) {
-    const auto as = pieces(a, lo, hi), bs = pieces(b, lo, hi);
     std::vector<PolynomialPiece> out;
-    for (std::size_t i = 0, j = 0; i < as.size() && j < bs.size();) {
-        PolynomialPiece piece{std::max(as[i].lo, bs[j].lo), std::min(as[i].hi, bs[j].hi), as[i].coefficients};
-        piece.coefficients.resize(std::max(piece.coefficients.size(), bs[j].coefficients.size()), 0.0);
-        for (std::size_t k = 0; k < bs[j].coefficients.size(); ++k) piece.coefficients[k] -= bs[j].coefficients[k];
-        if (piece.lo < piece.hi || out.empty()) out.push_back(piece);
-        const double a_end = as[i].hi, b_end = bs[j].hi;
-        if (a_end <= b_end) ++i;
-        if (b_end <= a_end) ++j;
-    }
+    for (const PolynomialPiece& pa : pieces(a, lo, hi))
+        for (const PolynomialPiece& pb : pieces(b, lo, hi)) {
+            const double from = std::max(pa.lo, pb.lo), to = std::min(pa.hi, pb.hi);
+            if (!(from < to)) continue;
+            PolynomialPiece both{from, to, pa.coefficients};
+            both.coefficients.resize(std::max(pa.coefficients.size(), pb.coefficients.size()), 0.0);
+            for (std::size_t k = 0; k < pb.coefficients.size(); ++k) both.coefficients[k] -= pb.coefficients[k];
+            out.push_back(std::move(both));
+        }
     return out;
 }
 

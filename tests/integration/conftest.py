@@ -1,5 +1,6 @@
 """Drawings to feed the installed command, and what it makes of them."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -56,6 +57,21 @@ def converted(tmp_path_factory, drawing):
             for out in ("plan.json", "program.ngc"):
                 brushsvg("convert", drawing(name), out, *flags, cwd=folder, status=0)
         return known[key]
+
+    return get
+
+
+@pytest.fixture(scope="session")
+def reported(tmp_path_factory, drawing):
+    """A function: source, flags -> what report --json says of it."""
+    folder = tmp_path_factory.mktemp("reports")
+    known: dict[tuple, dict] = {}
+
+    def get(name: str, *flags: str) -> dict:
+        if (name, *flags) not in known:
+            done = brushsvg("report", drawing(name), "--json", *flags, cwd=folder, status=0)
+            known[name, *flags] = json.loads(done.out)
+        return known[name, *flags]
 
     return get
 

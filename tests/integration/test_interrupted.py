@@ -14,11 +14,11 @@ from command import COMMAND, OPEN, brushsvg, listing
 
 @pytest.fixture(scope="session")
 def long_drawing():
-    """1,500 strokes: several seconds of work."""
+    """700 strokes: some seconds of work."""
     wave = "c10 -20 25 -20 30 0s10 10 15 -5"
     paths = "".join(
         f'<path d="M{10 + 58 * column} {20 + 20 * row}{wave}" fill="none" stroke="#000" stroke-width="3"/>'
-        for row in range(75)
+        for row in range(35)
         for column in range(20)
     )
     return f"{OPEN.replace('120', '1200').replace('60', '1600')}{paths}</svg>"

@@ -29,10 +29,6 @@ def ids_in_order(drawing):
     return [node.get("id") for node in ET.parse(drawing).getroot().iter() if node.tag in DRAWN]
 
 
-def report(drawing, folder, *flags):
-    return json.loads(brushsvg("report", drawing, "--json", *flags, cwd=folder, status=0).out)
-
-
 def test_the_plan_holds_every_stroke_in_order(source, drawing, converted):
     plan = json.loads((converted(source) / "plan.json").read_text(encoding="utf-8"))
     assert (plan["format"], plan["version"], plan["brush"]) == ("brushsvg/plan", 1, "round-6")
@@ -71,10 +67,10 @@ def test_strokes_are_painted_in_the_direction_they_were_drawn(source, drawing, c
     assert seen == {"robot": 2, "inkscape": 2, "inkscape-plain": 2}.get(source, len(plan["passes"]))
 
 
-def test_compensation_is_what_makes_the_difference(source, drawing, tmp_path):
+def test_compensation_is_what_makes_the_difference(source, reported):
     least, gain = OVERLAP.get(source, (0.96, 0.3))
-    closed = report(drawing(source), tmp_path)
-    none = report(drawing(source), tmp_path, "--compensation", "none")
+    closed = reported(source, "--compensation", "closed")
+    none = reported(source, "--compensation", "none")
     assert (closed["compensation"], none["compensation"]) == ("closed", "none")
     assert closed["total"]["overlap"] > least
     assert closed["total"]["overlap"] > none["total"]["overlap"] + gain
@@ -87,9 +83,9 @@ def test_compensation_is_what_makes_the_difference(source, drawing, tmp_path):
         assert with_it["overlap"] > without["overlap"]
 
 
-def test_the_report_counts_what_the_plan_holds(source, drawing, converted, tmp_path):
+def test_the_report_counts_what_the_plan_holds(source, converted, reported):
     passes = json.loads((converted(source) / "plan.json").read_text(encoding="utf-8"))["passes"]
-    found = report(drawing(source), tmp_path)
+    found = reported(source, "--compensation", "closed")
     assert [row["stroke"] for row in found["strokes"]] == [each["stroke"] for each in passes]
     for row, each in zip(found["strokes"], passes, strict=True):
         path = np.array(each["poses_mm"])
@@ -142,7 +138,7 @@ def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp
 
 
 @pytest.mark.parametrize("compensation", ["closed", "none"])
-def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, inkscape, tmp_path):
+def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, reported, inkscape, tmp_path):
     """Inkscape renders what was wanted, OpenCV fills marks.json: nothing of ours comes between."""
     width_mm, height_mm = SHEETS_MM[source]
     px_per_mm = PIXELS_ACROSS / width_mm
@@ -152,7 +148,7 @@ def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, ink
     rings = json.loads((tmp_path / "marks.json").read_text(encoding="utf-8"))["outline_mm"]
     painted = filled(rings, height_mm, px_per_mm, wanted.shape)
     overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
-    total = report(drawing(source), tmp_path, *flags)["total"]
+    total = reported(source, *flags)["total"]
     assert overlap == pytest.approx(total["overlap"], abs=0.004)
 
 

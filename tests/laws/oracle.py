@@ -443,9 +443,8 @@ def swept(outlines, convex):
         return shapely.union_all(hulls[shapely.area(hulls) > 1e-12])
     following = np.roll(outlines, -1, axis=1)
     quads = np.stack([outlines[:-1], following[:-1], following[1:], outlines[1:]], axis=2).reshape(-1, 4, 2)
-    quads = shapely.convex_hull(
-        shapely.multipoints(quads.reshape(-1, 2), indices=np.repeat(np.arange(len(quads)), 4))
-    )
+    # an edge that turns about a point of its own sweeps two triangles, not their hull
+    quads = shapely.make_valid(shapely.polygons(quads))
     return shapely.union_all(
         [union_of(list(outlines)), shapely.union_all(quads[shapely.area(quads) > 1e-12])]
     )

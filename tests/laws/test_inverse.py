@@ -1,6 +1,7 @@
 """Compensate, then simulate finely: the widest point must run along the middle line, and P must come back."""
 
 import itertools
+import multiprocessing
 
 import numpy as np
 import oracle
@@ -75,11 +76,13 @@ def zigzag(rng, corners):
 def widths(rng, length, least=0.125):
     """Half widths that change by at most 0.13 mm per mm; half of the strokes taper down to 0.25 mm."""
     count = int(length // 9) + 1
+    step = 0.13 * length / count
     h = [rng.uniform(0.3, 2.5)]
     for _ in range(count):
-        h.append(np.clip(h[-1] + rng.uniform(-1, 1) * 0.13 * length / count, least, 3))
+        h.append(np.clip(h[-1] + rng.uniform(-1, 1) * step, least, 3))
     if rng.random() < 0.5:
-        h[rng.integers(0, count + 1)] = least
+        thin = rng.integers(0, count + 1)
+        h = np.minimum(h, least + step * np.abs(np.arange(count + 1) - thin))
     return [(i / count, float(x)) for i, x in enumerate(h)]
 
 
@@ -204,6 +207,32 @@ def test_any_lag_law(name):
         proper = painted.taut[np.abs(painted.rows.depth_mm - drawn)[painted.taut] < 1e-3]
         assert len(proper) > 100
         assert painted.distance[proper].max() <= 1e-3
+
+
+def _compensated_in_a_process(half_width, results):
+    painted = Painted(stroke_of(line((0, 0), (30, 0)), half_width), 0.05)
+    results.put((np.isfinite(painted.poses).all(), painted.miss.largest_mm, painted.once_taut().max()))
+
+
+@pytest.mark.parametrize("thick", [2.0, 2.5, 3.0])
+def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
+    """From 0.25 mm to 5 mm within 7.5 mm the lever e grows faster than the widest point advances."""
+    for half_width in (
+        [(0.0, 0.125), (0.25, thick), (1.0, thick)],
+        [(0.0, thick), (0.25, 0.125), (0.5, thick), (1.0, thick)],
+    ):
+        results = multiprocessing.get_context("fork").Queue()
+        worker = multiprocessing.get_context("fork").Process(
+            target=_compensated_in_a_process, args=(half_width, results), daemon=True
+        )
+        worker.start()
+        worker.join(10)
+        if worker.is_alive():
+            worker.terminate()
+            pytest.fail("compensate does not come to an end")
+        finite, reported, measured = results.get(timeout=1)
+        assert finite
+        assert reported == pytest.approx(measured, abs=0.01)
 
 
 @pytest.mark.parametrize(("degrees", "remains"), [(100, 0.02), (120, 0.19), (150, 0.69), (180, 1.38)])

@@ -1,5 +1,6 @@
 """The package as a library: its names, what they cost, the examples, and writing a program from Python."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -50,9 +51,15 @@ def test_the_short_example(tmp_path):
 
 
 def test_the_demo_leaves_everything(tmp_path):
-    python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
+    out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
     names = {path.name for path in (tmp_path / "demo").iterdir()}
     assert names == {f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".png")}
+    table = out[: out.index(str(tmp_path))]
+    assert (tmp_path / "demo" / "vincent.report.txt").read_text().endswith("\n\n" + table.removesuffix("\n"))
+    rows = [re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed", line)]
+    overlap = {row[0].split(",")[0]: float(row[1]) for row in reversed(rows)}
+    assert len(rows) == 4
+    assert overlap["none"] + 0.3 < overlap["constant"] < overlap["closed"] - 0.1
 
 
 def plan_of(poses, speed=20.0, sheet=(60.0, 30.0)):

@@ -1,0 +1,82 @@
+"""The way from file to program: the best single lag, and which files are written in which language."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from brushsvg import convert, report
+from brushsvg.brushes import find_brush
+from brushsvg.cell import load_cell
+from brushsvg.errors import Error
+
+TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
+<g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
+<path id="bold" d="M20 60 C50 40 70 70 95 50" stroke-width="4.5"/></g></svg>"""
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    path = tmp_path / "two.svg"
+    path.write_text(TWO_DEPTHS)
+    return path
+
+
+def total(work):
+    return report.measure(work.plan, convert.predict(work), work.brush, work.strokes)[1]
+
+
+def test_the_best_constant_lag_is_the_best_of_all(drawing):
+    best = convert.best_constant(convert.prepare(drawing))
+    assert best.options.compensation == "constant"
+    assert 3 < best.options.lag_mm < 12
+    assert best.options.lag_mm % 0.25 == 0
+    there = total(best).overlap
+    for lag_mm in (0.0, best.options.lag_mm - 1, best.options.lag_mm + 1, 13.0):
+        options = convert.Options(compensation="constant", lag_mm=lag_mm)
+        assert total(convert.prepare(drawing, options)).overlap < there
+    again = convert.prepare(drawing, best.options)
+    assert [p.poses_mm.tolist() for p in again.plan.passes] == [p.poses_mm.tolist() for p in best.plan.passes]
+    assert len(best.misses) == 2
+
+
+def test_the_best_constant_lag_of_a_pen_is_none(drawing):
+    work = convert.prepare(drawing, convert.Options(brush=find_brush("rigid")))
+    assert convert.best_constant(work).options.lag_mm == 0
+
+
+def test_the_comparison_is_a_table(drawing):
+    works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ("none", "closed")}
+    totals = {how: total(work) for how, work in works.items()}
+    lines = report.comparison_text(list(totals.items())).splitlines()
+    assert re.split("  +", lines[2]) == ["compensation", "overlap", "centre mean", "largest"]
+    assert len({len(line) for line in lines[2:]}) == 1
+    for line, (how, figures) in zip(lines[4:], totals.items(), strict=True):
+        name, *numbers = line.split()
+        assert name == how
+        expected = (figures.overlap, figures.centre_mean_mm, figures.centre_largest_mm)
+        assert [float(number) for number in numbers] == pytest.approx(expected, abs=5.1e-4)
+
+
+def test_a_program_is_in_the_language_of_its_cell(drawing):
+    work = convert.prepare(drawing)
+    parts = work.plan, work.brush, "two"
+    assert convert.encode(".ngc", *parts).startswith(b"(title: two)")
+    for suffix in (".txt", "", ".NGC"):
+        with pytest.raises(Error, match=r"neither \.json.* nor \.ngc, for G-code for LinuxCNC"):
+            convert.encode(suffix, *parts)
+    cell = replace(load_cell(), language="semaphore")
+    assert convert.encode(".json", *parts, cell=cell).startswith(b"{")
+    with pytest.raises(
+        Error, match="'semaphore' of cell linuxcnc-3axis is not known; known: linuxcnc"
+    ) as refusal:
+        convert.encode(".ngc", *parts, cell=cell)
+    assert refusal.value.where == "language"
+
+
+def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
+    work = convert.prepare(drawing)
+    work.plan.passes[1].speed_mm_s = 25.5
+    with pytest.raises(Error, match=r"speed 25\.5 mm/s .* \(0, 25\.0\] mm/s of brush round-6") as refusal:
+        convert.encode(".ngc", work.plan, work.brush, "two")
+    assert refusal.value.where == "bold"
