@@ -2,8 +2,8 @@
 beside the article's loop (rotate and put down a footprint's picture for every dab) and the floor (filling the
 touched area).
 
-Edge error: along the normal of a dense shapely union's outline, the distance between that outline and the edge
-that the coverage shows, mean of its absolute value over all points of the outline.
+Edge error: along the normal of a dense shapely union's outline, the distance between that outline and the
+edge that the coverage shows, mean of its absolute value over all points of the outline.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def stroke_200_mm():
 
 
 def dab_loop(marks, outline: np.ndarray, px_per_mm: float, dabs: int) -> np.ndarray:
-    """The article's way: turn the footprint's picture to every heading, keep the darker pixel, in a window."""
+    """The article's way: turn the footprint's picture to each heading, keep the darker pixel, on a window."""
     canvas = np.zeros((CANVAS_MM * PX_PER_MM,) * 2, np.uint8)
     sharp = 8
     w, h = 14 * PX_PER_MM + 8, 10 * PX_PER_MM + 8

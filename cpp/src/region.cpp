@@ -17,6 +17,8 @@ using Set = bp::polygon_set_data<int>;
 
 // 32-bit coordinates at 1e-5 mm reach 21 m; coarser and the area of fine hatching drifts, finer and a page overflows
 constexpr double kUnitsPerMm = 1e5;
+// slivers that rounding leaves between shapes that only touch
+constexpr double kLeastArea = 1e-6;
 
 Polygon to_polygon(const Ring& ring) {
     std::vector<Point> points;
@@ -46,10 +48,13 @@ Rings to_rings(const Set& set) {
     std::vector<PolygonWithHoles> polygons;
     set.get(polygons);
     Rings rings;
+    const auto keep = [&](Ring ring) {
+        if (std::abs(signed_area(ring)) > kLeastArea) rings.push_back(std::move(ring));
+    };
     for (const PolygonWithHoles& polygon : polygons) {
-        rings.push_back(to_ring(polygon.begin(), polygon.end(), true));
+        keep(to_ring(polygon.begin(), polygon.end(), true));
         for (auto hole = polygon.begin_holes(); hole != polygon.end_holes(); ++hole)
-            rings.push_back(to_ring(hole->begin(), hole->end(), false));
+            keep(to_ring(hole->begin(), hole->end(), false));
     }
     return rings;
 }

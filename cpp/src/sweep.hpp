@@ -32,11 +32,16 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
     };
     P x;
     if (crossing(a, b, d, c, x)) {
+        // a little into the shapes (to the left of both edges): rounded, it would else leave a gap beside them
+        const P inwards(-(b - a).y(), (b - a).x());
+        x += 5e-5 * inwards.normalized();
         emit(a, x, d);
         emit(b, c, x);
-    } else if (crossing(b, c, a, d, x)) {
-        emit(a, b, x);
-        emit(c, d, x);
+    } else if (crossing(b, c, a, d, x)) {  // turned over on its way: rare and small, all of its hull
+        emit(a, b, c);
+        emit(a, c, d);
+        emit(a, b, d);
+        emit(b, c, d);
     } else if ((cross(b - a, c - b) > 0.0) == (cross(d - c, a - d) > 0.0)) {  // the diagonal a c lies inside
         emit(a, b, c);
         emit(a, c, d);
