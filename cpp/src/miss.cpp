@@ -59,7 +59,7 @@ class Nearest {
 }  // namespace
 
 Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
-    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm));
+    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
     const Ring widest = widest_points(marks, brush);
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     Nearest nearest(line);

@@ -39,11 +39,12 @@ struct Extents {
 
 class Tracer {
  public:
-    Tracer(const Brush& brush, double tolerance_mm, PassMarks& out)
+    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, PassMarks& out)
         : brush_(brush),
           law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
           extents_(brush),
           tolerance_(tolerance_mm),
+          for_outlines_(for_outlines),
           out_(out) {
         kinks_ = extents_.depth;
         for (const Profile* profile : {&brush.tip_gap, &brush.tip_to_widest})
@@ -156,6 +157,7 @@ class Tracer {
     /// How far the outline half way is from the mean of the outlines at both ends, as support functions h(n) = max n.v
     /// (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only where this is small.
     double shape_gap(const Instant& a, const Instant& b, const Instant& c) const {
+        if (!for_outlines_) return 0.0;
         const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05;
         // turning about a point of its flank a footprint leaves a waist that no hull has; while it is dragged forwards
         // the widest section has painted there before
@@ -214,6 +216,7 @@ class Tracer {
     Extents extents_;
     std::vector<double> kinks_;
     double tolerance_;
+    bool for_outlines_;
     PassMarks& out_;
     LagState<double> state_;
     std::vector<double> tcp_, contact_;
@@ -246,11 +249,11 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
 
 }  // namespace
 
-PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm) {
+PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines) {
     refuse_bad_poses(pass, brush);
     PassMarks marks;
     marks.stroke = pass.stroke;
-    Tracer tracer(brush, tolerance_mm, marks);
+    Tracer tracer(brush, tolerance_mm, for_outlines, marks);
     const Eigen::Index n = pass.poses_mm.rows();
     if (n == 0) {
         tracer.finish();

@@ -431,20 +431,24 @@ def union_of(outlines):
 def swept(outlines, convex):
     """Shapely region swept by a moving outline given at close samples, (n, 2) each.
 
-    Convex: hulls of neighbours. Else the outlines and what each of their edges sweeps.
+    Hulls of neighbours where the outline is convex and hardly turns (turning about a point of its flank it
+    leaves a waist that a hull would fill), else the outlines and what each of their edges sweeps.
     """
     outlines = np.asarray(outlines)
-    if convex:
-        pairs = shapely.multipoints(
-            np.concatenate([outlines[:-1], outlines[1:]], axis=1).reshape(-1, 2),
-            indices=np.repeat(np.arange(len(outlines) - 1), 2 * outlines.shape[1]),
-        )
-        hulls = shapely.convex_hull(pairs)
-        return shapely.union_all(hulls[shapely.area(hulls) > 1e-12])
-    following = np.roll(outlines, -1, axis=1)
-    quads = np.stack([outlines[:-1], following[:-1], following[1:], outlines[1:]], axis=2).reshape(-1, 4, 2)
+    axis = (outlines.mean(axis=1) - outlines[:, 0]) @ [1, 1j]
+    by_hull = convex & (np.abs(np.angle(axis[1:] * np.conj(axis[:-1]))) < 1e-3)
+    pairs = np.concatenate([outlines[:-1], outlines[1:]], axis=1)[by_hull]
+    first, second = outlines[:-1][~by_hull], outlines[1:][~by_hull]
+    quads = [first, np.roll(first, -1, axis=1), np.roll(second, -1, axis=1), second]
     # an edge that turns about a point of its own sweeps two triangles, not their hull
-    quads = shapely.make_valid(shapely.polygons(quads))
-    return shapely.union_all(
-        [union_of(list(outlines)), shapely.union_all(quads[shapely.area(quads) > 1e-12])]
+    quads = shapely.make_valid(shapely.polygons(np.stack(quads, axis=2).reshape(-1, 4, 2)))
+    points = shapely.multipoints(
+        pairs.reshape(-1, 2), indices=np.repeat(np.arange(len(pairs)), pairs.shape[1])
     )
+    regions = [
+        shapely.convex_hull(points),
+        quads,
+        shapely.make_valid(shapely.polygons(np.vstack([first, second]))),
+    ]
+    regions = np.concatenate(regions)
+    return shapely.union_all(regions[shapely.area(regions) > 1e-12])

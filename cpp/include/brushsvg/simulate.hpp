@@ -10,7 +10,9 @@ namespace brushsvg {
 /// tightening, touching, lifting) and in between as closely as `tolerance_mm` asks: half way between two
 /// rows no point of the footprint is farther than it from the straight line between them.
 /// Throws Error when a pose is deeper than the brush allows or not finite.
-PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm = 0.02);
+/// `for_outlines` false leaves out the rows that only the footprint's shape needs, not its motion: quick, enough for
+/// widest_points().
+PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm = 0.02, bool for_outlines = true);
 Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm = 0.02);
 
 /// Centre of the widest section at every row [mm]: m = p + e(d) u.
