@@ -11,6 +11,8 @@ namespace brushsvg {
 
 /// A chord of a turn in place: at most this angle, so that the heading between poses is never far from what it says.
 constexpr double kTurnStepRad = 0.2;
+/// Where a line asks for more (a taper far too steep for the lever), finer steps no longer help: the miss is reported.
+constexpr std::size_t kMostSamples = 20000;
 
 /// A place on the middle line and what the inverse finds there.
 struct Sample {
@@ -113,7 +115,7 @@ double off_chord(const Sample& a, const Sample& b, const Sample& between);
 template <class Solve>
 void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {
     const double least = std::min(1e-3, 0.1 * tolerance);
-    for (bool done = false; !done;) {
+    for (bool done = false; !done && samples.size() < kMostSamples;) {
         Samples finer;
         std::vector<bool> trial;
         done = true;

@@ -135,7 +135,7 @@ def assert_follows(painted, tolerance_mm):
 @pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
 def test_smooth_strokes_with_tapers_stay_within_the_tolerance(tolerance):
     rng = np.random.default_rng(21)
-    for _ in range(100 if tolerance > 1e-3 else 40):
+    for _ in range(80 if tolerance > 1e-3 else 20):
         middle = smooth(rng, rng.integers(2, 5))
         stroke = stroke_of(middle, widths(rng, oracle.Middle(middle).length))
         assert_follows(Painted(stroke, tolerance), tolerance)
@@ -144,7 +144,7 @@ def test_smooth_strokes_with_tapers_stay_within_the_tolerance(tolerance):
 @pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
 def test_turns_up_to_90_degrees_stay_within_the_tolerance(tolerance):
     rng = np.random.default_rng(22)
-    for _ in range(25):
+    for _ in range(20):
         middle = zigzag(rng, rng.integers(1, 4))
         stroke = stroke_of(middle, [(0.0, rng.uniform(0.7, 2.5)), (1.0, rng.uniform(0.7, 2.5))])
         assert_follows(Painted(stroke, tolerance), tolerance)
@@ -238,7 +238,7 @@ def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
 @pytest.mark.parametrize(("degrees", "remains"), [(100, 0.02), (120, 0.19), (150, 0.69), (180, 1.38)])
 @pytest.mark.parametrize("tolerance", [0.05, 1e-3])
 def test_sharper_turns_report_what_remains(degrees, remains, tolerance):
-    painted = Painted(stroke_of(corner(degrees), [(0.0, 1.68)]), tolerance, step=0.02)
+    painted = Painted(stroke_of(corner(degrees), [(0.0, 1.68)]), tolerance, step=0.04)
     measured = painted.once_taut().max()
     assert painted.miss.largest_mm == pytest.approx(measured, rel=0.02, abs=0.05 * tolerance)
     assert painted.miss.largest_mm == pytest.approx(remains, abs=0.01)

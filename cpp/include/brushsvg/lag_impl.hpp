@@ -148,6 +148,11 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
     if (nearest > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
     if (nearest > 10.0 * 10.0 * h2) return length * detail::mean_reciprocal<5>(law, middle, half);
     if (nearest > 1.9 * 1.9 * h2 || splits_left == 0) return length * detail::mean_reciprocal<12>(law, middle, half);
+    // a piece as short as rounding, at a root: halves of it would be the same piece again
+    if (std::abs(h) < 1e-13 * (1.0 + std::abs(m))) {
+        const T r = law.at(middle);
+        return value_of(r) * 50.0 > value_of(length) ? length / r : T(50.0);
+    }
     // the end with the shorter lever first: where it is nearly 0 the sum is soon large enough
     const T half_length = 0.5 * length;
     const bool first = value_of(law.at(depth0)) < value_of(law.at(depth1));
