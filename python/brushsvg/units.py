@@ -11,9 +11,9 @@ from .errors import Error
 MM_PER = {"mm": 1.0, "cm": 10.0, "q": 0.25, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "px": 25.4 / 96}
 PX_PER = {"mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "in": 96.0, "pt": 96 / 72, "pc": 16.0, "px": 1.0}
 
-# Digits are spelled out, for \d and float() read other alphabets' digits too; possessive, so that no text is
-# read twice.
-NUMBER = r"[+-]?+(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
+# Digits are spelled out, for \d and float() read other alphabets' digits too. Possessive quantifiers stand
+# behind single characters only: behind a group Python before 3.11.5 keeps what a failed attempt consumed.
+NUMBER = r"[+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?"
 _LENGTH = re.compile(rf"({NUMBER})\s*([a-zA-Z]+|%|)")
 _SIZE = re.compile(rf"({NUMBER}) ?(mm|cm|in|pt|pc|px|q|) ?x ?({NUMBER}) ?([a-z]*)")
 

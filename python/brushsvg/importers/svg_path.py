@@ -10,9 +10,9 @@ import re
 from ..units import NUMBER as _NUMBER
 
 _SPACE = r"[ \t\n\r\f]*+"
-_GAP = rf"{_SPACE}(?:,{_SPACE})?+"
+_GAP = rf"{_SPACE}(?:,{_SPACE})?"
 NUMBER, SPACE, GAP, FLAG = (re.compile(text) for text in (_NUMBER, _SPACE, _GAP, "[01]"))
-_RUN = re.compile(rf"{_NUMBER}(?:{_GAP}{_NUMBER})*+")
+_NEXT_NUMBER = re.compile(f"{_GAP}({_NUMBER})")
 _ARC_ARGUMENTS = (NUMBER, NUMBER, NUMBER, FLAG, FLAG, NUMBER, NUMBER)
 
 _COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
@@ -25,7 +25,8 @@ def numbers(text: str) -> list[float] | None:
     """A list of numbers separated as SVG allows, [] for no text; None if it is anything else."""
     if not text:
         return []
-    return [float(token) for token in NUMBER.findall(text)] if _RUN.fullmatch(text) else None
+    _, values, end = _run(text, 0)
+    return values if end == len(text) else None
 
 
 def snippet(text: str, position: int, length: int = 16) -> str:
@@ -49,10 +50,7 @@ def parse_path(d: str) -> tuple[list[Command], int | None]:
         if letter in "Aa":
             at, error = _arcs(d, begin, at, letter, commands)
         else:
-            run = _RUN.match(d, at)
-            if not run:
-                return commands, at
-            at, error = run.end(), _sets(d, begin, run, letter, commands)
+            at, error = _sets(d, begin, at, letter, commands)
         if error is not None:
             return commands, error
         at = SPACE.match(d, at).end()
@@ -62,25 +60,36 @@ def parse_path(d: str) -> tuple[list[Command], int | None]:
 def parse_points(text: str) -> tuple[list[Command], int | None]:
     """A list of points as moveto and linetos up to the first error, and where that is."""
     at = SPACE.match(text).end()
-    run = _RUN.match(text, at)
-    if not run:
-        return [], at
     commands: list[Command] = []
-    error = _sets(text, at, run, "M", commands)
-    end = SPACE.match(text, run.end()).end()
-    return commands, end if error is None and end < len(text) else error
+    at, error = _sets(text, at, at, "M", commands)
+    if error is None and (end := SPACE.match(text, at).end()) < len(text):
+        error = end
+    return commands, error
 
 
-def _sets(d: str, begin: int, run: re.Match, letter: str, commands: list[Command]) -> int | None:
-    tokens = list(NUMBER.finditer(d, run.start(), run.end()))
-    values = [float(token[0]) for token in tokens]
+def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
+    """Where the numbers that follow begin, what they are, and where the last one ends."""
+    places, values = [], []
+    found = NUMBER.match(text, at)
+    while found:
+        places.append(found.start(found.lastindex or 0))
+        values.append(float(found[found.lastindex or 0]))
+        at = found.end()
+        found = _NEXT_NUMBER.match(text, at)
+    return places, values, at
+
+
+def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
+    places, values, end = _run(d, at)
+    if not values:
+        return at, at
     count = _COUNT[letter.upper()]
     for first in range(0, len(values) - count + 1, count):
-        place = tokens[first].start() if first else begin
+        place = places[first] if first else begin
         commands.append((place, letter, tuple(values[first : first + count])))
         if letter in "Mm":
             letter = "L" if letter == "M" else "l"
-    return GAP.match(d, run.end()).end() if len(values) % count else None
+    return end, GAP.match(d, end).end() if len(values) % count else None
 
 
 def _arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:

@@ -32,7 +32,7 @@ _OWN = {
 # Geometry as CSS properties: only style="" can say it this way.
 _GEOMETRY = ("transform", "d", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry")
 
-_DECLARATION = re.compile(r"""(?:[^;("']|\([^)]*+\)?+|"[^"]*+"?+|'[^']*+'?+)++""")
+_DECLARATION = re.compile(r"""(?:[^;("']|\([^)]*+\)?|"[^"]*+"?|'[^']*+'?)+""")
 _COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
 _URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
 
