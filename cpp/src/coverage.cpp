@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "brushsvg/error.hpp"
 #include "sweep.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 // exact along x, sampled along y: 4 bands a pixel leave a mean edge error of 0.03 px, 2 bands twice that
 constexpr int kLinesPerPixel = 4;
+// what is left of sums in single precision where nothing is painted
+constexpr float kRounding = 1e-6f;
 
 std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm) {
     const double w = std::ceil(window.width_mm * px_per_mm - 1e-9), h = std::ceil(window.height_mm * px_per_mm - 1e-9);
@@ -79,12 +82,13 @@ class Spans {
         };
         std::sort(more_.begin(), more_.end(), by_place);
         std::sort(parts_.begin(), parts_.end(), by_place);
-        Coverage out = Coverage::Zero(height_, width_);
+        Coverage out(height_, width_);
         std::vector<float> steps(width_ + 2, 0.0f);
+        std::vector<Eigen::Index> changes;  // pixels whose step may differ from zero
         std::size_t next = 0, next_part = 0;
         std::vector<Span> here, parts;
         for (Eigen::Index row = 0; row < height_; ++row) {
-            Eigen::Index from = width_, to = 0;
+            changes.clear();
             for (int line = int(row) * kLinesPerPixel; line < int(row + 1) * kLinesPerPixel; ++line) {
                 here.clear();
                 parts.clear();
@@ -94,21 +98,26 @@ class Spans {
                     parts.push_back(parts_[next_part]);
                 merge(here);
                 if (!parts.empty()) outside(here, parts);
-                for (const Span& span : here) {
-                    step(steps, span.lo, span.height / kLinesPerPixel);
-                    step(steps, span.hi, -span.height / kLinesPerPixel);
-                    from = std::min(from, Eigen::Index(std::clamp(span.lo, 0.0f, float(width_))));
-                    to = std::max(to, std::min(width_, Eigen::Index(std::clamp(span.hi, 0.0f, float(width_))) + 2));
-                }
+                for (const Span& span : here)
+                    for (const auto& [x, sign] : {std::pair(span.lo, 1.0f), std::pair(span.hi, -1.0f)}) {
+                        const Eigen::Index i = step(steps, x, sign * span.height / kLinesPerPixel);
+                        changes.insert(changes.end(), {i, i + 1});
+                    }
             }
+            std::sort(changes.begin(), changes.end());
+            changes.erase(std::unique(changes.begin(), changes.end()), changes.end());
             float sum = 0.0f;
-            float* pixels = out.row(row).data();
-            for (Eigen::Index x = from; x < to; ++x) {
-                sum += steps[x];
-                pixels[x] = std::min(1.0f, std::max(0.0f, sum));
+            float* const pixels = out.row(row).data();
+            Eigen::Index x = 0;
+            const auto fill_until = [&](Eigen::Index end) {
+                std::fill(pixels + x, pixels + end, sum > kRounding ? std::min(1.0f, sum) : 0.0f);
+                x = end;
+            };
+            for (const Eigen::Index change : changes) {
+                fill_until(std::min(change, width_));
+                sum += std::exchange(steps[change], 0.0f);
             }
-            if (from < to)
-                std::fill(steps.begin() + from, steps.begin() + std::min<Eigen::Index>(to + 1, width_ + 2), 0.0f);
+            fill_until(width_);
         }
         return out;
     }
@@ -164,13 +173,14 @@ class Spans {
     /// First sub-scanline whose centre is at or below y.
     static int first_line(double y) { return int(std::ceil(std::clamp(y, -1e9, 1e9) - 0.5)); }
 
-    /// Coverage from x to the right end, as differences between neighbouring pixels.
-    void step(std::vector<float>& steps, float x, float weight) const {
+    /// Coverage from x to the right end, as differences between neighbouring pixels: of the one returned and the next.
+    Eigen::Index step(std::vector<float>& steps, float x, float weight) const {
         x = std::clamp(x, 0.0f, float(width_));
         const auto i = std::size_t(x);
         const float within = x - float(i);
         steps[i] += weight * (1.0f - within);
         steps[i + 1] += weight * within;
+        return Eigen::Index(i);
     }
 
     void add(int line, float lo, float hi) {
@@ -182,6 +192,25 @@ class Spans {
             if (lo_[line] < hi_[line]) more_.push_back({line, lo_[line], hi_[line]});
             lo_[line] = lo;
             hi_[line] = hi;
+        }
+    }
+
+    /// Spans of the lines from `first` on, one each. Where all touch what is there, which is the rule along a stroke,
+    /// the loops have no branch and run several lines at a time.
+    void add(int first, const std::vector<float>& lo, const std::vector<float>& hi) {
+        float* const all_lo = lo_.data() + first;
+        float* const all_hi = hi_.data() + first;
+        const std::size_t n = lo.size();
+        int apart = 0;
+        for (std::size_t k = 0; k < n; ++k)
+            apart |= int(!(lo[k] < hi[k])) | int(!(lo[k] <= all_hi[k])) | int(!(hi[k] >= all_lo[k]));
+        if (apart) {
+            for (std::size_t k = 0; k < n; ++k) add(first + int(k), lo[k], hi[k]);
+            return;
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            all_lo[k] = lo[k] < all_lo[k] ? lo[k] : all_lo[k];
+            all_hi[k] = hi[k] > all_hi[k] ? hi[k] : all_hi[k];
         }
     }
 
@@ -240,9 +269,9 @@ class Spans {
         part(cut, bottom, true);
         const int first = std::max(0, full), last = std::min(lines(), cut);
         if (first >= last) return;
-        xs_.resize(last - first);
-        walk(left_, first, last, [&](int line, float x) { xs_[line - first] = x; });
-        walk(right_, first, last, [&](int line, float x) { add(line, xs_[line - first], x); });
+        walk(left_, first, last, lo_here_);
+        walk(right_, first, last, hi_here_);
+        add(first, lo_here_, hi_here_);
     }
 
     static double x_at(const std::vector<Point>& chain, double y) {
@@ -261,16 +290,18 @@ class Spans {
         if (lo < hi) parts_.push_back({line, lo, hi, float(y1 - y0), hangs});
     }
 
-    template <class Sink>
-    static void walk(const std::vector<Point>& chain, int first, int last, Sink&& sink) {
+    /// Where a chain is at the middle of each of the lines from `first` to before `last`.
+    static void walk(const std::vector<Point>& chain, int first, int last, std::vector<float>& xs) {
+        xs.resize(last - first);
         int line = first;
         for (std::size_t k = 0; k + 1 < chain.size() && line < last; ++k) {
             const Point &p = chain[k], &q = chain[k + 1];
-            const int until = std::min(last, first_line(q.y));
-            if (until <= line) continue;
-            const double slope = (q.x - p.x) / (q.y - p.y);
-            double x = p.x + (line + 0.5 - p.y) * slope;
-            for (; line < until; ++line, x += slope) sink(line, float(x));
+            const int until = std::min(last, first_line(q.y)), n = until - line;
+            if (n <= 0) continue;
+            const double slope = (q.x - p.x) / (q.y - p.y), x = p.x + (line + 0.5 - p.y) * slope;
+            float* const at = xs.data() + (line - first);
+            for (int j = 0; j < n; ++j) at[j] = float(x + j * slope);
+            line = until;
         }
     }
 
@@ -280,7 +311,7 @@ class Spans {
     std::vector<float> lo_, hi_;
     std::vector<Span> more_, parts_;
     std::vector<Point> left_a_, right_a_, left_b_, right_b_, left_, right_;
-    std::vector<float> xs_, edges_;
+    std::vector<float> lo_here_, hi_here_, edges_;
 };
 
 }  // namespace
