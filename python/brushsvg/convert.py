@@ -14,7 +14,7 @@ from .cell import Cell, load_cell
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
-from .importers import read_drawing
+from .importers import ReadOptions, read_drawing
 from .posts import POSTS
 from .program import beyond_edges, broken_limits, duration_s, program
 from .strokes import strokes as strokes_of
@@ -55,7 +55,7 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
         return _prepare_plan(path, options)
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
-    design = read_drawing(path, options.sheet_mm)
+    design = read_drawing(path, ReadOptions(options.sheet_mm))
     strokes, notices = strokes_of(design)
     done = _core.compensate(
         strokes,

@@ -23,16 +23,23 @@ class Notice:
 class SubPath:
     """One unbroken line: cubics (n, 4, 2) in mm, n >= 1; the end of each is the start of the next.
 
-    A sub-path without length is one cubic whose four points coincide.
+    A sub-path without length is one cubic whose four points coincide. widths: (k, 2), fraction of the arc
+    length in [0, 1] and width [mm] there, linear in between; None where the element's one width serves.
     """
 
     cubics: np.ndarray
     closed: bool = False
+    widths: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
 class Element:
-    """One painted element. id: "" if it has none; colour: "#rrggbb"; layer: "" outside of any layer."""
+    """One painted element: a stroked line, a filled shape, or both.
+
+    id: "" if it has none; stroke_width_mm: 0 without a stroke; colour: "#rrggbb" of the stroke, of the fill
+    where there is none; layer: "" outside of any layer; settings: what the drawing says to brushsvg itself;
+    fill_rule: "nonzero" or "evenodd" of a filled shape, "" without a fill.
+    """
 
     id: str
     subpaths: tuple[SubPath, ...]
@@ -40,6 +47,7 @@ class Element:
     colour: str = "#000000"
     layer: str = ""
     settings: dict = field(default_factory=dict)
+    fill_rule: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from .design import Design, Element, Notice
+from .design import Design, Element, Notice, SubPath
 
 if TYPE_CHECKING:
     from ._core import Stroke
@@ -29,13 +29,19 @@ def strokes(design: Design) -> tuple[list[Stroke], list[Notice]]:
                     id=name,
                     middle_mm=subpath.cubics.reshape(-1, 8),
                     closed=subpath.closed,
-                    half_width=[(0.0, element.stroke_width_mm / 2)],
+                    half_width=_half_width(element, subpath),
                     layer=element.layer,
                     colour=element.colour,
                     settings=settings,
                 )
             )
     return result, notices
+
+
+def _half_width(element: Element, subpath: SubPath) -> list[tuple[float, float]]:
+    if subpath.widths is None:
+        return [(0.0, element.stroke_width_mm / 2)]
+    return [(at, width / 2) for at, width in subpath.widths.tolist()]
 
 
 def _names(elements: tuple[Element, ...]) -> tuple[list[list[str]], list[Notice]]:

@@ -8,7 +8,7 @@ import pytest
 import svgpathtools
 
 from brushsvg.errors import Error
-from brushsvg.importers import read_drawing
+from brushsvg.importers import ReadOptions, read_drawing
 from brushsvg.importers.svg import read_svg
 from brushsvg.importers.svg_colour import NAMED, parse_colour
 from brushsvg.importers.svg_frame import IDENTITY, multiply, parse_transform
@@ -23,7 +23,7 @@ PAGE = 'width="100mm" height="50mm" viewBox="0 0 100 50" stroke="red" fill="none
 
 
 def read(body, page=PAGE, **options):
-    return read_svg(f"<svg {NAMESPACES} {page}>{body}</svg>".encode(), **options)
+    return read_svg(f"<svg {NAMESPACES} {page}>{body}</svg>".encode(), ReadOptions(**options))
 
 
 def only(body, page=PAGE):

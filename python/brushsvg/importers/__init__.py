@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..errors import Error
@@ -12,17 +13,33 @@ if TYPE_CHECKING:
     from ..design import Design
 
 
-def _svg(data: bytes, sheet_mm: tuple[float, float] | None) -> Design:
+@dataclass(frozen=True)
+class ReadOptions:
+    """What a reader is asked for.
+
+    sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
+    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG).
+    """
+
+    sheet_mm: tuple[float, float] | None = None
+    units: str | None = None
+    select: str | None = None
+
+
+AS_DRAWN = ReadOptions()
+
+
+def _svg(data: bytes, options: ReadOptions) -> Design:
     from .svg import read_svg  # loaded for who reads, not for who only asks what can be read
 
-    return read_svg(data, sheet_mm)
+    return read_svg(data, options)
 
 
-READERS = {".svg": _svg}  # by extension; each takes (bytes, sheet_mm or None)
+READERS = {".svg": _svg}  # by extension; each takes (bytes, ReadOptions)
 
 
-def read_drawing(path: str | os.PathLike, sheet_mm: tuple[float, float] | None = None) -> Design:
-    """The drawing in a file, its format chosen by extension; sheet_mm (w, h) replaces the drawing's own.
+def read_drawing(path: str | os.PathLike, options: ReadOptions = AS_DRAWN) -> Design:
+    """The drawing in a file, its format chosen by extension.
 
     Error if the file cannot be read, is of no known format, or has nothing to paint.
     """
@@ -31,4 +48,4 @@ def read_drawing(path: str | os.PathLike, sheet_mm: tuple[float, float] | None =
     if reader is None:
         known = ", ".join(READERS)
         raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
-    return reader(read_bytes(path), sheet_mm)
+    return reader(read_bytes(path), options)

@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 from ..design import Design, Element, Notice
 from ..errors import Error
 from ..units import length_px
-from . import svg_shapes
+from . import AS_DRAWN, ReadOptions, svg_shapes
 from .svg_frame import Matrix, Page, multiply, parse_transform, read_page, scales
 from .svg_style import INHERITED, cascade, is_zero, stroke_colour, unread, unread_own
 from .svg_trace import LARGEST_MM, trace
@@ -31,17 +31,17 @@ _UNREAD = {
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
 
 
-def read_svg(data: bytes, sheet_mm: tuple[float, float] | None = None) -> Design:
+def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     """The drawing, its strokes in document order, in mm with y up.
 
-    sheet_mm (w, h) replaces the viewport's size; the drawing keeps its scale and its upper left corner.
+    A sheet given replaces the viewport's size; the drawing keeps its scale and its upper left corner.
 
     Error if it is not SVG, has no size, or has nothing to paint.
     """
     root, instructions = parse_xml(data)
     if root.tag not in (_SVG + "svg", "svg"):
         raise Error(f"the root element is <{_local(root)[:40]}>, not <svg>")
-    page = read_page(root.attrib, sheet_mm)
+    page = read_page(root.attrib, options.sheet_mm)
     walk = _Walk(root, page)
     if "xml-stylesheet" in instructions:
         walk.notices.append(Notice("xml-stylesheet", _UNREAD["style"]))
