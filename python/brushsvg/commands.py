@@ -10,7 +10,12 @@ from .brushes import brush_names, find_brush
 from .cell import load_cell
 from .console import RefusedError, about, clear_stage, say, stage, tell, warn
 from .describe import one_line, page
+from .design import Notice
+from .errors import Error
 from .files import write_files
+from .importers import ReadOptions, read_drawing
+from .layout import Layout, arrange
+from .strokes import strokes as strokes_of
 
 
 def convert_file(args) -> None:
@@ -46,6 +51,23 @@ def predict_file(args) -> None:
     _write({args.output: picture})
 
 
+def import_file(args) -> None:
+    _check_places(args.output)
+    with about(args.input):
+        stage("reading")
+        design = arrange(read_drawing(args.input, _reading(args)), _layout(args))
+        try:
+            strokes, notices = strokes_of(design)
+        except Error as nothing:  # a drawing of filled shapes alone is worth looking at, too
+            strokes, notices = [], [Notice(nothing.where, str(nothing))]
+        notices = [*design.notices, *notices]
+        warn(args.input, [(notice.where, notice.sentence) for notice in notices])
+        from .overview import overview
+
+        picture = overview(_suffix(args.output), design, strokes, notices)
+    _write({args.output: picture})
+
+
 def report_file(args) -> None:
     work, marks, warnings = _look(args, outlines=True)
     with about(args.input):
@@ -66,20 +88,32 @@ def _look(args, outlines: bool):
 
 def _prepare(args) -> convert.Work:
     if _suffix(args.input) == ".json":
-        for flag in ("sheet", "compensation", "lag", "tolerance"):
+        for flag in (*LAYOUT_FLAGS, "compensation", "lag", "tolerance"):
             if getattr(args, flag) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
     with about(args.brush or ""):
         brush = find_brush(args.brush) if args.brush is not None else None
     options = convert.Options(
         brush=brush,
-        sheet_mm=args.sheet,
+        reading=_reading(args),
+        layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
         tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
     )
     with about(args.input):
         return convert.prepare(args.input, options, stage)
+
+
+LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin")
+
+
+def _reading(args) -> ReadOptions:
+    return ReadOptions(args.sheet, args.units, args.select)
+
+
+def _layout(args) -> Layout:
+    return Layout(tuple(args.layer or ()), args.width, args.fit, args.scale, args.origin)
 
 
 def _suffix(path: str | None) -> str:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from . import _core, report
+from . import _core, importers, layout, report
 from .brushes import find_brush
 from .cell import Cell, load_cell
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
-from .importers import ReadOptions, read_drawing
 from .posts import POSTS
 from .program import beyond_edges, broken_limits, duration_s, program
 from .strokes import strokes as strokes_of
@@ -27,7 +27,8 @@ class Options:
     """What may be chosen. brush None: round-6, or the one a plan names; the rest has no effect on a plan."""
 
     brush: object | None = None
-    sheet_mm: tuple[float, float] | None = None
+    reading: importers.ReadOptions = importers.AS_DRAWN
+    layout: layout.Layout = layout.AS_DRAWN
     compensation: str = "closed"
     lag_mm: float | None = None
     tolerance_mm: float = 0.05
@@ -55,7 +56,7 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
         return _prepare_plan(path, options)
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
-    design = read_drawing(path, ReadOptions(options.sheet_mm))
+    design = layout.arrange(importers.read_drawing(path, options.reading), options.layout)
     strokes, notices = strokes_of(design)
     done = _core.compensate(
         strokes,
@@ -66,10 +67,32 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
         options.lag_mm,
         progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
     )
+    plan = _with_speeds(done.plan, strokes)
     notices = [*design.notices, *notices, *(Notice(where, sentence) for where, sentence in done.warnings)]
+    notices += _other_brushes(strokes, brush)
     if options.compensation == "closed":
         notices += _misses(strokes, done.misses, options.tolerance_mm)
-    return Work(design.title, brush, done.plan, strokes, tuple(done.misses), options, tuple(notices))
+    return Work(design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices))
+
+
+def _with_speeds(plan, strokes):
+    """The plan with the speeds that the drawing's settings ask for."""
+    speeds = [json.loads(stroke.settings).get("speed_mm_s") for stroke in strokes]
+    if any(speeds):
+        passes = plan.passes
+        for a_pass, speed in zip(passes, speeds, strict=True):
+            a_pass.speed_mm_s = speed or a_pass.speed_mm_s
+        plan.passes = passes
+    return plan
+
+
+def _other_brushes(strokes, brush) -> list[Notice]:
+    asked = ((stroke.id, json.loads(stroke.settings).get("brush", brush.name)) for stroke in strokes)
+    return [
+        Notice(name, f"the drawing asks for brush {other}, all is painted with {brush.name}")
+        for name, other in asked
+        if other != brush.name
+    ]
 
 
 def _misses(strokes, misses, tolerance_mm: float) -> list[Notice]:

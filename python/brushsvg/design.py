@@ -11,12 +11,14 @@ import numpy as np
 class Notice:
     """A warning about one element.
 
-    damaged: the geometry itself is broken and was read up to the error; convert refuses it unless lenient.
+    damaged: the geometry itself is broken and was read up to the error; convert refuses it unless lenient; layer:
+    where the element lies, None for what concerns the whole drawing.
     """
 
     where: str
     sentence: str
     damaged: bool = False
+    layer: str | None = None
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,11 @@ class Element:
     settings: dict = field(default_factory=dict)
     fill_rule: str = ""
 
+    @property
+    def is_stroked(self) -> bool:
+        """Whether it is a line with a width, rather than a shape alone."""
+        return self.stroke_width_mm > 0 or any(subpath.widths is not None for subpath in self.subpaths)
+
 
 @dataclass(frozen=True)
 class Design:
@@ -58,3 +65,16 @@ class Design:
     elements: tuple[Element, ...]
     notices: tuple[Notice, ...] = ()
     title: str = ""
+
+
+def extremes(cubics: np.ndarray) -> np.ndarray:
+    """Points that bound cubics (n, 4, 2): their ends, and where x or y turns back."""
+    p0, p1, p2, p3 = (cubics[:, k] for k in range(4))
+    a, b, c = p3 - 3 * p2 + 3 * p1 - p0, 2 * (p2 - 2 * p1 + p0), p1 - p0
+    found = [p0, p3]
+    with np.errstate(all="ignore"):
+        root = np.sqrt(b * b - 4 * a * c)
+        for t in ((-b + root) / (2 * a), (-b - root) / (2 * a), -c / b):
+            t = np.where((t > 0) & (t < 1), t, 0.0)
+            found.append((1 - t) ** 3 * p0 + 3 * t * (1 - t) ** 2 * p1 + 3 * t * t * (1 - t) * p2 + t**3 * p3)
+    return np.concatenate(found)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .design import Design, Element, Notice, SubPath
+from .errors import Error
 
 if TYPE_CHECKING:
     from ._core import Stroke
@@ -15,27 +17,43 @@ def strokes(design: Design) -> tuple[list[Stroke], list[Notice]]:
     """Strokes in document order and direction, [mm], paper frame, and what was noticed about their names.
 
     A stroke is called by its element's id, id/1, id/2 ... if there are several sub-paths, strokeN if there is
-    no id, N counting the elements without one from 1.
+    no id, N counting the elements without one from 1. The setting `order` moves strokes, smaller ones first;
+    `passes` repeats a stroke as id#2, id#3 ...
+
+    Error if nothing is left to paint.
     """
+    lines = tuple(element for element in design.elements if element.is_stroked)
+    names, notices = _names(lines)
+    shapes = [element for element in design.elements if not element.is_stroked]
+    if shapes:
+        count = "a filled outline does" if len(shapes) == 1 else f"{len(shapes)} filled outlines do"
+        first = next((element.id for element in shapes if element.id), "filled")
+        notices.append(Notice(first, f"{count} not become strokes yet: left out"))
+    if not lines:
+        raise Error(f"there is nothing to paint: {notices[-1].sentence}", where=notices[-1].where)
+    made = [
+        (element.settings.get("order", 0), stroke)
+        for element, own in zip(lines, names, strict=True)
+        for stroke in _of_element(element, own)
+    ]
+    return [stroke for _, stroke in sorted(made, key=lambda pair: pair[0])], notices
+
+
+def _of_element(element: Element, names: list[str]) -> Iterator[Stroke]:
     from ._core import Stroke
 
-    result: list[Stroke] = []
-    names, notices = _names(design.elements)
-    for element, own in zip(design.elements, names, strict=True):
-        settings = json.dumps(element.settings, sort_keys=True)
-        for name, subpath in zip(own, element.subpaths, strict=True):
-            result.append(
-                Stroke(
-                    id=name,
-                    middle_mm=subpath.cubics.reshape(-1, 8),
-                    closed=subpath.closed,
-                    half_width=_half_width(element, subpath),
-                    layer=element.layer,
-                    colour=element.colour,
-                    settings=settings,
-                )
+    settings = json.dumps(element.settings, sort_keys=True)
+    for name, subpath in zip(names, element.subpaths, strict=True):
+        for repeat in range(1, element.settings.get("passes", 1) + 1):
+            yield Stroke(
+                id=name if repeat == 1 else f"{name}#{repeat}",
+                middle_mm=subpath.cubics.reshape(-1, 8),
+                closed=subpath.closed,
+                half_width=_half_width(element, subpath),
+                layer=element.layer,
+                colour=element.colour,
+                settings=settings,
             )
-    return result, notices
 
 
 def _half_width(element: Element, subpath: SubPath) -> list[tuple[float, float]]:

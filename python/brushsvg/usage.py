@@ -64,6 +64,12 @@ def _parser() -> argparse.ArgumentParser:
     _add_choices(predict)
     predict.set_defaults(run="predict_file", parser=predict)
 
+    look = commands.add_parser("import", help="show what was understood of a drawing")
+    look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
+    look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
+    _add_layout(look)
+    look.set_defaults(run="import_file", parser=look, brush=None, lag=None)
+
     report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
     _add_input(report)
     _add_choices(report)
@@ -93,11 +99,26 @@ def _add_input(command: argparse.ArgumentParser) -> None:
 def _add_choices(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
-    add("--sheet", metavar="WxH", type=_size, help="the sheet in mm or with units; default: the drawing's")
+    _add_layout(command)
     add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
     add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
     add("--tolerance", metavar="MM", type=_tolerance, help="of the painted middle line; default: 0.05")
     add("--lenient", action="store_true", help="take what is sound of damaged geometry")
+
+
+def _add_layout(command: argparse.ArgumentParser) -> None:
+    add = command.add_argument
+    add("--sheet", metavar="WxH", type=_size, help="the sheet in mm or with units; default: the drawing's")
+    add("--units", choices=("mm", "in"), help="of a drawing that does not say them (DXF)")
+    add("--layer", metavar="NAME", action="append", help="paint this layer; several: more than once")
+    add("--select", metavar="CSS", help="paint what this selector names and what lies in it (SVG)")
+    add("--width", metavar="MM", type=_width, help="of all strokes, whatever the drawing says")
+    size = command.add_mutually_exclusive_group()
+    size.add_argument(
+        "--fit", metavar="WxH", type=_size, help="scale the marks to this size, centred on the sheet"
+    )
+    size.add_argument("--scale", metavar="FACTOR", type=_scale, help="scale the drawing, widths too")
+    add("--origin", metavar="X,Y", type=_point, help="where the lower left corner of the marks lies")
 
 
 def _size(text: str) -> tuple[float, float]:
@@ -112,6 +133,34 @@ def _lag(text: str) -> float:
 
 def _tolerance(text: str) -> float:
     return _length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
+
+
+def _width(text: str) -> float:
+    return _length(text, 0.001, 1000.0)
+
+
+def _scale(text: str) -> float:
+    try:
+        value = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
+        ) from None
+    if not 1e-4 <= value <= 1e4:
+        raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.0001, 10000]")
+    return value
+
+
+def _point(text: str) -> tuple[float, float]:
+    from .units import length_mm
+
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 20,15 or 2cm,1in")
+    x, y = (_read(length_mm, part) for part in parts)
+    if not max(abs(x), abs(y)) <= 1e6:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e6 mm")
+    return x, y
 
 
 def _length(text: str, least: float, greatest: float) -> float:
@@ -134,15 +183,22 @@ def _check_operands(args) -> None:
     """Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
     if args.run.startswith("brush_"):
         return
+    drawing = os.path.splitext(args.input)[1].lower()
+    if args.units and drawing == ".svg":
+        args.parser.error("--units is for drawings that do not say them; an SVG does")
+    if args.select and drawing == ".dxf":
+        args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
     if args.lag is not None and args.compensation != "constant":
         args.parser.error("--lag needs --compensation constant")
     outputs = {
         "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
         "predict_file": lambda: [(args.output, PREDICTIONS)],
+        "import_file": lambda: [(args.output, PREVIEWS)],
         "report_file": lambda: [],
     }[args.run]()
+    inputs = tuple(READERS) if args.run == "import_file" else DRAWINGS
     taken = [os.path.realpath(path) for path in (args.input, args.brush) if path]
-    for path, suffixes in [(args.input, DRAWINGS), *outputs]:
+    for path, suffixes in [(args.input, inputs), *outputs]:
         if path is None:
             continue
         if os.path.splitext(path)[1].lower() not in suffixes:

@@ -261,7 +261,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "paint a.svg",
         "convert a.svg",
         "convert a.svg out.dxf",
-        "convert a.dxf out.ngc",
+        "convert a.pdf out.ngc",
         "convert a.svg out",
         "convert a.svg out.ngc --preview p.gif",
         "convert a.svg out.ngc --report r.html",
@@ -281,7 +281,16 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.ngc --sheet A4",
         "convert a.svg out.ngc --sheet 0x10",
         "convert a.svg out.ngc --cell mine",
-        "convert a.svg out.ngc --width 20",
+        "convert a.svg out.ngc --width 0",
+        "convert a.svg out.ngc --fit 5x5 --scale 2",
+        "convert a.svg out.ngc --scale 0",
+        "convert a.svg out.ngc --scale big",
+        "convert a.svg out.ngc --origin 5",
+        "convert a.svg out.ngc --origin 5,1e9",
+        "convert a.svg out.ngc --units mm",
+        "import a.svg out.ngc",
+        "import a.json out.svg",
+        "import a.svg out.svg --brush rigid",
         "convert a.svg out.ngc --json",
         "predict a.svg out.ngc",
         "predict a.svg out.png --preview p.png",
@@ -499,7 +508,8 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     status, out, _ = run(capsys, "convert", "--help")
     assert status == 0
     flags = set(re.findall(r"--[a-z]+", out))
-    choices = {"--brush", "--sheet", "--compensation", "--lag", "--tolerance", "--lenient"}
+    choices = {"--brush", "--compensation", "--lag", "--tolerance", "--lenient"}
+    choices |= {"--sheet", "--units", "--layer", "--select", "--width", "--fit", "--scale", "--origin"}
     assert flags == choices | {"--help", "--preview", "--report"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

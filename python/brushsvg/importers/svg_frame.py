@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from ..design import Notice
 from ..errors import Error
-from ..units import MM_PER, length_mm
+from ..units import MM_PER, NUMBER, PX_PER, length_mm, length_px
 from .svg_path import numbers, snippet
 from .svg_trace import LARGEST_MM
 
@@ -21,12 +21,15 @@ IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Page:
-    """sheet_mm: (w, h); paper_from_user: user units to mm, y up; viewport: (w, h) in user units."""
+    """sheet_mm: (w, h); paper_from_user: user units to mm, y up; viewport: (w, h) in user units; in_px: whether its
+    size was said in px, or not at all.
+    """
 
     sheet_mm: tuple[float, float]
     paper_from_user: Matrix
     viewport: tuple[float, float]
     notices: tuple[Notice, ...]
+    in_px: bool
 
 
 def multiply(outer: Matrix, inner: Matrix) -> Matrix:
@@ -60,17 +63,25 @@ def _rotation(degrees: float, x: float = 0.0, y: float = 0.0) -> Matrix:
 _FUNCTIONS = {
     "matrix": ((6,), lambda *v: v),
     "translate": ((1, 2), lambda x, y=0.0: (1.0, 0.0, 0.0, 1.0, x, y)),
+    "translateX": ((1,), lambda x: (1.0, 0.0, 0.0, 1.0, x, 0.0)),
+    "translateY": ((1,), lambda y: (1.0, 0.0, 0.0, 1.0, 0.0, y)),
     "scale": ((1, 2), lambda x, y=None: (x, 0.0, 0.0, x if y is None else y, 0.0, 0.0)),
+    "scaleX": ((1,), lambda x: (x, 0.0, 0.0, 1.0, 0.0, 0.0)),
+    "scaleY": ((1,), lambda y: (1.0, 0.0, 0.0, y, 0.0, 0.0)),
     "rotate": ((1, 3), _rotation),
-    "skewX": ((1,), lambda angle: (1.0, 0.0, math.tan(math.radians(angle)), 1.0, 0.0, 0.0)),
-    "skewY": ((1,), lambda angle: (1.0, math.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)),
+    "skew": ((1, 2), lambda x, y=0.0: (1.0, _tan(y), _tan(x), 1.0, 0.0, 0.0)),
+    "skewX": ((1,), lambda angle: (1.0, 0.0, _tan(angle), 1.0, 0.0, 0.0)),
+    "skewY": ((1,), lambda angle: (1.0, _tan(angle), 0.0, 1.0, 0.0, 0.0)),
 }
 _SEPARATOR = re.compile(r"[\s,]*+")
 _CALL = re.compile(r"([a-zA-Z]++)\s*+\(([^()]*+)\)")
+_ARGUMENT = re.compile(rf"({NUMBER})([a-zA-Z]*)")
+# CSS writes units; angles count in degrees, lengths in px.
+_UNITS = {"": 1.0, "deg": 1.0, "rad": 180 / math.pi, "grad": 0.9, "turn": 360.0, **PX_PER}
 
 
 def parse_transform(text: str) -> Matrix:
-    """The matrix of a transform attribute. Error names the character where it stops making sense."""
+    """The matrix of a transform attribute or property. Error names the character where it stops making sense."""
     matrix = IDENTITY
     if text.strip() == "none":
         return matrix
@@ -78,12 +89,67 @@ def parse_transform(text: str) -> Matrix:
     while position < len(text):
         call = _CALL.match(text, position)
         counts, make = _FUNCTIONS.get(call[1], ((), None)) if call else ((), None)
-        values = numbers(call[2].strip()) if call else None
+        values = _arguments(call[2].strip()) if call else None
         if values is None or len(values) not in counts or not all(map(math.isfinite, values)):
             raise Error(f"transform is damaged at character {position + 1}: found {snippet(text, position)}")
         matrix = multiply(matrix, make(*values))
         position = _SEPARATOR.match(text, call.end()).end()
     return matrix
+
+
+def _arguments(text: str) -> list[float] | None:
+    if (plain := numbers(text)) is not None:
+        return plain
+    parts = [_ARGUMENT.fullmatch(part) for part in text.replace(",", " ").split()]
+    if not all(part and part[2].lower() in _UNITS for part in parts):
+        return None
+    return [float(part[1]) * _UNITS[part[2].lower()] for part in parts]
+
+
+def _tan(degrees: float) -> float:
+    return math.tan(math.radians(degrees))
+
+
+_SIDES = {"left": "0%", "top": "0%", "center": "50%", "right": "100%", "bottom": "100%"}
+
+
+def about_origin(matrix: Matrix, origin: str, viewport: tuple[float, float]) -> Matrix:
+    """A transform about its transform-origin, "x y" with percentages of the viewport. Error if that is not one."""
+    words = origin.replace(",", " ").split()[:2]
+    if words[:1] in (["top"], ["bottom"]) or words[1:] in (["left"], ["right"]):
+        words.reverse()
+    words += ["center"] * (2 - len(words))
+    x, y = (length_px(_SIDES.get(word, word), side) for word, side in zip(words, viewport, strict=True))
+    return multiply(multiply((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
+
+
+def nested_viewport(
+    attributes: dict[str, str], outer: tuple[float, float], size: tuple[str | None, str | None] = (None, None)
+) -> tuple[Matrix, tuple[float, float], tuple[float, float, float, float], list[Notice]] | None:
+    """Of an svg or symbol inside a drawing: matrix of its content, its viewport (w, h) in units of its content, its
+    place (x, y, w, h) in the outer ones; None if it has no area. size: what a use asks for, as written.
+
+    Error if a length or the viewBox makes no sense.
+    """
+    asked = dict(zip(("width", "height"), size, strict=True))
+    x, y, width, height = (
+        length_px(text if text not in (None, "auto") else default, outer[axis])
+        for text, default, axis in (
+            (attributes.get("x"), "0", 0),
+            (attributes.get("y"), "0", 1),
+            (asked["width"] or attributes.get("width"), "100%", 0),
+            (asked["height"] or attributes.get("height"), "100%", 1),
+        )
+    )
+    if not (width > 0 and height > 0):
+        return None
+    notices: list[Notice] = []
+    box = _view_box(attributes.get("viewBox"))
+    inner = (
+        IDENTITY if box is None else _fit(box, width, height, attributes.get("preserveAspectRatio"), notices)
+    )
+    matrix = multiply((1.0, 0.0, 0.0, 1.0, x, y), inner)
+    return matrix, (width, height) if box is None else box[2:], (x, y, width, height), notices
 
 
 def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None = None) -> Page:
@@ -93,6 +159,9 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
     """
     notices: list[Notice] = []
     box = _view_box(attributes.get("viewBox"))
+    in_px = all(
+        attributes.get(name, "").strip("0123456789.+- ") in ("", "px", "%") for name in ("width", "height")
+    )
     width, height = (_extent(attributes.get(name), name) for name in ("width", "height"))
     if box is None and sheet_mm is not None:
         width, height = width or sheet_mm[0], height or sheet_mm[1]
@@ -123,7 +192,7 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
         viewport = box[2:]
     sheet = sheet_mm or (width, height)
     flip = (1.0, 0.0, 0.0, -1.0, 0.0, sheet[1])
-    return Page(sheet, multiply(flip, page_from_user), viewport, tuple(notices))
+    return Page(sheet, multiply(flip, page_from_user), viewport, tuple(notices), in_px)
 
 
 def _view_box(text: str | None) -> tuple[float, float, float, float] | None:

@@ -1,74 +1,101 @@
-"""Which SVG properties an element has: attributes, style="", inheritance. CSS rules are not read yet."""
+"""Which SVG properties an element has: attributes, CSS rules, style="", inheritance, in the order CSS prescribes."""
 
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from dataclasses import dataclass
+
+import tinycss2
 
 from ..errors import Error
 from ..units import length_px
 from .svg_colour import parse_colour
+from .svg_rules import Declaration, declarations
 
 INHERITED = {
     "stroke": "none",
     "stroke-width": "1",
     "stroke-opacity": "1",
     "stroke-dasharray": "none",
-    "fill": "",  # "" is SVG's default black that nobody asked for
+    "stroke-dashoffset": "0",
+    "fill": "",  # SVG's default, black, that nobody asked for
+    "fill-opacity": "1",
+    "fill-rule": "nonzero",
     "color": "#000000",
     "visibility": "visible",
     "marker-start": "none",
     "marker-mid": "none",
     "marker-end": "none",
 }
-_OWN = {
+OWN = {
     "display": "inline",
     "opacity": "1",
     "vector-effect": "none",
     "clip-path": "none",
     "mask": "none",
     "filter": "none",
+    "overflow": "",
 }
-# Geometry as CSS properties: only style="" can say it this way.
-_GEOMETRY = ("transform", "d", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry")
-
-_DECLARATION = re.compile(r"""(?:[^;("']|\([^)]*+\)?|"[^"]*+"?|'[^']*+'?)+""")
-_COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
+# Attributes that CSS may set as well; CSS wins.
+_GEOMETRY = frozenset("transform transform-origin d x y width height cx cy r rx ry".split())
 _URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
+_LONGEST_VALUE = 10_000  # of custom properties put into each other
 
 Problem = tuple[str, bool]  # a sentence, and whether geometry is damaged
 
 
-def cascade(
-    parent: dict[str, str], attributes: dict[str, str], diagonal: float
-) -> tuple[dict[str, str], dict[str, str], list[Problem]]:
-    """An element's inherited properties and its own ones, and what was wrong with them.
+@dataclass(frozen=True)
+class Style:
+    """Computed values. Colours are "#rrggbb", "none", "currentcolor" or url(...), widths as written.
 
-    Colours come back as "#rrggbb", "none", "currentcolor" or url(...), widths as written. What is not valid
-    falls back to the parent's, as CSS asks. diagonal: of the viewport [px], base of percentages.
+    inherited: what children start from, custom properties among them; own: what they do not; geometry:
+    attributes that CSS replaces.
     """
-    said = {name: value for name in (*INHERITED, *_OWN) if (value := attributes.get(name)) is not None}
+
+    inherited: dict[str, str]
+    own: dict[str, str]
+    geometry: dict[str, str]
+
+
+INITIAL = Style(INHERITED, OWN, {})
+
+
+def cascade(
+    parent: Style, attributes: dict[str, str], rules: list[Declaration], diagonal: float
+) -> tuple[Style, list[Problem]]:
+    """An element's style, and what was wrong with it: what is not valid falls back to the parent's, as CSS asks.
+
+    rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
+    """
+    said = {name: value for name in (*INHERITED, *OWN) if (value := attributes.get(name)) is not None}
+    inline = declarations(attributes["style"]) if "style" in attributes else ()
+    for important in (False, True):
+        for name, value, is_important in (*rules, *inline):
+            if is_important != important:
+                continue
+            if name == "marker":
+                said.update(dict.fromkeys(("marker-start", "marker-mid", "marker-end"), value))
+            elif name in INHERITED or name in OWN or name in _GEOMETRY or name.startswith("--"):
+                said[name] = value
+    inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
+    inherited.update((name, said.pop(name)) for name in list(said) if name.startswith("--"))
     problems: list[Problem] = []
-    for name, value in _declarations(attributes.get("style", "")):
-        if name == "marker":
-            said.update(dict.fromkeys(("marker-start", "marker-mid", "marker-end"), value))
-        elif name in INHERITED or name in _OWN:
-            said[name] = value
-        elif name in _GEOMETRY and value not in ("none", "auto"):
-            problems.append((f"{name} in style is not read yet: only the attribute counts", False))
-    inherited, own = dict(parent), dict(_OWN)
     for name, text in said.items():
         value = text.strip()
+        if "var(" in value.lower():
+            value = _substituted(value, inherited)
+        if name in _GEOMETRY:
+            geometry[name] = _path_text(value) if name == "d" else value
+            continue
+        target, initial = (inherited, INHERITED) if name in INHERITED else (own, OWN)
         keyword = value.lower()
-        if keyword in ("initial", "unset", "revert", "inherit"):
-            if keyword == "initial" and name in INHERITED:
-                inherited[name] = INHERITED[name]
-            elif keyword == "inherit" and name in _OWN:
-                problems.append((f"{name} 'inherit' is not read yet: left out", False))
-        elif name in _OWN:
-            own[name] = keyword
+        if keyword in ("inherit", "initial", "unset", "revert"):
+            if keyword == "initial" or (keyword != "inherit" and target is own):
+                target[name] = initial[name]
+            elif keyword == "inherit":
+                target[name] = (parent.inherited if target is inherited else parent.own)[name]
         elif name in ("stroke", "fill", "color"):
-            colour = _paint(value)
+            colour = value if _URL.match(value) else parse_colour(value)
             if colour is None:
                 problems.append((f"{name} {value[:40]!r} is not a colour: it counts as not given", False))
             elif name != "color" or colour not in ("none", "currentcolor"):
@@ -80,43 +107,48 @@ def cascade(
                 inherited[name] = value
             except Error as error:
                 problems.append((f"stroke-width: {error}; it counts as not given", True))
+        elif name == "fill-rule":
+            inherited[name] = "evenodd" if keyword == "evenodd" else "nonzero"
         else:
-            inherited[name] = keyword if name == "visibility" else value
-    return inherited, own, problems
+            target[name] = value if name.startswith("marker") else keyword
+    return Style(inherited, own, geometry), problems
 
 
-@lru_cache
-def _declarations(style: str) -> tuple[tuple[str, str], ...]:
-    parts = (text.partition(":") for text in _DECLARATION.findall(_COMMENT.sub(" ", style)))
-    pairs = ((name.strip().lower(), _without_important(value)) for name, _, value in parts)
-    return tuple(pair for pair in pairs if pair[1])
+def _substituted(value: str, inherited: dict[str, str], depth: int = 0) -> str:
+    """A value with its var(--name, fallback) replaced; "" where that leads nowhere."""
+    parts = []
+    for token in tinycss2.parse_component_value_list(value):
+        if token.type != "function" or token.lower_name != "var":
+            parts.append(tinycss2.serialize([token]))
+            continue
+        name, _, fallback = tinycss2.serialize(token.arguments).partition(",")
+        found = inherited.get(name.strip(), fallback.strip())
+        if depth > 20 or len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
+            return ""
+        parts.append(_substituted(found, inherited, depth + 1) if "var(" in found.lower() else found)
+    return "".join(parts).strip()
 
 
-def _without_important(value: str) -> str:
-    head, mark, tail = value.rpartition("!")
-    return head.strip() if mark and tail.strip().lower() == "important" else value.strip()
+def _path_text(value: str) -> str:
+    """The text in d: path("...")."""
+    for token in tinycss2.parse_component_value_list(value):
+        if token.type == "function" and token.lower_name == "path":
+            return next((each.value for each in token.arguments if each.type == "string"), "")
+    return value
 
 
-def _paint(value: str) -> str | None:
-    if value.lower() == "currentcolor":
-        return "currentcolor"
-    if _URL.match(value):
-        return value
-    return parse_colour(value)
-
-
-def stroke_colour(properties: dict[str, str]) -> tuple[str, str | None]:
-    """ "#rrggbb" or "none", and a sentence if the stroke is painted with something else than a colour."""
-    stroke = properties["stroke"]
-    if is_zero(properties["stroke-opacity"]):
+def paint(properties: dict[str, str], of: str) -> tuple[str, str | None]:
+    """What "stroke" or "fill" paints with: "#rrggbb" or "none", and a sentence if it is not just a colour."""
+    value = properties[of] or "#000000"
+    if is_zero(properties[f"{of}-opacity"]):
         return "none", None
-    if stroke == "currentcolor":
+    if value == "currentcolor":
         return properties["color"], None
-    if found := _URL.match(stroke):
-        fallback = parse_colour(found[2]) if found[2].strip() else None
-        colour = fallback if fallback not in (None, "none") else "#000000"
-        return colour, f"the stroke's paint {found[1][:40]} is not read yet: it counts as {colour}"
-    return stroke, None
+    if found := _URL.match(value):
+        fallback = parse_colour(found[2].strip()) if found[2].strip() else None
+        colour = fallback if fallback not in (None, "none", "currentcolor") else "#000000"
+        return colour, f"the {of}'s paint {found[1][:40]} is not read: it counts as {colour}"
+    return value, None
 
 
 def is_zero(number: str) -> bool:
@@ -127,25 +159,20 @@ def is_zero(number: str) -> bool:
         return False
 
 
-def unread(properties: dict[str, str], own: dict[str, str], has_vertices: bool) -> list[str]:
-    """Sentences about properties of a painted element that change its look and are not read yet."""
+def unread(properties: dict[str, str], of: str, has_vertices: bool) -> list[str]:
+    """Sentences about properties of a painted element that change its look and are not read."""
     sentences = []
-    dashes = properties["stroke-dasharray"].replace(",", " ").split()
-    if dashes != ["none"] and not all(map(is_zero, dashes)):
-        sentences.append("dashes are not read yet: the line counts as solid")
     if has_vertices and any(properties[f"marker-{place}"] != "none" for place in ("start", "mid", "end")):
-        sentences.append("markers are not read yet: left out")
-    if properties["stroke-opacity"] not in ("1", "1.0", "100%"):
-        sentences.append("stroke-opacity is not read yet: it counts as 1")
-    if own["vector-effect"] != "none":
-        sentences.append(f"vector-effect {own['vector-effect'][:40]} is not read yet: left out")
+        sentences.append("markers are not read: left out")
+    if properties[f"{of}-opacity"] not in ("1", "1.0", "100%"):
+        sentences.append(f"{of}-opacity is not read: it counts as 1")
     return sentences
 
 
 def unread_own(own: dict[str, str]) -> list[str]:
-    """Sentences about properties of an element or group that apply to all it holds and are not read yet."""
+    """Sentences about properties of an element or group that apply to all it holds and are not read."""
     effects = [name for name in ("clip-path", "mask", "filter") if own[name] != "none"]
-    sentences = [f"{name} is not read yet: it counts as none" for name in effects]
+    sentences = [f"{name} is not read: it counts as none" for name in effects]
     if own["opacity"] not in ("1", "1.0", "100%"):
-        sentences.append("opacity is not read yet: it counts as 1")
+        sentences.append("opacity is not read: it counts as 1")
     return sentences

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import dataclass
 from xml.parsers import expat
 
 from ..errors import Error
@@ -17,8 +18,17 @@ from ..errors import Error
 EXPANSION_LIMIT = 10_000_000
 
 
-def parse_xml(data: bytes) -> tuple[ET.Element, list[str]]:
-    """The root element, tags as "{namespace}name", and the names of the processing instructions met.
+@dataclass(frozen=True)
+class Document:
+    """root: tags as "{namespace}name"; instructions: names of the processing instructions; comments: the first few."""
+
+    root: ET.Element
+    instructions: list[str]
+    comments: list[str]
+
+
+def parse_xml(data: bytes) -> Document:
+    """The document's tree and what stands beside it.
 
     Error, with the line where there is one, for what is not XML, reads other files or inflates itself.
     """
@@ -28,6 +38,7 @@ def parse_xml(data: bytes) -> tuple[ET.Element, list[str]]:
     parser.buffer_text = True
     builder = ET.TreeBuilder()
     instructions: list[str] = []
+    comments: list[str] = []
     names: dict[str, str] = {}
     default_length = 0
 
@@ -69,6 +80,7 @@ def parse_xml(data: bytes) -> tuple[ET.Element, list[str]]:
     parser.EntityDeclHandler = entity
     parser.AttlistDeclHandler = attribute_default
     parser.ProcessingInstructionHandler = lambda target, _text: instructions.append(target)
+    parser.CommentHandler = lambda text: comments.append(text[:1000]) if len(comments) < 10 else None
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -78,4 +90,4 @@ def parse_xml(data: bytes) -> tuple[ET.Element, list[str]]:
         if isinstance(error, Error):
             raise
         raise Error(f"this is not XML that can be read: {error}") from None
-    return builder.close(), instructions
+    return Document(builder.close(), instructions, comments)

@@ -1,0 +1,158 @@
+"""CSS rules of an SVG file: which declarations reach which element, by tinycss2 and cssselect2."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+
+import tinycss2
+from cssselect2 import ElementWrapper, Matcher, SelectorError, compile_selector_list
+
+from ..design import Notice
+from ..errors import Error
+
+# Steps through the tree that selectors may take together: some seconds' worth, a hundred times what drawings need.
+STEP_LIMIT = 20_000_000
+
+Declaration = tuple[str, str, bool]  # name in lower case, value, important
+_SVG = "{http://www.w3.org/2000/svg}"
+
+
+class _Budget:
+    def __init__(self):
+        self.left = STEP_LIMIT
+
+    def spend(self, steps: int) -> None:
+        self.left -= steps
+        if self.left < 0:
+            raise Error("its CSS selectors take too long on a drawing of this size", where="style")
+
+
+class _Node(ElementWrapper):
+    """Walks to its kin one by one and counts: kept lists of them would grow with the depth squared."""
+
+    budget: _Budget
+
+    @property
+    def ancestors(self) -> Iterator[ElementWrapper]:
+        node = self.parent
+        while node is not None:
+            self.budget.spend(1)
+            yield node
+            node = node.parent
+
+    @property
+    def previous_siblings(self) -> Iterator[ElementWrapper]:
+        node = self.previous
+        while node is not None:
+            self.budget.spend(1)
+            yield node
+            node = node.previous
+
+    def iter_children(self) -> Iterator[ElementWrapper]:
+        for child in super().iter_children():
+            self.budget.spend(1)
+            yield child
+
+
+class _Tree:
+    """A document as selectors see it."""
+
+    def __init__(self, root: ET.Element):
+        self.budget = _Budget()
+        kind = type("_CountedNode", (_Node,), {"budget": self.budget})
+        self.nodes = {node.etree_element: node for node in kind.from_xml_root(root).iter_subtree()}
+
+    def compiled(self, prelude) -> list | None:
+        """Selectors; None if the text is none that is read."""
+        text = tinycss2.serialize(prelude)
+        if "-of-type" in text:  # counts its siblings where they cannot be counted here
+            self.budget.spend(
+                sum(n * n for n in Counter(id(node.parent) for node in self.nodes.values()).values())
+            )
+        try:
+            return compile_selector_list(prelude)
+        except (SelectorError, SyntaxError, RecursionError, MemoryError):
+            return None
+
+
+class Rules:
+    """The document's style sheets, in order. notices: what of them is not read."""
+
+    def __init__(self, root: ET.Element):
+        self.notices: list[Notice] = []
+        self._matcher = Matcher()
+        sheets = [node for node in root.iter() if node.tag in (_SVG + "style", "style") and _counts(node)]
+        self._tree = _Tree(root) if sheets else None
+        for sheet in sheets:
+            self._add(tinycss2.parse_stylesheet("".join(sheet.itertext()), True, True))
+
+    def of(self, node: ET.Element) -> list[Declaration]:
+        """An element's declarations, from the weakest to the strongest among those of equal importance."""
+        if self._tree is None:
+            return []
+        self._tree.budget.spend(self._matcher.order // 10)
+        matches = self._matcher.match(self._tree.nodes[node])
+        return [declaration for *_, pseudo, found in matches if pseudo is None for declaration in found]
+
+    def _add(self, rules: Iterable) -> None:
+        for rule in rules:
+            if rule.type == "at-rule" and rule.lower_at_keyword == "media" and rule.content is not None:
+                if _for_screens(rule.prelude):
+                    self._add(tinycss2.parse_rule_list(rule.content, True, True))
+            elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
+                self._note("@import names another file, which is not read")
+            elif rule.type == "error":
+                self._note(f"line {rule.source_line} is not CSS: {rule.message[:80]}")
+            elif rule.type == "qualified-rule":
+                self._add_rule(rule)
+
+    def _add_rule(self, rule) -> None:
+        declared = declarations(tinycss2.serialize(rule.content))
+        if not declared:
+            return
+        selectors = self._tree.compiled(rule.prelude)
+        if selectors is None:
+            self._note(f"selector {tinycss2.serialize(rule.prelude).strip()[:60]!r} is not read")
+        for selector in selectors or ():
+            self._matcher.add_selector(selector, declared)
+
+    def _note(self, sentence: str) -> None:
+        self.notices.append(Notice("style", sentence))
+
+
+def selected(root: ET.Element, text: str) -> set[ET.Element]:
+    """The elements that a CSS selector names. Error if it is none, or names nothing."""
+    tree = _Tree(root)
+    selectors = tree.compiled(tinycss2.parse_component_value_list(text))
+    if not selectors:
+        raise Error(f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path")
+    found = {node for node, wrapped in tree.nodes.items() if any(each.test(wrapped) for each in selectors)}
+    if not found:
+        raise Error(f"selector {text[:60]!r} matches no element of the drawing")
+    return found
+
+
+@lru_cache
+def declarations(text: str) -> tuple[Declaration, ...]:
+    """The declarations of a style attribute or a rule's block; what is not one is passed over, as CSS asks."""
+    parsed = tinycss2.parse_blocks_contents(text, skip_comments=True, skip_whitespace=True)
+    return tuple(
+        (each.name if each.name.startswith("--") else each.lower_name, value, each.important)
+        for each in parsed
+        if each.type == "declaration" and (value := tinycss2.serialize(each.value).strip())
+    )
+
+
+def _counts(style: ET.Element) -> bool:
+    media = style.get("media", "")
+    kind = style.get("type", "").strip().lower()
+    return kind in ("", "text/css") and _for_screens(tinycss2.parse_component_value_list(media))
+
+
+def _for_screens(media) -> bool:
+    """Whether one of the media queries is plain `screen` or `all`, or there is none."""
+    queries = tinycss2.serialize(media).lower().split(",")
+    return any(query.split() in ([], ["all"], ["screen"], ["only", "screen"]) for query in queries)

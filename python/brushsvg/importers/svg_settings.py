@@ -1,0 +1,82 @@
+"""What a drawing says to brushsvg itself: data-brushsvg-* on paths, groups and layers, inherited."""
+
+from __future__ import annotations
+
+import math
+
+from ..errors import Error
+from ..units import length_mm
+
+_PREFIX = "data-brushsvg-"
+
+
+def own_settings(attributes: dict[str, str]) -> tuple[dict, list[str]]:
+    """Settings that an element says itself, as docs/drawings.md lists them, and what of them is not valid."""
+    settings, problems = {}, []
+    for attribute, text in attributes.items():
+        if not attribute.startswith(_PREFIX):
+            continue
+        name = attribute.removeprefix(_PREFIX)
+        if name not in _KNOWN:
+            problems.append(f"{attribute} is not known; known: {', '.join(_KNOWN)}")
+            continue
+        key, read = _KNOWN[name]
+        try:
+            settings[key] = read(text.strip())
+        except (Error, ValueError) as problem:
+            problems.append(f"{attribute}: {problem}")
+    return settings, problems
+
+
+def _width_mm(text: str) -> float:
+    return _in_range(length_mm(text), 0.001, 1000, "mm")
+
+
+def _speed_mm_s(text: str) -> float:
+    try:
+        return _in_range(float(text), 0.001, 10000, "mm/s")
+    except ValueError as problem:
+        raise (
+            problem if isinstance(problem, Error) else Error(f"{text[:24]!r} is not a speed in mm/s")
+        ) from None
+
+
+def _whole(least: int, greatest: int):
+    def read(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            raise Error(f"{text[:24]!r} is not a whole number") from None
+        return _in_range(value, least, greatest)
+
+    return read
+
+
+def _yes(text: str) -> bool:
+    if text.lower() not in ("yes", "no", "true", "false", "1", "0"):
+        raise Error(f"{text[:24]!r} is neither yes nor no")
+    return text.lower() in ("yes", "true", "1")
+
+
+def _name(text: str) -> str:
+    if not text:
+        raise Error("it is empty")
+    return text
+
+
+def _in_range(value, least, greatest, unit: str = ""):
+    if not (math.isfinite(value) and least <= value <= greatest):
+        unit = unit and f" {unit}"
+        raise Error(f"{value:g}{unit} is outside the range [{least:g}, {greatest:g}]{unit}")
+    return value
+
+
+_KNOWN = {
+    "width": ("width_mm", _width_mm),
+    "speed": ("speed_mm_s", _speed_mm_s),
+    "order": ("order", _whole(-1_000_000, 1_000_000)),
+    "passes": ("passes", _whole(1, 20)),
+    "reload": ("reload", _yes),
+    "skip": ("skip", _yes),
+    "brush": ("brush", _name),
+}

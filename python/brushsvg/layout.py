@@ -1,0 +1,130 @@
+"""Where a drawing lies on the sheet and which of its layers are painted: Design to Design."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .design import Design, Element, SubPath, extremes
+from .errors import Error
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What may be asked of a drawing as a whole; None or empty: as drawn.
+
+    layers: names of those to paint, with all they hold; width_mm: of every stroke, whatever the drawing says;
+    fit_mm (w, h): the wanted marks fill this size as far as their shape allows, in the middle of the sheet;
+    scale: instead, a factor, about the middle of the marks; origin_mm (x, y): where the lower left corner of the
+    marks lies, instead of the middle of the sheet or where it was.
+    """
+
+    layers: tuple[str, ...] = ()
+    width_mm: float | None = None
+    fit_mm: tuple[float, float] | None = None
+    scale: float | None = None
+    origin_mm: tuple[float, float] | None = None
+
+
+AS_DRAWN = Layout()
+
+
+def arrange(design: Design, layout: Layout) -> Design:
+    """The drawing with its layers chosen, its widths set and its place found; widths are scaled with the drawing,
+    but for layout.width_mm. The sheet stays.
+
+    Error for a layer that is not there, or marks that cannot be fitted.
+    """
+    if layout.layers:
+        design = _of_layers(design, layout.layers)
+    if layout.width_mm is not None:
+        design = replace(design, elements=tuple(_with_width(e, layout.width_mm) for e in design.elements))
+    if layout.fit_mm is None and layout.scale is None and layout.origin_mm is None:
+        return design
+    keeps_width = layout.width_mm is not None
+    lines, marks = bounds_mm(design, with_widths=False), bounds_mm(design)
+    scale = layout.scale or 1.0
+    if layout.fit_mm is not None:
+        scale = _fitting_scale(lines, marks, layout.fit_mm, keeps_width)
+    margin = (marks - lines) * (1.0 if keeps_width else scale)
+    scaled = lines * scale + margin  # the marks' bounds, but for where they lie
+    if layout.origin_mm is not None:
+        shift = np.array(layout.origin_mm) - scaled[:2]
+    elif layout.fit_mm is not None:
+        shift = np.array(design.sheet_mm) / 2 - (scaled[:2] + scaled[2:]) / 2
+    else:
+        shift = (marks[:2] + marks[2:]) / 2 - (scaled[:2] + scaled[2:]) / 2
+    width_scale = 1.0 if keeps_width else scale
+    return replace(design, elements=tuple(_moved(e, scale, shift, width_scale) for e in design.elements))
+
+
+def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
+    """Bounds of the wanted marks, or of their middle lines and outlines alone: x0, y0, x1, y1 [mm]."""
+    box = np.array([math.inf, math.inf, -math.inf, -math.inf])
+    for element in design.elements:
+        for subpath in element.subpaths:
+            points = extremes(subpath.cubics)
+            half = _half_width_mm(element, subpath) if with_widths else 0.0
+            box[:2] = np.minimum(box[:2], points.min(axis=0) - half)
+            box[2:] = np.maximum(box[2:], points.max(axis=0) + half)
+    return box
+
+
+def _half_width_mm(element: Element, subpath: SubPath) -> float:
+    return (element.stroke_width_mm if subpath.widths is None else float(subpath.widths[:, 1].max())) / 2
+
+
+def _fitting_scale(
+    lines: np.ndarray, marks: np.ndarray, fit_mm: tuple[float, float], keeps_width: bool
+) -> float:
+    """The largest scale at which marks are not larger than fit_mm."""
+    size, margin = lines[2:] - lines[:2], (marks[2:] - marks[:2]) - (lines[2:] - lines[:2])
+    room = np.array(fit_mm) - (margin if keeps_width else 0.0)
+    growing = size if keeps_width else size + margin
+    if (room <= 0).any():
+        raise Error(
+            f"strokes {margin.max():.4g} mm wide do not fit {fit_mm[0]:g} x {fit_mm[1]:g} mm", where="fit"
+        )
+    with np.errstate(divide="ignore"):
+        scale = float((room / growing).min())
+    if not math.isfinite(scale):
+        raise Error("marks without a size cannot be fitted", where="fit")
+    return scale
+
+
+def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
+    def chosen(layer: str | None) -> bool:
+        return any(layer == name or (layer or "").startswith(name + "/") for name in names)
+
+    known = list(dict.fromkeys(element.layer for element in design.elements if element.layer))
+    for name in names:
+        if not any(layer == name or layer.startswith(name + "/") for layer in known):
+            there = ", ".join(known[:20]) or "none"
+            raise Error(f"no layer {name!r} with something to paint; there are: {there}", where="layer")
+    elements = tuple(element for element in design.elements if chosen(element.layer))
+    notices = tuple(notice for notice in design.notices if notice.layer is None or chosen(notice.layer))
+    return replace(design, elements=elements, notices=notices)
+
+
+def _with_width(element: Element, width_mm: float) -> Element:
+    if not element.is_stroked:
+        return element
+    plain = tuple(replace(subpath, widths=None) for subpath in element.subpaths)
+    return replace(element, stroke_width_mm=width_mm, subpaths=plain)
+
+
+def _moved(element: Element, scale: float, shift: np.ndarray, width_scale: float) -> Element:
+    return replace(
+        element,
+        stroke_width_mm=element.stroke_width_mm * width_scale,
+        subpaths=tuple(
+            replace(
+                subpath,
+                cubics=subpath.cubics * scale + shift,
+                widths=None if subpath.widths is None else subpath.widths * (1.0, width_scale),
+            )
+            for subpath in element.subpaths
+        ),
+    )

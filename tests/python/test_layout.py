@@ -1,0 +1,76 @@
+import numpy as np
+import pytest
+from svg_text import read
+
+from brushsvg import Error
+from brushsvg.layout import AS_DRAWN, Layout, arrange, bounds_mm
+
+BODY = """<g inkscape:groupmode="layer" inkscape:label="Ink"><path id="a" d="M10 10H30V20" stroke-width="4"/>
+  <g inkscape:groupmode="layer" inkscape:label="Fine"><path id="b" d="M20 10Q25 0 30 10"/><text id="t">x</text></g></g>
+  <path id="c" d="M60 30H80"/>"""
+
+
+def box(layout, body=BODY):
+    return bounds_mm(arrange(read(body), layout)).round(9).tolist()
+
+
+def test_as_drawn_nothing_moves():
+    design = read(BODY)
+    assert arrange(design, AS_DRAWN) is design
+
+
+def test_bounds_are_those_of_the_curve_and_its_width():
+    assert bounds_mm(read('<path d="M20 10Q25 0 30 10"/>')).round(9).tolist() == [19.5, 39.5, 30.5, 45.5]
+    assert bounds_mm(read('<path d="M0 0C0 20 20 20 20 0"/>'), with_widths=False).round(9).tolist() == [
+        0,
+        35,
+        20,
+        50,
+    ]
+
+
+def test_layers():
+    def ids(*names):
+        return [element.id for element in arrange(read(BODY), Layout(layers=names)).elements]
+
+    assert ids("Ink") == ["a", "b"]
+    assert ids("Ink/Fine") == ["b"]
+    assert [n.where for n in arrange(read(BODY), Layout(layers=("Ink",))).notices] == ["t"]
+    with pytest.raises(Error, match="no layer 'ink' with something to paint; there are: Ink, Ink/Fine"):
+        ids("ink")
+
+
+def test_width_of_all():
+    design = arrange(read(BODY), Layout(width_mm=2.5))
+    assert {element.stroke_width_mm for element in design.elements} == {2.5}
+
+
+def test_fit_fills_the_size_in_the_middle_of_the_sheet():
+    x0, y0, x1, y1 = box(Layout(fit_mm=(40, 40)))
+    assert max(x1 - x0, y1 - y0) == pytest.approx(40)
+    assert ((x0 + x1) / 2, (y0 + y1) / 2) == pytest.approx((50, 25))
+    x0, y0, x1, y1 = box(Layout(fit_mm=(200, 30), width_mm=3.0))
+    assert y1 - y0 == pytest.approx(30)
+
+
+def test_fit_scales_widths_but_not_those_asked_for():
+    drawn = arrange(read('<path d="M0 0H10"/>'), Layout(fit_mm=(22, 90)))
+    assert drawn.elements[0].stroke_width_mm == pytest.approx(2)
+    kept = arrange(read('<path d="M0 0H10"/>'), Layout(fit_mm=(22, 90), width_mm=2.0))
+    assert kept.elements[0].stroke_width_mm == 2
+    assert np.ptp(kept.elements[0].subpaths[0].cubics[..., 0]) == pytest.approx(20)
+
+
+def test_scale_is_about_the_middle_and_origin_names_the_corner():
+    before, after = np.array(box(AS_DRAWN)), np.array(box(Layout(scale=0.5)))
+    assert (before[:2] + before[2:]).tolist() == pytest.approx((after[:2] + after[2:]).tolist())
+    assert (after[2:] - after[:2]).tolist() == pytest.approx(((before[2:] - before[:2]) / 2).tolist())
+    assert box(Layout(origin_mm=(5, 7)))[:2] == [5, 7]
+    assert box(Layout(origin_mm=(5, 7), scale=2, width_mm=3))[:2] == [5, 7]
+
+
+def test_what_cannot_be_fitted():
+    with pytest.raises(Error, match="strokes 12 mm wide do not fit 10 x 10 mm"):
+        box(Layout(fit_mm=(10, 10), width_mm=12.0))
+    with pytest.raises(Error, match="without a size"):
+        box(Layout(fit_mm=(10, 10), width_mm=2.0), '<path d="M5 5z"/>')

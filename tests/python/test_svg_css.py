@@ -1,0 +1,139 @@
+"""Which declaration wins, and what style sheets may cost."""
+
+import pytest
+from svg_text import read, sentences
+
+from brushsvg import Error
+from brushsvg.importers import svg_rules
+
+P = '<path id="p" class="a b" d="M0 0H5"/>'
+
+
+def width(css, body=P):
+    design = read(f"<style>{css}</style>{body}")
+    assert not design.notices, sentences(design)
+    return design.elements[0].stroke_width_mm
+
+
+@pytest.mark.parametrize(
+    ("css", "mm"),
+    [
+        ("path{stroke-width:2}", 2),
+        (".a{stroke-width:2}", 2),
+        (".c{stroke-width:2}", 1),
+        ("#p{stroke-width:2} .a{stroke-width:3}", 2),
+        (".a{stroke-width:2} .b{stroke-width:3}", 3),
+        (".a.b{stroke-width:2} .b{stroke-width:3}", 2),
+        ("*{stroke-width:2}", 2),
+        ("svg > path{stroke-width:2}", 2),
+        ("g path{stroke-width:2}", 1),
+        ("path[d]{stroke-width:2} [id='q']{stroke-width:3}", 2),
+        ("path:first-child{stroke-width:2}", 1),
+        ("style + path{stroke-width:2}", 2),
+        ("style ~ path{stroke-width:2}", 2),
+        ("g, path{stroke-width:2}", 2),
+        (".a{stroke-width:2!important} #p{stroke-width:3}", 2),
+        ("@media screen{path{stroke-width:2}} @media print{path{stroke-width:3}}", 2),
+        ("@font-face{src:x} path{stroke-width:2}", 2),
+        ("/* c */ path{/* c */stroke-width:2/* c */}", 2),
+        ("path{stroke-width:2;bogus;stroke:}", 2),
+        ("<![CDATA[svg > path{stroke-width:2}]]>", 2),
+        (":root{--w:2} path{stroke-width:var(--w)}", 2),
+        ("path{stroke-width:var(--none, 2)}", 2),
+        (":root{--a:var(--b);--b:2} path{stroke-width:var(--a)}", 2),
+        ("path{stroke-width:50%} svg{stroke-width:2}", pytest.approx(0.5 * (100**2 + 50**2) ** 0.5 / 2**0.5)),
+    ],
+)
+def test_rules(css, mm):
+    assert width(css) == mm
+
+
+def test_attribute_rule_style_and_importance():
+    body = '<path id="p" d="M0 0H5" stroke-width="2"{}/>'
+    assert width("", body.format("")) == 2
+    assert width("path{stroke-width:3}", body.format("")) == 3
+    assert width("path{stroke-width:3}", body.format(' style="stroke-width:4"')) == 4
+    assert width("path{stroke-width:3!important}", body.format(' style="stroke-width:4"')) == 3
+    assert width("path{stroke-width:3!important}", body.format(' style="stroke-width:4!important"')) == 4
+
+
+def test_rules_are_inherited_and_a_variable_may_be_set_below():
+    css = "g{stroke-width:var(--w);--w:3} .in{--w:7;stroke-width:var(--w)}"
+    design = read(f'<style>{css}</style><g><path d="M0 0H5"/><path class="in" d="M0 0H5"/></g>')
+    assert [element.stroke_width_mm for element in design.elements] == [3, 7]
+
+
+def test_display_visibility_and_geometry_by_rule():
+    css = "#x{display:none} #y{visibility:hidden} #z{d:path('M1 2H3')} circle{r:4px;transform:translate(10px,2px)}"
+    body = '<path id="x" d="M0 0H5"/><path id="y" d="M0 0H5"/><path id="z" d="M0 0H9"/><circle id="c" r="9"/>'
+    design = read(f"<style>{css}</style>{body}")
+    assert [element.id for element in design.elements] == ["z", "c"]
+    assert design.elements[0].subpaths[0].cubics[0, [0, 3]].tolist() == [[1, 48], [3, 48]]
+    assert design.elements[1].subpaths[0].cubics[0, 0].tolist() == [14, 48]
+
+
+def test_own_properties_are_inherited_only_when_asked():
+    body = (
+        '<g style="opacity:.5"><path id="p" style="opacity:inherit" d="M0 0H5"/><path id="q" d="M0 0H5"/></g>'
+    )
+    assert sum("opacity" in sentence for sentence in sentences(read(body))) == 2
+
+
+@pytest.mark.parametrize(
+    ("css", "sentence"),
+    [
+        ("path:hover::foo(){stroke:red}", "selector 'path:hover::foo()' is not read"),
+        ("@import 'x.css';", "@import names another file"),
+        ("path stroke:red", "is not CSS"),
+    ],
+)
+def test_what_of_a_style_sheet_is_not_read(css, sentence):
+    assert any(sentence in each for each in sentences(read(f"<style>{css}</style>{P}")))
+
+
+def test_a_variable_that_leads_to_itself_is_no_value():
+    design = read(f"<style>:root{{--a:var(--b)x;--b:var(--a)}} path{{stroke-width:var(--a)}}</style>{P}")
+    assert design.elements[0].stroke_width_mm == 1
+    grown = "".join(f"--v{k}:var(--v{k + 1})var(--v{k + 1});" for k in range(60))
+    read(f"<style>:root{{{grown}}} path{{stroke-width:var(--v0)}}</style>{P}")
+
+
+@pytest.mark.parametrize(
+    ("css", "body"),
+    [
+        (
+            "h " + "g " * 12 + "path{stroke:blue}",
+            "<g>" * 3000 + P + "</g>" * 3000,
+        ),
+        ("h ~ " + "g ~ " * 6 + "path{stroke:red}", "<g/>" * 3000 + P),
+        ("g:has(x) {stroke:red}", "<g>" * 8000 + P + "</g>" * 8000),
+        ("".join(f"[a{k}]{{stroke:red}}" for k in range(9000)), '<path d="M0 0H1"/>' * 40000),
+    ],
+)
+def test_selectors_that_would_take_for_ever_are_refused(css, body, monkeypatch):
+    monkeypatch.setattr(svg_rules, "STEP_LIMIT", 200_000)
+    with pytest.raises(Error, match="take too long"):
+        read(f"<style>{css}</style>{body}")
+
+
+def test_deep_and_wide_documents_with_rules():
+    css = "g path{stroke-width:2} g + path{stroke:blue}"
+    design = read(f"<style>{css}</style>{'<g>' * 5000}{P}{'</g>' * 5000}{'<g/>' * 5000}{P}")
+    assert [element.stroke_width_mm for element in design.elements] == [2, 1]
+    assert design.elements[1].colour == "#0000ff"
+
+
+def test_select():
+    body = '<g id="g"><path id="a" d="M0 0H5"/><text>x</text></g><path id="b" d="M0 0H5"/><use id="u" href="#a"/>'
+    assert [element.id for element in read(body, select="#g").elements] == ["a"]
+    assert [element.id for element in read(body, select="path").elements] == ["a", "b", "u/a"]
+    assert [element.id for element in read(body, select="use").elements] == ["u/a"]
+    assert not read(body, select="#b").notices
+    for text, sentence in (
+        ("#none", "matches no element"),
+        ("g >", "is not a CSS selector"),
+        ("", "nothing"),
+    ):
+        if text:
+            with pytest.raises(Error, match=sentence):
+                read(body, select=text)

@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from svg_text import lines, read, sentences
+
+from brushsvg import Error
+from brushsvg.design import SubPath
+from brushsvg.importers import svg_dashes
+from brushsvg.importers.arc_length import knots, parameters_at
+from brushsvg.importers.svg_dashes import dashed
+
+
+def speed(t, cubic):
+    d = 3 * np.diff(cubic, axis=0)
+    return np.hypot(*((1 - t) ** 2 * d[0] + 2 * t * (1 - t) * d[1] + t * t * d[2]))
+
+
+def test_arc_length_against_quadrature():
+    random = np.random.default_rng(3)
+    cubics = random.uniform(0, 50, (40, 4, 2))
+    cubics[1:, 0] = cubics[:-1, 3]
+    cubics[5] = cubics[5, :1]  # a point
+    known = knots(cubics)
+    truth = [quad(speed, 0, 1, args=(cubic,), epsabs=1e-10, limit=200)[0] for cubic in cubics]
+    error = np.abs(known[:, -1] - truth)
+    assert error.max() < 5e-3  # [mm], where a handle turns the line back on itself
+    assert np.median(error) < 1e-8
+    at = np.linspace(0, sum(truth), 200)
+    number, t = parameters_at(cubics, known, at)
+    begins = np.concatenate([[0], np.cumsum(known[:, -1])])
+    for k, end, distance in zip(number, t, at, strict=True):
+        assert begins[k] + quad(speed, 0, end, args=(cubics[k],), limit=200)[0] == pytest.approx(
+            distance, abs=5e-3
+        )
+
+
+def test_dashes_of_a_straight_line():
+    design = read('<path id="p" d="M0 0H20" stroke-dasharray="4 2" stroke-dashoffset="1"/>')
+    spans = [(start[0], end[0]) for _, start, end in lines(design)]
+    assert spans == [(0, 3), (5, 9), (11, 15), (17, 20)]
+    assert sentences(design) == ["p: it is dashed: 4 strokes, one for each dash"]
+
+
+@pytest.mark.parametrize(
+    ("attributes", "count"),
+    [
+        ('stroke-dasharray="3"', 4),
+        ('stroke-dasharray="3 1 2"', 5),
+        ('stroke-dasharray="10%"', 2),
+        ('stroke-dasharray="0 5"', 4),
+        ('stroke-dasharray="30"', 1),
+        ('stroke-dasharray="1mm 1mm"', 3),
+        ('stroke-dasharray="0"', 1),
+        ('stroke-dasharray="3 -1"', 1),
+        ('stroke-dasharray="none"', 1),
+        ('style="stroke-dasharray:5px,5px;stroke-dashoffset:-5"', 2),
+    ],
+)
+def test_patterns(attributes, count):
+    assert len(read(f'<path d="M0 0H20" {attributes}/>').elements[0].subpaths) == count
+
+
+def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():
+    square = read('<path d="M0 0H10V10H0Z" stroke-dasharray="7 3"/>').elements[0].subpaths
+    assert all(not piece.closed for piece in square)
+    assert [round(float(knots(piece.cubics)[:, -1].sum()), 9) for piece in square] == [7, 7, 7, 7]
+    seam = read('<path d="M0 0H10V10H0Z" stroke-dasharray="5 3" stroke-dashoffset="2"/>').elements[0].subpaths
+    assert [round(float(knots(piece.cubics)[:, -1].sum()), 6) for piece in seam] == [5, 5, 5, 5, 5]
+    assert seam[0].cubics[0, 0].tolist() != [0, 50], "the last dash and the first are one"
+
+
+def test_each_dash_lies_on_the_line():
+    cubics = np.array([[[0, 0], [10, 30], [30, -30], [40, 0]]], float)
+    pieces = dashed(SubPath(cubics), [2.0, 1.0], 0.5)
+    t = np.linspace(0, 1, 4001)[:, None]
+    p = cubics[0]
+    curve = (1 - t) ** 3 * p[0] + 3 * t * (1 - t) ** 2 * p[1] + 3 * t * t * (1 - t) * p[2] + t**3 * p[3]
+    for piece in pieces:
+        for point in piece.cubics[:, [0, 3]].reshape(-1, 2):
+            assert np.hypot(*(curve - point).T).min() < 0.01
+    lengths = [knots(piece.cubics)[:, -1].sum() for piece in pieces]
+    assert np.allclose(lengths[1:-1], 2.0, atol=1e-6)
+
+
+def test_dashes_too_many_to_paint_are_refused(monkeypatch):
+    monkeypatch.setattr(svg_dashes, "MOST_DASHES", 100)
+    with pytest.raises(Error, match="beyond the limit of 100"):
+        read('<path d="M0 0H20" stroke-dasharray="0.05"/>')

@@ -1,0 +1,209 @@
+"""use, symbol, nested svg, switch, layers, and what a drawing says to brushsvg."""
+
+import pytest
+from svg_text import lines, read, sentences
+
+from brushsvg import Error
+
+LINE = '<path id="l" d="M0 0H4"/>'
+
+
+def test_use_places_copies_under_its_own_name():
+    body = (
+        f'<defs>{LINE}</defs><use id="u" href="#l" x="10" y="5"/><use xlink:href="#l" transform="scale(2)"/>'
+    )
+    design = read(body)
+    assert lines(design) == [("u/l", (10, 5), (14, 5)), ("l", (0, 0), (8, 0))]
+    assert [element.stroke_width_mm for element in design.elements] == [1, 2]
+    assert not design.notices
+
+
+def test_use_hands_its_style_down_and_may_come_first():
+    group = f'<g id="g">{LINE}<path d="M0 1H4" stroke-width="2"/></g>'
+    body = f'<use id="u" href="#g" stroke-width="3"/><defs>{group}</defs>'
+    design = read(body)
+    assert [(element.id, element.stroke_width_mm) for element in design.elements] == [("u/l", 3), ("u", 2)]
+
+
+def test_use_of_use_and_of_a_group_that_is_drawn_itself():
+    body = f'<g id="g">{LINE}</g><use id="u" href="#g" x="10"/><use id="v" href="#u" x="1"/>'
+    assert lines(read(body)) == [
+        ("l", (0, 0), (4, 0)),
+        ("u/l", (10, 0), (14, 0)),
+        ("v/u/l", (11, 0), (15, 0)),
+    ]
+
+
+def test_symbols_fit_their_view_box_into_the_size_asked_for():
+    symbol = '<symbol id="s" viewBox="0 0 4 4"><path d="M0 0L4 4"/></symbol>'
+    design = read(f'{symbol}<use id="u" href="#s" x="10" width="8" height="20"/>')
+    assert lines(design) == [("u", (10, 6), (18, 14))]
+    assert design.elements[0].stroke_width_mm == 2
+    assert lines(read(f'{symbol}<use id="u" href="#s"/>')) == [("u", (25, 0), (75, 50))]
+    body = '<symbol id="s" preserveAspectRatio="none" viewBox="1 1 4 4" width="8" height="4">'
+    assert lines(read(f'{body}<path d="M1 1L5 5"/></symbol><use href="#s"/>')) == [("", (0, 0), (8, 4))]
+
+
+def test_nested_svg_has_its_own_viewport():
+    inner = (
+        '<svg x="10" y="5" width="50%" height="20" viewBox="0 0 5 2"><line id="l" x2="100%" y2="50%"/></svg>'
+    )
+    assert lines(read(inner)) == [("l", (10, 5), (60, 15))]
+    plain = '<svg x="10" width="40" height="20"><line id="l" x2="50%" y2="100%"/></svg>'
+    assert lines(read(plain)) == [("l", (10, 0), (30, 20))]
+    assert lines(read('<svg width="0" height="5"><path id="x" d="M0 0H5"/></svg>' + LINE)) == [
+        ("l", (0, 0), (4, 0))
+    ]
+
+
+def test_what_a_viewport_hides_is_left_out_or_told():
+    body = '<svg width="10" height="10"><path id="out" d="M20 1H30"/><path id="over" d="M5 5H15"/>{}</svg>'
+    design = read(body.format('<path id="in" d="M1 1Q5 -1 9 1"/>'))
+    assert [element.id for element in design.elements] == ["over", "in"]
+    assert sentences(design) == [
+        "out: it lies outside of the viewport that would show it: left out",
+        "over: its viewport cuts it off in the drawing: painted whole",
+    ]
+    shown = read(body.replace("<svg", '<svg overflow="visible"').format(""))
+    assert len(shown.elements) == 2 and not shown.notices
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence", "damaged"),
+    [
+        ('<use id="u" href="#none"/>', "u: what it uses, '#none', is nowhere in the drawing: left out", False),
+        ('<use id="u" href="other.svg#a"/>', "u: what it uses, 'other.svg#a', lies outside", False),
+        ('<use id="u"/>', "u: what it uses, '', lies outside", False),
+        ('<use id="u" href="#u"/>', "u: it uses #u, in which it lies itself", True),
+        ('<g id="g"><use id="u" href="#g"/></g>', "u: it uses #g, in which it lies itself", True),
+        ('<defs><g id="a"><use id="ub" href="#b"/></g><g id="b"><use id="ua" href="#a"/></g></defs><use href="#a"/>',
+         "ua: it uses #a, in which it lies itself", True),
+        ('<use id="u" href="#l" x="2furlongs"/>', "u: '2furlongs' has a unit that is not read", True),
+        ('<svg id="s" viewBox="0 0 1"/>', "s: viewBox '0 0 1' is not four numbers", True),
+    ],
+)  # fmt: skip
+def test_uses_that_lead_nowhere(body, sentence, damaged):
+    design = read(LINE + body)
+    (found,) = (notice for notice in design.notices if sentence in f"{notice.where}: {notice.sentence}")
+    assert found.damaged == damaged
+    assert len(design.elements) == 1
+
+
+def test_use_chains_that_double_are_refused():
+    chain = "".join(f'<g id="a{k}"><use href="#a{k + 1}"/><use href="#a{k + 1}"/></g>' for k in range(40))
+    with pytest.raises(Error, match="copies more than 100000 elements"):
+        read(f'<defs>{chain}<g id="a40">{LINE}</g></defs><use href="#a0"/>')
+
+
+def test_a_long_chain_of_uses_is_walked_without_recursion():
+    chain = "".join(f'<use id="u{k}" href="#u{k + 1}"/>' for k in range(3000))
+    design = read(f"<defs>{chain}{LINE.replace('l', 'u3000', 1)}</defs><use href='#u0'/>")
+    assert len(design.elements) == 1
+
+
+def test_switch_paints_the_first_child_that_applies():
+    body = """<switch><foreignObject requiredExtensions="http://ns.adobe.com/AdobeIllustrator/10.0/"/>
+      <path id="fr" systemLanguage="fr" d="M0 0H4"/><path id="en" systemLanguage="de, en-GB" d="M0 0H4"/>
+      <path id="any" d="M0 0H4"/></switch><path id="lone" systemLanguage="fr" d="M0 0H4"/>"""
+    design = read(body)
+    assert [element.id for element in design.elements] == ["en"]
+    assert not design.notices
+
+
+def test_transforms_as_css_writes_them_and_about_an_origin():
+    def start(attributes):
+        return lines(read(f'<path d="M10 0H20" {attributes}/>'))[0][1]
+
+    assert start('style="transform:translate(2px, 3px)"') == (12, 3)
+    assert start('style="transform:translateX(2px) translateY(1px) scaleX(2) scaleY(3)"') == (22, 1)
+    assert start('style="transform:rotate(.25turn)"') == pytest.approx((0, 10))
+    assert start('style="transform:rotate(100grad) skew(0deg, 0)"') == pytest.approx((0, 10))
+    assert start('transform="scale(2)" style="transform:none"') == (10, 0)
+    assert start('transform="rotate(90)" transform-origin="10 10"') == pytest.approx((20, 10))
+    assert start('transform="scale(2)" transform-origin="50% 0"') == (-30, 0)
+    assert start('transform="scale(2)" transform-origin="right bottom"') == (-80, -50)
+    assert start('transform="scale(2)" transform-origin="top left"') == (20, 0)
+    assert start('transform="rotate(90deg)"') == pytest.approx((0, 10))
+    design = read('<path id="p" d="M0 0H5" transform="scale(2)" transform-origin="1em 0"/>')
+    assert design.notices[0].damaged
+
+
+def test_layers_in_layers_and_notices_know_where_they_are():
+    body = """<g inkscape:groupmode="layer" inkscape:label="A"><g inkscape:groupmode="layer" inkscape:label="B">
+      <path d="M0 0H4"/><text id="t">x</text></g></g>"""
+    design = read(body)
+    assert design.elements[0].layer == "A/B"
+    assert [notice.layer for notice in design.notices] == ["A/B"]
+
+
+def test_non_scaling_strokes_keep_their_width_in_px():
+    design = read(
+        '<path d="M0 0H5" transform="scale(7)" stroke-width="2" vector-effect="non-scaling-stroke"/>'
+    )
+    assert design.elements[0].stroke_width_mm == pytest.approx(2 * 25.4 / 96)
+
+
+def test_filled_shapes_are_read():
+    body = '<path id="f" d="M0 0H5V5Z" stroke="none" fill="#123" fill-rule="evenodd"/>'
+    body += '<rect id="b" width="5" height="5" fill="blue"/>'
+    shape, both = read(body).elements
+    assert (shape.stroke_width_mm, shape.fill_rule, shape.colour, shape.is_stroked) == (
+        0,
+        "evenodd",
+        "#112233",
+        False,
+    )
+    assert (both.stroke_width_mm, both.fill_rule, both.colour, both.is_stroked) == (
+        1,
+        "nonzero",
+        "#ff0000",
+        True,
+    )
+
+
+def test_illustrator_is_known_by_its_comment():
+    head = b'<!-- Generator: Adobe Illustrator 24.0 --><svg xmlns="http://www.w3.org/2000/svg" '
+    head += b'width="72px" height="72px">'
+    from brushsvg.importers.svg import read_svg
+
+    design = read_svg(head + b'<path d="M0 0H5" stroke="red"/></svg>')
+    assert "25.4 x 25.4 mm there, read it with --scale 1.33333" in design.notices[0].sentence
+
+
+def test_settings_are_inherited_and_carried():
+    body = """<g data-brushsvg-speed="12.5" data-brushsvg-passes="2">
+      <path id="a" d="M0 0H4" data-brushsvg-width="0.3cm"/>
+      <path id="b" d="M0 0H4" data-brushsvg-passes="1" data-brushsvg-reload="yes" data-brushsvg-brush="rigid"/>
+      <g data-brushsvg-skip="yes"><path id="c" d="M0 0H4"/><path id="d" data-brushsvg-skip="no" d="M0 0H4"/></g></g>
+      <path id="e" d="M0 0H4" stroke="none" data-brushsvg-width="2" data-brushsvg-order="-3"/>"""
+    design = read(body)
+    assert not design.notices
+    assert {element.id: element.settings for element in design.elements} == {
+        "a": {"speed_mm_s": 12.5, "passes": 2, "width_mm": 3.0},
+        "b": {"speed_mm_s": 12.5, "passes": 1, "reload": True, "brush": "rigid"},
+        "d": {"speed_mm_s": 12.5, "passes": 2, "skip": False},
+        "e": {"width_mm": 2.0, "order": -3},
+    }
+    assert [element.stroke_width_mm for element in design.elements] == [3, 1, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ('speed="fast"', "data-brushsvg-speed: 'fast' is not a speed in mm/s"),
+        ('speed="-1"', "-1 mm/s is outside the range [0.001, 10000] mm/s"),
+        ('speed="nan"', "nan mm/s is outside the range"),
+        ('width="5 furlongs"', "data-brushsvg-width: '5 furlongs' has a unit"),
+        ('width="0"', "0 mm is outside the range [0.001, 1000] mm"),
+        ('passes="1.5"', "'1.5' is not a whole number"),
+        ('passes="21"', "21 is outside the range [1, 20]"),
+        ('skip="perhaps"', "'perhaps' is neither yes nor no"),
+        ('brush=""', "it is empty"),
+        ('colour="red"', "data-brushsvg-colour is not known; known: width, speed"),
+    ],
+)
+def test_settings_that_make_no_sense_stop_convert(setting, sentence):
+    design = read(f'<path id="p" d="M0 0H4" data-brushsvg-{setting}/>')
+    (notice,) = design.notices
+    assert sentence in notice.sentence and notice.damaged
+    assert not design.elements[0].settings
