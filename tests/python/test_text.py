@@ -1,0 +1,548 @@
+"""Text to drawings, with fonts made here: every coordinate is known beforehand."""
+
+import io
+import re
+import struct
+import sys
+import xml.etree.ElementTree as ET
+
+import pytest
+import svgpathtools
+from fontTools.feaLib.builder import addOpenTypeFeaturesFromString
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.recordingPen import DecomposingRecordingPen
+from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.sfnt import SFNTReader, SFNTWriter
+
+from brushsvg.errors import Error
+from brushsvg.text import text_svg
+
+SVG = "{http://www.w3.org/2000/svg}"
+GLYPHS = """
+  <missing-glyph horiz-adv-x="500" d="M 0 0 L 900 900"/>
+  <glyph unicode=" " horiz-adv-x="300"/>
+  <glyph unicode="I" glyph-name="I" horiz-adv-x="200" d="M 100 0 L 100 700"/>
+  <glyph unicode="T" glyph-name="T" d="M 0 700 L 400 700 M 200 700 L 200 0"/>
+  <glyph unicode="f" glyph-name="f" horiz-adv-x="250" d="M 100 0 V 500"/>
+  <glyph unicode="fi" glyph-name="f_i" horiz-adv-x="450" d="M 100 0 V 600"/>
+  <glyph unicode="ffi" glyph-name="f_f_i" horiz-adv-x="650" d="M 100 0 V 650"/>
+  <glyph unicode="i" glyph-name="i" horiz-adv-x="200" d="M 100 0 V 400 M 100 500 L 100 500"/>
+  <glyph unicode="," glyph-name="comma" horiz-adv-x="150" d="M 50 0 L 0 -100"/>
+  <glyph unicode="&#xe9;" glyph-name="eacute" horiz-adv-x="300" d="M 0 0 C 0 400 300 400 300 0"/>
+  <glyph unicode="o" glyph-name="o" horiz-adv-x="400" d="M 0 0 h 300 v 300 h -300 z"/>
+"""
+FONT = 'horiz-adv-x="400"'
+FACE = 'units-per-em="1000" ascent="800" descent="-200"'
+
+
+def svg_font(glyphs=GLYPHS, font=FONT, face=FACE):
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg"><defs><font {font}><font-face {face}/>{glyphs}</font>'
+        "</defs></svg>"
+    ).encode()
+
+
+def paths(document):
+    return ET.fromstring(document.encode()).findall(SVG + "path")
+
+
+def drawn(text, font=None, **options):
+    """d of each path of a text without notices, with an em of 10 mm unless said otherwise."""
+    options = {"size_mm": 10, **options}
+    document, notices = text_svg(text, font or svg_font(), **options)
+    assert notices == []
+    return [path.get("d") for path in paths(document)]
+
+
+def sentence(text, font, **options):
+    with pytest.raises(Error) as refused:
+        text_svg(text, font, **options)
+    return refused.value.sentence
+
+
+def starts(text, glyphs=GLYPHS, **options):
+    """x of the first point of each glyph in mm, measured from the first glyph's."""
+    found = [float(re.match(r"M (-?[\d.]+)", d)[1]) for d in drawn(text, svg_font(glyphs), **options)]
+    return [round(x - found[0], 4) for x in found]
+
+
+# Single lines
+
+
+def test_a_letter_stands_upright_with_20_mm_and_half_a_width_around_it():
+    document, notices = text_svg("T", svg_font(), size_mm=10, width_mm=1)
+    root = ET.fromstring(document.encode())
+    # the ink is 4 by 7 mm, the line's width adds 1 mm
+    assert (root.get("width"), root.get("height"), root.get("viewBox")) == ("45mm", "48mm", "0 0 45 48")
+    assert root.find(SVG + "title").text == "T"
+    (path,) = paths(document)
+    assert path.attrib == {
+        "id": "glyph-1-T",
+        "fill": "none",
+        "stroke": "#000000",
+        "stroke-width": "1",
+        "stroke-linecap": "round",
+        "stroke-linejoin": "round",
+        "d": "M 20.5000,20.5000 L 24.5000,20.5000 M 22.5000,20.5000 L 22.5000,27.5000",
+    }
+    assert notices == []
+
+
+def test_the_size_is_the_em_of_the_font():
+    font = svg_font(face='units-per-em="2000"')
+    assert drawn("T", font, size_mm=20) == drawn("T", size_mm=10)
+
+
+def test_a_font_without_units_has_1000_to_the_em():
+    assert drawn("T", svg_font(face="")) == drawn("T")
+
+
+def test_glyphs_follow_at_their_advance_or_the_fonts():
+    # I at 100 with an advance of 200, T starts at 0 and has the font's 400
+    assert starts("ITI I") == [0, 1, 6, 11]
+
+
+def test_sub_paths_that_touch_stay_apart():
+    glyph = '<glyph unicode="L" d="M 0 700 L 0 0 M 0 0 L 300 0"/>'
+    assert drawn("L", svg_font(glyph)) == [
+        "M 20.5000,20.5000 L 20.5000,27.5000 M 20.5000,27.5000 L 23.5000,27.5000"
+    ]
+
+
+def test_a_point_stays_a_dab_and_a_closed_line_closed():
+    assert drawn("i")[0].endswith(" M 20.5000,20.5000 L 20.5000,20.5000")
+    document, _ = text_svg("o", svg_font(), size_mm=10)
+    (path,) = paths(document)
+    assert path.get("d") == "M 20.5000,23.5000 L 23.5000,23.5000 L 23.5000,20.5000 L 20.5000,20.5000 Z"
+
+
+def test_curves_keep_their_shape_and_bound_the_ink_themselves():
+    """The handles reach 400 up, the curve itself 300."""
+    (d,) = drawn("\u00e9")
+    assert d == "M 20.5000,23.5000 C 20.5000,19.5000 23.5000,19.5000 23.5000,23.5000"
+
+
+def test_every_command_against_svgpathtools():
+    """Tilted arcs are left to the points below: svgpathtools 1.8 turns them the wrong way under a flip."""
+    d = "M 10 20 l 30 40 h 50 V 300 q 50 60 80 0 t 90 10 c 10 20 30 40 50 -60 s 40 20 90 0 A 90 60 0 0 1 300 40 z"
+    ours = svgpathtools.parse_path(drawn("x", svg_font(f'<glyph unicode="x" d="{d} m 5 5 l 9 9"/>'))[0])
+    theirs = svgpathtools.parse_path(d + " m 5 5 l 9 9")
+    flip = 0.01  # mm to the unit
+    shift = ours[0].start - complex(theirs[0].start.real, -theirs[0].start.imag) * flip
+    lengths = [part.length() for part in (ours, theirs)]
+    assert lengths[0] == pytest.approx(lengths[1] * flip, abs=1e-3)
+    for segment in theirs:
+        wanted = [complex(z.real, -z.imag) * flip + shift for z in (segment.point(0.3), segment.point(0.8))]
+        for z in wanted:
+            assert min(abs(near.point(near.radialrange(z)[0][1]) - z) for near in ours) < 2e-4
+
+
+def test_a_tilted_arc_is_mirrored_with_its_letter():
+    """An arc of 30 degrees' tilt, drawn as SVG says (appendix B.2.4), then mirrored by hand."""
+    arc = svgpathtools.parse_path("M 0 0 A 300 100 30 0 1 400 50")
+    ours = svgpathtools.parse_path(
+        drawn("x", svg_font('<glyph unicode="x" d="M 0 0 A 300 100 30 0 1 400 50"/>'))[0]
+    )
+    for t in (0.2, 0.5, 0.9):
+        z = arc.point(t)
+        wanted = complex(z.real, -z.imag) * 0.01 + ours[0].start
+        assert min(abs(part.point(part.radialrange(wanted)[0][1]) - wanted) for part in ours) < 3e-4
+
+
+def test_a_new_line_begins_below_where_the_first_did():
+    one, two = drawn("I\nI", line_spacing=1.5)
+    assert one == "M 20.5000,27.5000 L 20.5000,20.5000"
+    assert two == "M 20.5000,42.5000 L 20.5000,35.5000"
+    assert drawn("I\r\nI") == drawn("I\rI") == drawn("I\nI")
+    assert len(drawn("I\n\nI")) == 2
+
+
+def test_ligatures_the_longest_first():
+    document, _ = text_svg("ffiffi f", svg_font(), size_mm=10)
+    assert [path.get("id") for path in paths(document)] == ["glyph-1-ffi", "glyph-2-ffi", "glyph-3-f"]
+    document, _ = text_svg("fff", svg_font(), size_mm=10)
+    assert [path.get("id") for path in paths(document)] == ["glyph-1-f", "glyph-2-f", "glyph-3-f"]
+
+
+def test_of_two_glyphs_for_a_character_the_first_counts():
+    assert drawn("I", svg_font(GLYPHS + '<glyph unicode="I" d="M 0 0 L 9 9"/>')) == drawn("I")
+
+
+def test_a_letter_and_its_accent_find_the_glyph_of_both():
+    assert drawn("e\u0301") == drawn("\u00e9")
+
+
+@pytest.mark.parametrize(
+    "kern",
+    [
+        'u1="T" u2="I"',
+        'u1="x, T ,y" u2="a,I"',
+        'g1="T" g2="I"',
+        'g1="a,T" u2="U+49"',
+        'u1="U+0050-0054" u2="U+4?"',
+        'u1="T" u2="I" id="first"/><hkern k="999" u1="T" u2="I"',
+    ],
+)
+def test_kerning(kern):
+    glyphs = GLYPHS + f'<hkern k="150" {kern}/>'
+    # T 400 wide and I's line at 100: 5 mm without, 3.5 mm with kerning; no other pair is moved
+    assert starts("TI", glyphs) == [0, 3.5]
+    assert starts("TTIT I", glyphs) == [0, 4, 7.5, 8.5, 16.5]
+
+
+@pytest.mark.parametrize(
+    "kern", ['u1="T" u2="o"', 'u1="I" u2="T"', 'u1="U+0055-0060" u2="I"', 'g1="T"', 'u2="I"']
+)
+def test_kerning_of_other_pairs(kern):
+    assert starts("TI", GLYPHS + f'<hkern k="150" {kern}/>') == [0, 5]
+
+
+def test_a_comma_is_kerned_though_commas_part_the_list():
+    assert starts("T,", GLYPHS + '<hkern k="150" u1="T" u2=","/>') == [0, 3]
+    assert starts("T,", GLYPHS) == [0, 4.5]
+
+
+def test_characters_without_a_glyph_are_left_out_and_named_once():
+    document, notices = text_svg("I\u03a9\u03a9I\u20acZ", svg_font(), size_mm=10)
+    assert [path.get("id") for path in paths(document)] == ["glyph-1-I", "glyph-2-I"]
+    (notice,) = notices
+    assert notice.sentence == "the font has no glyph for U+03A9 \u03a9, U+20AC \u20ac, U+005A Z: left out"
+    _, (notice,) = text_svg("I" + "".join(map(chr, range(0x400, 0x420))), svg_font())
+    assert "U+040B" in notice.sentence
+    assert notice.sentence.endswith("and 20 more: left out")
+
+
+def test_nothing_left():
+    assert sentence("\u03a9", svg_font()) == (
+        "the text leaves nothing to paint: the font has no glyph for U+03A9 \u03a9: left out"
+    )
+    assert sentence("  \n", svg_font()) == "the text leaves nothing to paint"
+    assert sentence("", svg_font()) == "the text is empty"
+    assert "control characters" in sentence("\x07", svg_font())
+
+
+def test_control_characters_are_dropped_and_markup_is_escaped():
+    glyphs = '<glyph unicode="&amp;" d="M 0 0 L 9 9"/><glyph unicode="&lt;" d="M 0 0 L 9 9"/>'
+    document, notices = text_svg('&<\x00"\x1b\ud800\uffff]]>', svg_font(glyphs))
+    assert [path.get("id") for path in paths(document)] == ["glyph-1-u0026", "glyph-2-u003C"]
+    assert ET.fromstring(document.encode()).find(SVG + "title").text == '&<"]]>'
+    assert notices[0].sentence == (
+        "control characters are not painted: U+0000, U+001B, U+D800, U+FFFF left out"
+    )
+
+
+@pytest.mark.parametrize(
+    ("d", "said"),
+    [
+        ("M 0 0 X 5 5", "d is wrong at character 7: found 'X 5 5'; it is left out"),
+        ("L 5 5", "d is wrong at character 1"),
+        ("M 0 0 L 5", "d is wrong at character 10: found the end"),
+        ("M 0 0 L 1e9 0", "d leads beyond 1e6 mm at character 7"),
+        ("M 0 0 L 1e400 0", "d leads beyond 1e6 mm at character 7"),
+    ],
+)
+def test_a_broken_glyph_is_skipped_and_keeps_its_room(d, said):
+    glyphs = GLYPHS + f'<glyph unicode="x" glyph-name="ex" horiz-adv-x="300" d="{d}"/>'
+    document, (notice,) = text_svg("IxIx", svg_font(glyphs), size_mm=10)
+    assert [path.get("id") for path in paths(document)] == ["glyph-1-I", "glyph-2-I"]
+    assert (notice.where, notice.damaged) == ("glyph ex", True)
+    assert notice.sentence.startswith(said)
+    first, second = (float(path.get("d").split()[1].split(",")[0]) for path in paths(document))
+    assert second - first == pytest.approx(5)
+
+
+def test_what_is_not_painted_of_a_glyph_is_named():
+    glyphs = (
+        GLYPHS
+        + '<glyph unicode="m" d="M 0 0 M 1 1 L 2 2"/><glyph unicode="e"><path d="M 0 0 L 1 1"/></glyph>'
+    )
+    _, notices = text_svg("me", svg_font(glyphs))
+    assert [(notice.where, notice.sentence) for notice in notices] == [
+        ("glyph m", "a moveto without a line to follow: skipped"),
+        ("glyph e", "it is drawn by elements inside it, which are not read; it is left out"),
+    ]
+
+
+def test_outlines_in_an_svg_font_are_named():
+    _, notices = text_svg("oo", svg_font())
+    assert [notice.sentence for notice in notices] == [
+        "every line of these letters is closed; if they are outlines, the outlines are painted"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("font", "said"),
+    [
+        (b"", "the font file is empty"),
+        (b"GIF89a", "this is not a font that can be read"),
+        (b"<html/>", "this is no font: <html> holds no <font>"),
+        (b"<svg", "this is not XML"),
+        (svg_font(""), "the font has no glyph for any character"),
+        (svg_font(face='units-per-em="0"'), "units-per-em 0 is outside the range [1, 1e6]"),
+        (svg_font(face='units-per-em="1000x"'), "units-per-em '1000x' is not a number"),
+        (svg_font('<glyph unicode="I" d="M 0 0 L 1 1"/>', font=""), "horiz-adv-x is missing"),
+        (
+            svg_font('<glyph unicode="I" horiz-adv-x="1e999" d="M 0 0 L 1 1"/>'),
+            "horiz-adv-x '1e999' is not a number",
+        ),
+        (svg_font(GLYPHS + '<hkern u1="I" u2="I" k="wide"/>'), "k 'wide' is not a number"),
+    ],
+)
+def test_what_is_no_font_is_refused_in_a_sentence(font, said):
+    assert sentence("II", font).startswith(said)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_other_encodings(encoding):
+    assert drawn("I", svg_font().decode().encode(encoding)) == drawn("I")
+
+
+# Numbers
+
+
+@pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf"), 1000.5])
+def test_numbers_out_of_range(value):
+    assert sentence("I", svg_font(), size_mm=value) == f"size {value:g} mm is outside the range (0, 1000] mm"
+    assert sentence("I", svg_font(), width_mm=value).startswith("width")
+    assert sentence("I", svg_font(), line_spacing=value).endswith("is outside the range (0, 100]")
+    if value != 1000.5:
+        assert sentence("I", svg_font(), sheet_mm=(10, value)).startswith("a side of the sheet")
+
+
+def test_a_given_sheet_has_the_ink_in_its_middle_or_is_refused():
+    assert drawn("T", sheet_mm=(100, 60)) == [
+        "M 48.0000,26.5000 L 52.0000,26.5000 M 50.0000,26.5000 L 50.0000,33.5000"
+    ]
+    assert drawn("T", sheet_mm=(5, 8)) == ["M 0.5000,0.5000 L 4.5000,0.5000 M 2.5000,0.5000 L 2.5000,7.5000"]
+    said = "the text takes 5.00 x 8.00 mm, more than the sheet's 4.9 x 60 mm"
+    assert sentence("T", svg_font(), size_mm=10, sheet_mm=(4.9, 60)) == said
+    assert "60 x 7.9 mm" in sentence("T", svg_font(), size_mm=10, sheet_mm=(60, 7.9))
+
+
+def test_too_much():
+    assert "beyond the limit of 100000" in sentence("I" * 100_001, svg_font())
+    assert "beyond the range [0, 1e6] mm" in sentence("T" * 3000, svg_font(), size_mm=1000)
+    heavy = svg_font(f'<glyph unicode="x" d="M 0 0{" L 1 1 L 0 0" * 2000}"/>')
+    assert "takes 4000000 curves" in sentence("x" * 1000, heavy)
+
+
+def test_same_input_same_bytes():
+    assert text_svg("ffi TI", svg_font()) == text_svg("ffi TI", svg_font())
+
+
+def test_writing_from_right_to_left_is_named():
+    glyphs = GLYPHS + '<glyph unicode="\u05d0" d="M 0 0 L 9 9"/>'
+    _, (notice,) = text_svg("I\n\u05d0", svg_font(glyphs))
+    assert notice.sentence == "line 2 is set from left to right, as SVG fonts are"
+
+
+# Outlines
+
+FEATURES = """
+feature kern { pos A V -200; pos A A <10 100 0 0>; } kern;
+feature liga { sub f i by f_i; } liga;
+"""
+
+
+def outline_font(features=FEATURES):
+    """A triangle A of 1000, its mirror V, f, i and their ligature as bars, a curve o; .notdef has ink."""
+    names = [".notdef", "space", "A", "V", "f", "i", "f_i", "o"]
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder(names)
+    builder.setupCharacterMap({ord(c): c for c in "AVfio"} | {0x20: "space", 0xE000: ".notdef"})
+    glyphs = {
+        ".notdef": [(0, 0), (0, 900), (900, 0)],
+        "space": [],
+        "A": [(0, 0), (300, 700), (600, 0)],
+        "V": [(0, 700), (600, 700), (300, 0)],
+        "f": [(50, 0), (50, 700), (150, 700), (150, 0)],
+        "i": [(50, 0), (50, 500), (150, 500), (150, 0)],
+        "f_i": [(50, 0), (50, 700), (350, 700), (350, 0)],
+    }
+    shapes = {}
+    for name, points in glyphs.items():
+        pen = TTGlyphPen(None)
+        if points:
+            pen.moveTo(points[0])
+            for point in points[1:]:
+                pen.lineTo(point)
+            pen.closePath()
+        shapes[name] = pen.glyph()
+    pen = TTGlyphPen(None)
+    pen.moveTo((0, 0))
+    pen.qCurveTo((300, 600), (600, 0))
+    pen.closePath()
+    shapes["o"] = pen.glyph()
+    builder.setupGlyf(shapes)
+    widths = {"space": 300, "f": 200, "i": 200, "f_i": 400}
+    builder.setupHorizontalMetrics({name: (widths.get(name, 600), 0) for name in names})
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupNameTable({"familyName": "Test", "styleName": "Regular"})
+    builder.setupOS2()
+    builder.setupPost()
+    if features:
+        addOpenTypeFeaturesFromString(builder.font, features)
+    out = io.BytesIO()
+    builder.font.recalcTimestamp = False
+    builder.font.save(out)
+    return out.getvalue()
+
+
+@pytest.fixture(scope="module")
+def ttf():
+    return outline_font()
+
+
+def filled(text, font, **options):
+    """(id, d) of each glyph, and the notices beyond the one that says outlines are filled."""
+    document, notices = text_svg(text, font, **{"size_mm": 10, **options})
+    assert "outlines" in notices[0].sentence
+    return [(path.get("id"), path.get("d")) for path in paths(document)], notices[1:]
+
+
+def test_an_outline_is_filled_and_lies_exactly(ttf):
+    document, _ = text_svg("A", ttf, size_mm=10, width_mm=3)
+    root = ET.fromstring(document.encode())
+    assert root.get("viewBox") == "0 0 46 47"
+    (path,) = paths(document)
+    assert path.attrib == {
+        "id": "glyph-1-A",
+        "fill": "#000000",
+        "fill-rule": "nonzero",
+        "stroke": "none",
+        "d": "M 20.0000,27.0000 L 23.0000,20.0000 L 26.0000,27.0000 Z",
+    }
+
+
+def test_quadratic_curves_come_as_the_same_cubics(ttf):
+    (glyph,), _ = filled("o", ttf)
+    assert glyph[1] == "M 20.0000,23.0000 C 22.0000,19.0000 24.0000,19.0000 26.0000,23.0000 Z"
+
+
+def test_outlines_are_kerned_and_joined(ttf):
+    glyphs, _ = filled("AVA", ttf)
+    assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "24.0000,20.0000", "30.0000,27.0000"]
+    glyphs, _ = filled("fi i", ttf)
+    assert [name for name, _ in glyphs] == ["glyph-1-fi", "glyph-2-i"]
+    glyphs, _ = filled("fi", outline_font(""))
+    assert [name for name, _ in glyphs] == ["glyph-1-f", "glyph-2-i"]
+
+
+def test_a_glyph_is_raised_as_the_font_says(ttf):
+    """The pair A A moves its first letter 10 to the right and 100 up."""
+    glyphs, _ = filled("AA", ttf)
+    assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "25.9000,28.0000"]
+
+
+def test_outlines_of_several_lines(ttf):
+    glyphs, _ = filled("A\n A", ttf, line_spacing=2)
+    assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "23.0000,47.0000"]
+
+
+def test_no_box_for_what_an_outline_font_lacks(ttf):
+    glyphs, (notice,) = filled("A\u03a9A", ttf)
+    assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "26.0000,27.0000"]
+    assert notice.sentence == "the font has no glyph for U+03A9 \u03a9: left out"
+    assert "U+03A9" in sentence("\u03a9", ttf)
+    assert "U+E000" in sentence("\ue000", ttf)
+
+
+def test_two_directions_in_a_line_are_named(ttf):
+    _, notices = filled("A\u05d0", ttf)
+    assert notices[-1].sentence == "line 1 holds writing in two directions and is set in one: check its order"
+
+
+def repacked(ttf, flavor):
+    font = TTFont(io.BytesIO(ttf))
+    font.flavor = flavor
+    out = io.BytesIO()
+    font.save(out)
+    return out.getvalue()
+
+
+def test_woff_is_unpacked_and_woff2_refused(ttf):
+    assert filled("AV fi", repacked(ttf, "woff")) == filled("AV fi", ttf)
+    assert sentence("A", b"wOF2" + bytes(60)).startswith("WOFF2 is not read")
+
+
+def test_a_woff_bomb_is_refused(ttf, monkeypatch):
+    monkeypatch.setattr("brushsvg.text.outline_font._UNPACKED", 500)
+    assert sentence("A", repacked(ttf, "woff")) == "the font unpacks to more than 500 bytes"
+
+
+def test_the_first_of_a_collection(ttf):
+    """The header of a collection before one font, its tables' offsets moved by as much."""
+    header = struct.pack(">4sHHLL", b"ttcf", 1, 0, 1, 16)
+    count = struct.unpack(">H", ttf[4:6])[0]
+    rows = [struct.unpack(">4sLLL", ttf[12 + 16 * k : 28 + 16 * k]) for k in range(count)]
+    moved = b"".join(
+        struct.pack(">4sLLL", tag, check, offset + 16, size) for tag, check, offset, size in rows
+    )
+    assert filled("AV", header + ttf[:12] + moved + ttf[12 + 16 * count :]) == filled("AV", ttf)
+
+
+def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypatch):
+    monkeypatch.delitem(sys.modules, "brushsvg.text.outline_font", raising=False)
+    monkeypatch.delattr("brushsvg.text.outline_font", raising=False)
+    monkeypatch.setitem(sys.modules, "uharfbuzz", None)
+    assert sentence("A", ttf) == "outline fonts need the extra: pip install brushsvg[text]"
+    assert len(drawn("TI")) == 2
+
+
+def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
+    woff = repacked(ttf, "woff")
+    refusals = set()
+    for font in (ttf, woff):
+        for cut in (4, 12, 40, 200, len(font) // 2, len(font) - 40):
+            refusals.add(outcome(font[:cut]))
+        for at in range(4, len(font), 7):
+            refusals.add(outcome(font[:at] + bytes([font[at] ^ 0xFF]) + font[at + 1 :]))
+    assert None in refusals
+    assert any(said and said.startswith("this is a damaged font") for said in refusals)
+    assert any(said and said.startswith("this is a damaged WOFF font") for said in refusals)
+
+
+def outcome(font):
+    try:
+        ET.fromstring(text_svg("AVfi o", font)[0])
+    except Error as error:
+        assert "\n" not in error.sentence
+        return error.sentence
+
+
+def test_composites_that_hold_each_other_end():
+    """Each glyph is made of the next one twice, the last of the first: without a bound it never ends."""
+    count = 40
+    glyphs = [bytes(10)]  # .notdef, empty
+    for k in range(count):
+        parts = [struct.pack(">HHbb", more | 0x0002, (k + 1) % count + 1, 9, 0) for more in (0x0020, 0)]
+        glyphs.append(struct.pack(">hhhhh", -1, 0, 0, 99, 99) + b"".join(parts))
+    offsets = [sum(map(len, glyphs[:k])) for k in range(len(glyphs) + 1)]
+    names = [".notdef", *(f"g{k}" for k in range(count))]
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder(names)
+    builder.setupCharacterMap({65: "g0"})
+    builder.setupGlyf({name: TTGlyphPen(None).glyph() for name in names})
+    builder.setupHorizontalMetrics(dict.fromkeys(names, (600, 0)))
+    builder.setupHorizontalHeader()
+    sound = io.BytesIO()
+    builder.font.save(sound)
+    reader = SFNTReader(sound)
+    tables = {tag: reader[tag] for tag in reader.keys()}  # noqa: SIM118
+    head = bytearray(tables["head"])
+    head[50:52] = b"\0\1"  # offsets of four bytes
+    tables |= {
+        "head": bytes(head),
+        "glyf": b"".join(glyphs),
+        "loca": struct.pack(f">{len(offsets)}L", *offsets),
+    }
+    hostile = io.BytesIO()
+    writer = SFNTWriter(hostile, len(tables))
+    for tag, data in tables.items():
+        writer[tag] = data
+    writer.close()
+    glyph_set = TTFont(hostile).getGlyphSet()
+    with pytest.raises(RecursionError):  # the font is as bad as it was meant to be
+        glyph_set["A"].draw(DecomposingRecordingPen(glyph_set))
+    assert sentence("A", hostile.getvalue()) == "the text leaves nothing to paint"
