@@ -24,6 +24,7 @@ void bind_compensate(py::module_& m) {
     py::class_<Miss>(m, "Miss",
                      "Distance of the widest point from the middle line [mm] from the first taut row to the last.")
         .def_readonly("largest_mm", &Miss::largest_mm)
+        .def_readonly("at_mm", &Miss::at_mm)
         .def_readonly("mean_mm", &Miss::mean_mm)
         .def_readonly("within_tolerance", &Miss::within_tolerance)
         .def_readonly("has_turn_in_place", &Miss::has_turn_in_place);

@@ -39,8 +39,9 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
 
 void require_sound(const std::array<double, 2>& sheet_mm) {
     for (const double side_mm : sheet_mm) {
-        if (side_mm > 0.0) continue;
-        throw Error("both sides of the sheet must be greater than 0, not " + in_words(side_mm), "sheet_mm", side_mm);
+        if (side_mm > 0.0 && side_mm <= kLargestMm) continue;
+        throw Error("both sides of the sheet must lie within (0, 1e6] mm, not be " + in_words(side_mm), "sheet_mm",
+                    side_mm, std::array<double, 2>{0.0, kLargestMm});
     }
 }
 

@@ -16,7 +16,11 @@ std::string format(const char* pattern, Numbers... numbers) {
     return text;
 }
 
-constexpr double kLawAgainstOutlineMm = 0.5;  // outlines rule the mark, laws the inverse; they must agree
+constexpr double kDeepestMm = 1000.0;   // no brush is longer, and plans grow with the depth
+constexpr double kRigidLeverMm = 0.05;  // what a rigid pen's widest section may be off unseen: the usual tolerance
+constexpr double kLargestLawMm = 1000.0;
+constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
+constexpr double kLawAgainstOutlineMm = 0.5;             // outlines rule the mark, laws the inverse; they must agree
 
 /// Least value of a profile over the depth range and where it stands.
 struct Least {
@@ -38,7 +42,18 @@ Least least(const Profile& profile, double lo, double hi) {
 
 void check_lag(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
-    if (brush.is_rigid()) return;
+    if (brush.is_rigid()) {
+        for (int i = 0; i <= 100; ++i) {
+            const double d = lo + (hi - lo) * i / 100, e = brush.tip_to_widest(d) - brush.tip_gap(d);
+            if (!(std::abs(e) <= kRigidLeverMm))
+                throw Error(
+                    format("the lag is zero, so the mark has no heading, but at depth %.2f mm it is widest %.2f "
+                           "mm away from where it touches",
+                           d, e),
+                    "lag", e, std::array<double, 2>{-kRigidLeverMm, kRigidLeverMm});
+        }
+        return;
+    }
     const Least worst = least(brush.lag, lo, hi);
     if (worst.value < 0.0)
         throw Error(format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths %.2f and ",
@@ -69,6 +84,26 @@ void check_rising(const Brush& brush) {
         before = now;
     }
     if (!(before > 0.0)) throw Error("the half width is zero over the whole depth range", "half_width");
+}
+
+void check_range(const Profile& law, double lo, double hi, const char* where) {
+    for (int i = 0; i <= 100; ++i) {
+        const double d = lo + (hi - lo) * i / 100, value = law(d);
+        if (!(std::abs(value) <= kLargestLawMm))
+            throw Error(format("the law says %.4g mm at depth %.2f mm; no more than %.0f mm is taken for true", value,
+                               d, kLargestLawMm),
+                        where, value, std::array<double, 2>{-kLargestLawMm, kLargestLawMm});
+    }
+    if (const auto& measured = law.calibrated_mm;
+        measured && !((*measured)[0] < (*measured)[1] && (*measured)[0] < hi && (*measured)[1] > lo))
+        throw Error(
+            format("it was measured in [%.4g, %.4g] mm, which must rise and meet the depth range [%.4g, %.4g] mm",
+                   (*measured)[0], (*measured)[1], lo, hi),
+            where);
+    const auto& half = law.half_interval_95;
+    if (std::any_of(half.begin(), half.end(), [](double value) { return !(value >= 0.0); }) ||
+        (law.rmse_mm && !(*law.rmse_mm >= 0.0)))
+        throw Error("an interval or rmse_mm is negative", where);
 }
 
 bool crosses_itself(const Ring& p) {
@@ -161,8 +196,12 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
 
 void check(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
-    if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo))
-        throw Error(format("the depth range [%.2f, %.2f] mm must rise from 0 or more", lo, hi), "depth_range_mm");
+    if (brush.name.empty() ||
+        std::any_of(brush.name.begin(), brush.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+        throw Error("the name must be one line of text", "name");
+    if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kDeepestMm))
+        throw Error(format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
+                    "depth_range_mm");
     for (const auto& [profile, where] :
          {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
           std::pair{&brush.tip_to_widest, "tip_to_widest"}, std::pair{&brush.half_width, "half_width"}}) {
@@ -173,18 +212,25 @@ void check(const Brush& brush) {
                 where);
         for (double c : profile->coefficients)
             if (!std::isfinite(c)) throw Error("a coefficient is not finite", where);
+        check_range(*profile, lo, hi, where);
     }
     check_lag(brush);
     check_rising(brush);
     if (brush.footprints.dragged.empty()) throw Error("there is no outline", "footprints.dragged");
     check_shapes(brush, brush.footprints.dragged, "footprints.dragged");
     check_shapes(brush, brush.footprints.pressed, "footprints.pressed");
-    if (!(brush.max_speed_mm_s > 0.0))
-        throw Error(format("the speed limit %.2f mm/s must be positive", brush.max_speed_mm_s), "max_speed_mm_s");
-    if (!brush.width_follows_depth() && !(brush.paint_depth_mm >= lo && brush.paint_depth_mm <= hi))
-        throw Error(
-            format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", brush.paint_depth_mm, lo, hi),
-            "paint_depth_mm", brush.paint_depth_mm, brush.depth_range_mm);
+    if (!(brush.max_speed_mm_s >= kSpeeds[0] && brush.max_speed_mm_s <= kSpeeds[1]))
+        throw Error(format("the speed limit %.3g mm/s is outside the range [%.2f, %.0f] mm/s", brush.max_speed_mm_s,
+                           kSpeeds[0], kSpeeds[1]),
+                    "max_speed_mm_s", brush.max_speed_mm_s, kSpeeds);
+    const double paints = brush.paint_depth_mm;
+    if (!brush.width_follows_depth() && !(paints > 0.0))
+        throw Error(format("the painting depth %.2f mm must be greater than 0, for the width does not follow the depth",
+                           paints),
+                    "paint_depth_mm", paints, brush.depth_range_mm);
+    if (!(paints == 0.0 || (paints >= lo && paints <= hi)))
+        throw Error(format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", paints, lo, hi),
+                    "paint_depth_mm", paints, brush.depth_range_mm);
 }
 
 std::vector<Warning> remarks(const Brush& brush) {

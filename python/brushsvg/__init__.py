@@ -35,15 +35,18 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .brushes import brush_names, find_brush
     from .convert import write_program
     from .errors import Error
-    from .importers import read_drawing
+    from .importers import ReadOptions, read_drawing
     from .render import marks_png, marks_svg
     from .strokes import strokes
+    from .text import text_svg
 
     __version__: str
 
 _HOME = {
     "Error": "errors",
+    "ReadOptions": "importers",
     "read_drawing": "importers",
+    "text_svg": "text",
     "strokes": "strokes",
     "brush_names": "brushes",
     "find_brush": "brushes",
@@ -80,6 +83,7 @@ __all__ = [
     "Marks",
     "Pass",
     "Plan",
+    "ReadOptions",
     "Stroke",
     "__version__",
     "area",
@@ -96,6 +100,7 @@ __all__ = [
     "read_plan",
     "simulate",
     "strokes",
+    "text_svg",
     "trace_outlines",
     "unite",
     "wanted_outline",

@@ -12,7 +12,7 @@ from .console import RefusedError, about, clear_stage, say, stage, tell, warn
 from .describe import one_line, page
 from .design import Notice
 from .errors import Error
-from .files import write_files
+from .files import read_bytes, write_files
 from .importers import ReadOptions, read_drawing
 from .layout import Layout, arrange
 from .strokes import strokes as strokes_of
@@ -68,6 +68,23 @@ def import_file(args) -> None:
     _write({args.output: picture})
 
 
+def text_file(args) -> None:
+    _check_places(args.output)
+    from .text import text_svg
+
+    with about(args.font):
+        stage("setting the text")
+        drawing, notices = text_svg(
+            args.input.replace("\\n", "\n"),
+            read_bytes(args.font),
+            size_mm=args.size,
+            width_mm=args.width,
+            sheet_mm=args.sheet,
+        )
+    warn(args.font, [(notice.where, notice.sentence) for notice in notices])
+    _write({args.output: drawing.encode()})
+
+
 def report_file(args) -> None:
     work, marks, warnings = _look(args, outlines=True)
     with about(args.input):
@@ -109,7 +126,7 @@ LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "o
 
 
 def _reading(args) -> ReadOptions:
-    return ReadOptions(args.sheet, args.units, args.select)
+    return ReadOptions(args.sheet, args.units, args.select, lenient=True)  # damage is told with all the rest
 
 
 def _layout(args) -> Layout:

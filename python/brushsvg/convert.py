@@ -100,7 +100,8 @@ def _misses(strokes, misses, tolerance_mm: float) -> list[Notice]:
         Notice(
             stroke.id,
             f"the widest point stays up to {miss.largest_mm:.3g} mm off the middle line, tolerance "
-            f"{tolerance_mm:g} mm" + (": it turns too sharply there" if miss.has_turn_in_place else ""),
+            f"{tolerance_mm:g} mm, near x {miss.at_mm[0]:.1f}, y {miss.at_mm[1]:.1f} mm"
+            + (": it turns too sharply there for the brush" if miss.has_turn_in_place else ""),
         )
         for stroke, miss in zip(strokes, misses, strict=True)
         if not miss.within_tolerance

@@ -38,9 +38,9 @@ class SubPath:
 class Element:
     """One painted element: a stroked line, a filled shape, or both.
 
-    id: "" if it has none; stroke_width_mm: 0 without a stroke; colour: "#rrggbb" of the stroke, of the fill
-    where there is none; layer: "" outside of any layer; settings: what the drawing says to brushsvg itself;
-    fill_rule: "nonzero" or "evenodd" of a filled shape, "" without a fill.
+    id: as in the drawing, strokeN for the N-th without one; stroke_width_mm: 0 without a stroke; colour: "#rrggbb"
+    of the stroke, of the fill where there is none; layer: "" outside of any layer; settings: what the drawing says
+    to brushsvg itself; fill_rule: "nonzero" or "evenodd" of a filled shape, "" without a fill.
     """
 
     id: str

@@ -11,6 +11,8 @@ from .errors import Error
 
 SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
 
+ON_THE_SPOT_MM = 1e-6
+
 
 @dataclass(frozen=True)
 class Move:
@@ -80,6 +82,8 @@ def broken_limits(plan, brush, cell: Cell) -> list[tuple[str, str]]:
             sentences = ["a pose is not a finite number"]
         else:
             sentences = _heights(poses, cell) + _workspace(poses, plan.sheet_mm, cell)
+            if not (poses[:, 2] < 0).any():
+                sentences.append("the brush is never pressed to the paper: nothing would be painted")
         speed = a_pass.speed_mm_s
         if not 0 < speed <= limit:
             sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
@@ -132,8 +136,20 @@ def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
         Move("travel", over(start, cell.safe_height_mm), cell.travel_mm_s),
         Move("approach", over(start, cell.clearance_mm), approach_mm_s),
         Move("land", poses[:1], press_mm_s),
-        Move("paint", poses[1:], a_pass.speed_mm_s),
+        *_painting(poses, a_pass.speed_mm_s, press_mm_s),
         Move("lift", over(end, cell.clearance_mm), press_mm_s),
         Move("retract", over(end, cell.safe_height_mm), cell.travel_mm_s),
     )
     return tuple(move for move in moves if len(move.points_mm))
+
+
+def _painting(poses: np.ndarray, paint_mm_s: float, press_mm_s: float) -> list[Move]:
+    """From the first pose on, straight up and down as slowly as a landing."""
+    steps = np.diff(poses, axis=0)
+    on_the_spot = (np.abs(steps[:, :2]).max(axis=1, initial=0.0) < ON_THE_SPOT_MM) & (steps[:, 2] != 0)
+    runs = np.split(np.arange(len(steps)), np.flatnonzero(np.diff(on_the_spot)) + 1)
+    return [
+        Move("paint", poses[run + 1], press_mm_s if on_the_spot[run[0]] else paint_mm_s)
+        for run in runs
+        if len(run)
+    ]

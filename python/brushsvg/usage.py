@@ -70,6 +70,21 @@ def _parser() -> argparse.ArgumentParser:
     _add_layout(look)
     look.set_defaults(run="import_file", parser=look, brush=None, lag=None)
 
+    text = commands.add_parser("text", help="set a text in a font, as a drawing")
+    text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
+    text.add_argument("output", metavar="OUT", help="a drawing (.svg)")
+    text.add_argument(
+        "--font", metavar="FILE", required=True, help="an SVG font of single lines, or TrueType, OpenType"
+    )
+    text.add_argument("--size", metavar="MM", type=_width, default=20.0, help="of the em; default: 20")
+    text.add_argument(
+        "--width", metavar="MM", type=_width, default=1.0, help="of the lines of an SVG font; default: 1"
+    )
+    text.add_argument(
+        "--sheet", metavar="WxH", type=_size, help="the sheet; default: the text and 20 mm around it"
+    )
+    text.set_defaults(run="text_file", parser=text)
+
     report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
     _add_input(report)
     _add_choices(report)
@@ -182,6 +197,10 @@ def _read(reader, text: str):
 def _check_operands(args) -> None:
     """Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
     if args.run.startswith("brush_"):
+        return
+    if args.run == "text_file":
+        if os.path.splitext(args.output)[1].lower() != ".svg":
+            args.parser.error(f"{args.output} does not end in .svg")
         return
     drawing = os.path.splitext(args.input)[1].lower()
     if args.units and drawing == ".svg":

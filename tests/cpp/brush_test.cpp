@@ -44,6 +44,26 @@ TEST_CASE("lag zero in part is refused, at depth 0 alone it is not") {
     CHECK(refusal(brush) == "");
 }
 
+TEST_CASE("numbers that no brush has are refused with their range") {
+    const auto changed = [](auto&& change, const char* name = "round-6") {
+        Brush brush = shipped(name);
+        change(brush);
+        return refusal(brush);
+    };
+    CHECK(contains(changed([](Brush& b) { b.depth_range_mm[1] = 1e300; }), "must rise within [0, 1000] mm"));
+    CHECK(contains(changed([](Brush& b) { b.lag.coefficients = {1e30}; }), "lag: the law says 1e+30 mm"));
+    CHECK(contains(changed([](Brush& b) { b.tip_gap.coefficients = {1e300}; }), "tip_gap: the law says"));
+    CHECK(contains(changed([](Brush& b) { b.lag.calibrated_mm = {{20.0, 30.0}}; }), "must rise and meet"));
+    CHECK(contains(changed([](Brush& b) { b.lag.calibrated_mm = {{9.0, 3.0}}; }), "must rise and meet"));
+    CHECK(contains(changed([](Brush& b) { b.lag.rmse_mm = -1.0; }), "lag: an interval or rmse_mm is negative"));
+    CHECK(contains(changed([](Brush& b) { b.name = ""; }), "name: the name must be one line"));
+    CHECK(contains(changed([](Brush& b) { b.name = "a\nb"; }), "name: the name must be one line"));
+    CHECK(contains(changed([](Brush& b) { b.max_speed_mm_s = 1e9; }), "[0.01, 10000] mm/s"));
+    CHECK(contains(changed([](Brush& b) { b.paint_depth_mm = 50.0; }), "painting depth 50.00 mm is outside"));
+    CHECK(contains(changed([](Brush& b) { b.paint_depth_mm = 0.0; }, "rigid"), "must be greater than 0"));
+    CHECK(contains(changed([](Brush& b) { b.lag.coefficients = {0.0}; }), "the mark has no heading"));
+}
+
 TEST_CASE("laws and outlines must agree to half a millimetre, and shapes must be rings") {
     Brush brush = shipped("round-6");
     brush.half_width.coefficients[1] = 0.30;

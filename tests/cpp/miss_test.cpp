@@ -23,6 +23,21 @@ TEST_CASE("a pass beside its stroke misses by what lies between them") {
     CHECK(miss_of(pass, stroke, brush, 0.4).within_tolerance);
 }
 
+TEST_CASE("the mean is over the length and not over the rows") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "s";
+    stroke.middle_mm = polyline({V(20, 20), V(60, 20), V(100, 40)});
+    stroke.half_width = {{0.0, brush.half_width(4.0)}};
+    Pass pass;
+    pass.poses_mm.resize(5, 3);
+    pass.poses_mm << 20, 20, 0, 20, 20, -4, 60, 20, -4, 100, 40, -4, 100, 40, 0;
+    const Miss coarse = miss_of(pass, stroke, brush, 0.2), fine = miss_of(pass, stroke, brush, 1e-4);
+    CHECK(fine.mean_mm == doctest::Approx(coarse.mean_mm).epsilon(0.01));
+    CHECK(fine.mean_mm > 0.1);
+    CHECK(std::abs(fine.at_mm[0] - 60.0) < 5.0);  // at the corner
+}
+
 TEST_CASE("a pass that never pulls the brush tight misses nothing") {
     const Brush brush = shipped("round-6");
     Stroke stroke;

@@ -62,7 +62,8 @@ def test_feed_is_in_mm_per_minute_and_follows_every_change():
             seen.setdefault(feed, []).append(line)
     assert set(seen) == {25 * 60, 8 * 60, 20 * 60, 12.5 * 60}
     assert any("X30.1235 Y20.9877 Z-3.2500" in line for line in seen[1200.0])
-    assert all("Z0.0000" in line or "Z1.0000" in line for line in seen[480.0])
+    assert all("Z0.0000" in line or "Z1.0000" in line or "X40.0000 Y30.0000" in line for line in seen[480.0])
+    assert "G1 X40.0000 Y30.0000 Z-2.0000" in seen[480.0], "pressed on the spot as slowly as it lands"
 
 
 @pytest.mark.parametrize("limit", [50.0, 25.0, 20.0, 7.0009, 2.0])

@@ -146,3 +146,8 @@ def test_no_move_on_the_way_down_or_up_is_faster_than_the_brush_may_go(limit):
 
 def test_the_workspace_ends_where_it_says():
     assert broken_limits(plan_of([(-30, -30, 0), (130, 90, -1)]), BRUSH, load_cell()) == []
+
+
+def test_a_pass_that_never_presses_is_refused():
+    (found,) = broken_limits(plan_of([(10, 10, 0), (20, 10, 0)]), brush_of(25.0), load_cell())
+    assert found[1] == "the brush is never pressed to the paper: nothing would be painted"

@@ -11,6 +11,7 @@ import pytest
 import brushsvg
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 def python(*words):
@@ -50,6 +51,24 @@ def test_the_short_example(tmp_path):
     assert "(title: Vincent)" in (tmp_path / "v.ngc").read_text()
 
 
+def test_the_short_example_refuses_in_a_sentence(tmp_path):
+    damaged = tmp_path / "d.svg"
+    damaged.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm"><path id="p" fill="none" '
+        'stroke="red" stroke-width="9" d="M99 99h99 X 9"/></svg>'
+    )
+    for words, sentence in (
+        ([], "python 01_word_to_program.py"),
+        ([tmp_path / "none.svg", tmp_path / "x.ngc"], "there is no such file"),
+        ([damaged, tmp_path / "x.ngc"], "p: d is damaged at character 11"),
+    ):
+        command = [sys.executable, EXAMPLES / "01_word_to_program.py", *words]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 1
+        assert sentence in done.stderr and "Traceback" not in done.stderr
+    assert not (tmp_path / "x.ngc").exists()
+
+
 def test_the_demo_leaves_everything(tmp_path):
     out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
     names = {path.name for path in (tmp_path / "demo").iterdir()}
@@ -57,6 +76,10 @@ def test_the_demo_leaves_everything(tmp_path):
     table = out[: out.index(str(tmp_path))]
     assert (tmp_path / "demo" / "vincent.report.txt").read_text().endswith("\n\n" + table.removesuffix("\n"))
     rows = [re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed", line)]
+    told = re.findall(
+        r"^\| `(?:none|constant|closed)`.*?\| \**([\d.]+)\** \| \**([\d.]+) / ([\d.]+)\** \|$", README, re.M
+    )
+    assert [tuple(row[1:]) for row in rows] == told, "README.md tells other figures"
     overlap = {row[0].split(",")[0]: float(row[1]) for row in reversed(rows)}
     assert len(rows) == 4
     assert overlap["none"] + 0.3 < overlap["constant"] < overlap["closed"] - 0.1

@@ -545,6 +545,7 @@ def test_document_order_is_kept_across_groups_and_tags():
 # What is not painted is named.
 
 FIRST = '<path d="M0 0H5"/>'
+GRADIENT = '<linearGradient id="g"/>'
 
 
 @pytest.mark.parametrize(
@@ -573,8 +574,16 @@ FIRST = '<path d="M0 0H5"/>'
         ('<g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>', "g", "mask is not read"),
         ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "opacity is not read"),
         ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "fully transparent"),
-        ('<path id="p" d="M0 0H5" stroke="url(#g)"/>', "p", "#g is not read: it counts as #000000"),
-        ('<path id="p" d="M0 0H5" stroke="url(#g) red"/>', "p", "#g is not read: it counts as #ff0000"),
+        (
+            GRADIENT + '<path id="p" d="M0 0H5" stroke="url(#g)"/>',
+            "p",
+            "#g is not read: it counts as #000000",
+        ),
+        (
+            GRADIENT + '<path id="p" d="M0 0H5" stroke="url(\'#g\') red"/>',
+            "p",
+            "#g is not read: it counts as #ff0000",
+        ),
     ],
 )
 def test_what_is_not_read_is_named(body, where, sentence):
@@ -599,10 +608,9 @@ def test_what_changes_nothing_is_not_named(body):
 
 
 def test_names_and_sentences_stay_on_one_line():
-    design = read('<path id="a&#10;b&#x85;" d="M0 0H5" stroke="url(#x&#10;y)"/>')
+    design = read('<path id="a&#10;b&#x85;" d="M0 0H5"/><path id="c" d="M0 0H5&#10;&#x85;x"/>')
     assert design.elements[0].id == "a b"
-    assert design.notices[0].where == "a b"
-    assert "#x y is not read" in design.notices[0].sentence
+    assert "found 'x'" in design.notices[0].sentence.replace("? ", "").replace("?", "")
 
 
 def test_the_default_fill_of_a_stroked_path_is_no_news():

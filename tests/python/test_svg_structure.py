@@ -41,7 +41,9 @@ def test_symbols_fit_their_view_box_into_the_size_asked_for():
     assert design.elements[0].stroke_width_mm == 2
     assert lines(read(f'{symbol}<use id="u" href="#s"/>')) == [("u", (25, 0), (75, 50))]
     body = '<symbol id="s" preserveAspectRatio="none" viewBox="1 1 4 4" width="8" height="4">'
-    assert lines(read(f'{body}<path d="M1 1L5 5"/></symbol><use href="#s"/>')) == [("", (0, 0), (8, 4))]
+    assert lines(read(f'{body}<path d="M1 1L5 5"/></symbol><use href="#s"/>')) == [
+        ("stroke1", (0, 0), (8, 4))
+    ]
 
 
 def test_nested_svg_has_its_own_viewport():
@@ -126,6 +128,14 @@ def test_transforms_as_css_writes_them_and_about_an_origin():
     assert start('transform="rotate(90deg)"') == pytest.approx((0, 10))
     design = read('<path id="p" d="M0 0H5" transform="scale(2)" transform-origin="1em 0"/>')
     assert design.notices[0].damaged
+
+
+def test_nameless_elements_are_counted_and_notices_use_the_same_name():
+    body = '<path d="M0 0H4"/><text>x</text><path stroke="none" d="M0 0"/>'
+    body += '<path d="M0 0H4" opacity=".5"/><path d="M0 0H4 x"/>'
+    design = read(body)
+    assert [element.id for element in design.elements] == ["stroke1", "stroke2", "stroke3"]
+    assert [notice.where for notice in design.notices] == ["text 1", "path 2", "path 3", "stroke3 (path 4)"]
 
 
 def test_layers_in_layers_and_notices_know_where_they_are():

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "brushsvg/brush.hpp"
 #include "brushsvg/plan.hpp"
 #include "brushsvg/stroke.hpp"
@@ -10,7 +12,8 @@ namespace brushsvg {
 /// last, so that the landing and a slack lift do not count and a turn in place does.
 struct Miss {
     double largest_mm = 0.0;
-    double mean_mm = 0.0;
+    std::array<double, 2> at_mm{};  ///< where the widest point is farthest off
+    double mean_mm = 0.0;           ///< over the length that the widest point travels
     bool within_tolerance = false;
     bool has_turn_in_place = false;  ///< set by compensate(): a corner too sharp for the lever, where the miss stays
 };

@@ -113,6 +113,7 @@ class _Context:
 class _Walk:
     def __init__(self, root: ET.Element, page: Page, chosen: set[ET.Element] | None):
         self.root = root
+        self.namespace = _SVG if root.tag.startswith(_SVG) else ""
         self.page = page
         self.chosen = chosen
         self.rules = Rules(root)
@@ -124,7 +125,7 @@ class _Walk:
         self.ordinals: dict[ET.Element, int] = {}
         self.waiting: list[tuple[ET.Element, Iterator[ET.Element], _Context]] = []
         self.entered: set[ET.Element] = set()
-        self.copies = 0
+        self.copies = self.nameless = 0
 
     def run(self) -> None:
         page = self.page
@@ -147,7 +148,11 @@ class _Walk:
     def _visit(self, node: ET.Element, context: _Context) -> None:
         tag = _local(node)
         is_target = context.size is not None
-        if not (node.tag.startswith(_SVG) or "}" not in node.tag) or not _applies(node):
+        if (
+            not node.tag.startswith(self.namespace)
+            or "}" in node.tag[len(self.namespace) :]
+            or not _applies(node)
+        ):
             return
         if tag in _SILENT and not (tag == "symbol" and is_target):
             return
@@ -274,8 +279,8 @@ class _Walk:
 
     def _shape(self, node: ET.Element, tag: str, context: _Context) -> None:
         properties, own = context.style.inherited, context.style.own
-        stroke, stroke_problem = paint(properties, "stroke")
-        fill, fill_problem = paint(properties, "fill") if tag != "line" else ("none", None)
+        stroke, stroke_problem = paint(properties, "stroke", self.by_id)
+        fill, fill_problem = paint(properties, "fill", self.by_id) if tag != "line" else ("none", None)
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
         power, sentences = drawn_line(node, self.by_id) if tag == "path" else (None, [])
         greatest, least = scales(context.matrix)
@@ -302,6 +307,7 @@ class _Walk:
             sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
             self._note(node, context, sentence, damaged=True)
             return
+        told = len(self.notices)
         subpaths = self._subpaths(node, tag, attributes, context, greatest)
         if power:
             subpaths = with_widths(power, subpaths, mm_per_user)
@@ -319,9 +325,15 @@ class _Walk:
         problem = fill_problem if of == "fill" else stroke_problem
         for sentence in [problem] * bool(problem) + sentences + unread(properties, of, tag in _WITH_MARKERS):
             self._note(node, context, sentence)
+        name = "/".join(filter(None, (context.prefix, _one_line(node.get("id", "")))))
+        if not name:
+            self.nameless += 1
+            name = f"stroke{self.nameless}"
+            label = f"{name} ({self._label(node)})"
+            self.notices[told:] = [replace(notice, where=label) for notice in self.notices[told:]]
         self.elements.append(
             Element(
-                id="/".join(filter(None, (context.prefix, _one_line(node.get("id", ""))))),
+                id=name,
                 subpaths=subpaths,
                 stroke_width_mm=0.0 if stroke == "none" else width_mm,
                 colour=fill if stroke == "none" else stroke,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 from tinycss2 import color4
@@ -19,4 +20,8 @@ def parse_colour(value: str) -> str | None:
         *parts, alpha = colour.to("srgb")
     except (NotImplementedError, ValueError):
         return None
-    return "#" + bytes(round(255 * min(1.0, max(0.0, part))) for part in parts).hex() if alpha else "none"
+    return (
+        "#" + bytes(math.floor(255 * min(1.0, max(0.0, part)) + 0.5) for part in parts).hex()
+        if alpha
+        else "none"
+    )

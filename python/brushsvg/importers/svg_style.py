@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Container
 from dataclasses import dataclass
 
 import tinycss2
@@ -38,6 +39,7 @@ OWN = {
 }
 # Attributes that CSS may set as well; CSS wins.
 _GEOMETRY = frozenset("transform transform-origin d x y width height cx cy r rx ry".split())
+_MARKERS = ("marker-start", "marker-mid", "marker-end")
 _URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
 _LONGEST_VALUE = 10_000  # of custom properties put into each other
 
@@ -67,51 +69,67 @@ def cascade(
 
     rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
     """
-    said = {name: value for name in (*INHERITED, *OWN) if (value := attributes.get(name)) is not None}
+    said: dict[str, list[str]] = {
+        name: [value] for name in (*INHERITED, *OWN) if (value := attributes.get(name)) is not None
+    }
     inline = declarations(attributes["style"]) if "style" in attributes else ()
     for important in (False, True):
         for name, value, is_important in (*rules, *inline):
             if is_important != important:
                 continue
-            if name == "marker":
-                said.update(dict.fromkeys(("marker-start", "marker-mid", "marker-end"), value))
-            elif name in INHERITED or name in OWN or name in _GEOMETRY or name.startswith("--"):
-                said[name] = value
+            for each in _MARKERS if name == "marker" else (name,):
+                if each in INHERITED or each in OWN or each in _GEOMETRY or each.startswith("--"):
+                    said.setdefault(each, []).append(value)
     inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
-    inherited.update((name, said.pop(name)) for name in list(said) if name.startswith("--"))
+    inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
     problems: list[Problem] = []
-    for name, text in said.items():
-        value = text.strip()
-        if "var(" in value.lower():
-            value = _substituted(value, inherited)
-        if name in _GEOMETRY:
-            geometry[name] = _path_text(value) if name == "d" else value
-            continue
-        target, initial = (inherited, INHERITED) if name in INHERITED else (own, OWN)
-        keyword = value.lower()
-        if keyword in ("inherit", "initial", "unset", "revert"):
-            if keyword == "initial" or (keyword != "inherit" and target is own):
-                target[name] = initial[name]
-            elif keyword == "inherit":
-                target[name] = (parent.inherited if target is inherited else parent.own)[name]
-        elif name in ("stroke", "fill", "color"):
-            colour = value if _URL.match(value) else parse_colour(value)
-            if colour is None:
-                problems.append((f"{name} {value[:40]!r} is not a colour: it counts as not given", False))
-            elif name != "color" or colour not in ("none", "currentcolor"):
-                inherited[name] = colour
-        elif name == "stroke-width":
-            try:
-                if length_px(value, diagonal) < 0:
-                    raise Error(f"{value[:24]!r} is negative")
-                inherited[name] = value
-            except Error as error:
-                problems.append((f"stroke-width: {error}; it counts as not given", True))
-        elif name == "fill-rule":
-            inherited[name] = "evenodd" if keyword == "evenodd" else "nonzero"
-        else:
-            target[name] = value if name.startswith("marker") else keyword
+    for name, values in said.items():
+        for text in reversed(values):  # the strongest that is valid
+            value = text.strip()
+            if "var(" in value.lower():
+                value = _substituted(value, inherited)
+            if name in _GEOMETRY:
+                geometry[name] = _path_text(value) if name == "d" else value
+                break
+            target, initial = (inherited, INHERITED) if name in INHERITED else (own, OWN)
+            keyword = value.lower()
+            if keyword in ("inherit", "initial", "unset", "revert"):
+                if keyword == "initial" or (keyword != "inherit" and target is own):
+                    target[name] = initial[name]
+                elif keyword == "inherit":
+                    target[name] = (parent.inherited if target is inherited else parent.own)[name]
+                break
+            problem = _problem(name, value, diagonal)
+            if problem is None:
+                target[name] = _computed(name, value, inherited)
+                break
+            problems.append(problem)
     return Style(inherited, own, geometry), problems
+
+
+def _problem(name: str, value: str, diagonal: float) -> Problem | None:
+    """Why a value is not one of its property."""
+    if name in ("stroke", "fill", "color"):
+        if not _URL.match(value) and parse_colour(value) is None:
+            return f"{name} {value[:40]!r} is not a colour: it counts as not given", False
+    elif name == "stroke-width":
+        try:
+            if length_px(value, diagonal) < 0:
+                raise Error(f"{value[:24]!r} is negative")
+        except Error as error:
+            return f"stroke-width: {error}; it counts as not given", True
+    return None
+
+
+def _computed(name: str, value: str, inherited: dict[str, str]) -> str:
+    if name in ("stroke", "fill"):
+        return value if _URL.match(value) else parse_colour(value)
+    if name == "color":
+        colour = None if _URL.match(value) else parse_colour(value)
+        return inherited["color"] if colour in (None, "none", "currentcolor") else colour
+    if name == "fill-rule":
+        return "evenodd" if value.lower() == "evenodd" else "nonzero"
+    return value if name == "stroke-width" or name in _MARKERS else value.lower()
 
 
 def _substituted(value: str, inherited: dict[str, str], depth: int = 0) -> str:
@@ -137,18 +155,21 @@ def _path_text(value: str) -> str:
     return value
 
 
-def paint(properties: dict[str, str], of: str) -> tuple[str, str | None]:
-    """What "stroke" or "fill" paints with: "#rrggbb" or "none", and a sentence if it is not just a colour."""
+def paint(properties: dict[str, str], of: str, names: Container[str]) -> tuple[str, str | None]:
+    """What "stroke" or "fill" paints with: "#rrggbb" or "none", and a sentence if it is not just a colour.
+
+    names: ids in the drawing; a reference to none of them counts as its fallback, as SVG asks.
+    """
     value = properties[of] or "#000000"
     if is_zero(properties[f"{of}-opacity"]):
         return "none", None
-    if value == "currentcolor":
-        return properties["color"], None
     if found := _URL.match(value):
-        fallback = parse_colour(found[2].strip()) if found[2].strip() else None
-        colour = fallback if fallback not in (None, "none", "currentcolor") else "#000000"
-        return colour, f"the {of}'s paint {found[1][:40]} is not read: it counts as {colour}"
-    return value, None
+        reference, fallback = found[1].strip(" \"'"), found[2].strip()
+        value = (parse_colour(fallback) or "none") if fallback else "none"
+        if reference.startswith("#") and reference[1:] in names:
+            colour = value if value not in ("none", "currentcolor") else "#000000"
+            return colour, f"the {of}'s paint {reference[:40]} is not read: it counts as {colour}"
+    return properties["color"] if value == "currentcolor" else value, None
 
 
 def is_zero(number: str) -> bool:
@@ -162,7 +183,7 @@ def is_zero(number: str) -> bool:
 def unread(properties: dict[str, str], of: str, has_vertices: bool) -> list[str]:
     """Sentences about properties of a painted element that change its look and are not read."""
     sentences = []
-    if has_vertices and any(properties[f"marker-{place}"] != "none" for place in ("start", "mid", "end")):
+    if has_vertices and any(properties[name] != "none" for name in _MARKERS):
         sentences.append("markers are not read: left out")
     if properties[f"{of}-opacity"] not in ("1", "1.0", "100%"):
         sentences.append(f"{of}-opacity is not read: it counts as 1")
