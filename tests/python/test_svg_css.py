@@ -137,3 +137,20 @@ def test_select():
         if text:
             with pytest.raises(Error, match=sentence):
                 read(body, select=text)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [f'<path style="stroke:{"(" * 100_000}" d="M0 0H5"/>', f"<style>{'a{' * 100_000}</style>{P}"],
+)
+def test_css_nested_too_deeply(body):
+    try:
+        assert read(P + body).elements
+    except Error as refused:
+        assert "nested too deeply" in str(refused)
+
+
+def test_style_sheets_without_end_are_refused(monkeypatch):
+    monkeypatch.setattr(svg_rules, "TEXT_LIMIT", 1000)
+    with pytest.raises(Error, match="its CSS of 1300 characters is beyond the limit of 1000"):
+        read(f"<style>{'.a{top:1;red}' * 50}</style><style>{'.a{top:1;red}' * 50}</style>{P}")

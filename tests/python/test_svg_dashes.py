@@ -5,7 +5,7 @@ from svg_text import lines, read, sentences
 
 from brushsvg import Error
 from brushsvg.design import SubPath
-from brushsvg.importers import svg_dashes
+from brushsvg.importers import svg
 from brushsvg.importers.arc_length import knots, parameters_at
 from brushsvg.importers.svg_dashes import dashed
 
@@ -71,7 +71,7 @@ def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():
 
 def test_each_dash_lies_on_the_line():
     cubics = np.array([[[0, 0], [10, 30], [30, -30], [40, 0]]], float)
-    pieces = dashed(SubPath(cubics), [2.0, 1.0], 0.5)
+    pieces = dashed(SubPath(cubics), [2.0, 1.0], 0.5, 1000)
     t = np.linspace(0, 1, 4001)[:, None]
     p = cubics[0]
     curve = (1 - t) ** 3 * p[0] + 3 * t * (1 - t) ** 2 * p[1] + 3 * t * t * (1 - t) * p[2] + t**3 * p[3]
@@ -83,6 +83,8 @@ def test_each_dash_lies_on_the_line():
 
 
 def test_dashes_too_many_to_paint_are_refused(monkeypatch):
-    monkeypatch.setattr(svg_dashes, "MOST_DASHES", 100)
-    with pytest.raises(Error, match="beyond the limit of 100"):
-        read('<path d="M0 0H20" stroke-dasharray="0.05"/>')
+    monkeypatch.setattr(svg, "_MOST_DASHES", 300)
+    line = '<path id="p" d="M0 0H20" stroke-dasharray="0.05"/>'
+    assert len(read(line).elements[0].subpaths) == 200
+    with pytest.raises(Error, match="would make 200 strokes where 100 are left"):
+        read(line + line)

@@ -4,6 +4,7 @@ import pytest
 from svg_text import lines, read, sentences
 
 from brushsvg import Error
+from brushsvg.importers import svg
 
 LINE = '<path id="l" d="M0 0H4"/>'
 
@@ -101,6 +102,13 @@ def test_a_long_chain_of_uses_is_walked_without_recursion():
     chain = "".join(f'<use id="u{k}" href="#u{k + 1}"/>' for k in range(3000))
     design = read(f"<defs>{chain}{LINE.replace('l', 'u3000', 1)}</defs><use href='#u0'/>")
     assert len(design.elements) == 1
+
+
+def test_path_data_without_end_is_refused(monkeypatch):
+    monkeypatch.setattr(svg, "_MOST_DATA", 1000)
+    assert read(LINE * 100).elements
+    with pytest.raises(Error, match="more than 1000 characters of path data"):
+        read(LINE * 200)
 
 
 def test_switch_paints_the_first_child_that_applies():

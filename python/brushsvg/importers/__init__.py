@@ -18,12 +18,14 @@ class ReadOptions:
     """What a reader is asked for.
 
     sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
-    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG).
+    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG); lenient: take what
+    is sound of damaged geometry, with a notice for what is not.
     """
 
     sheet_mm: tuple[float, float] | None = None
     units: str | None = None
     select: str | None = None
+    lenient: bool = False
 
 
 AS_DRAWN = ReadOptions()
@@ -35,17 +37,29 @@ def _svg(data: bytes, options: ReadOptions) -> Design:
     return read_svg(data, options)
 
 
-READERS = {".svg": _svg}  # by extension; each takes (bytes, ReadOptions)
+def _dxf(data: bytes, options: ReadOptions) -> Design:
+    from .dxf import read_dxf
+
+    return read_dxf(data, options)
+
+
+READERS = {".svg": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
 
 
 def read_drawing(path: str | os.PathLike, options: ReadOptions = AS_DRAWN) -> Design:
     """The drawing in a file, its format chosen by extension.
 
-    Error if the file cannot be read, is of no known format, or has nothing to paint.
+    Error if the file cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and
+    lenient is not asked for.
     """
     extension = os.path.splitext(path)[1]
     reader = READERS.get(extension.lower())
     if reader is None:
         known = ", ".join(READERS)
         raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
-    return reader(read_bytes(path), options)
+    design = reader(read_bytes(path), options)
+    if not options.lenient:
+        for notice in design.notices:
+            if notice.damaged:
+                raise Error(notice.sentence, where=notice.where)
+    return design

@@ -28,7 +28,7 @@ from .svg_rules import Rules, selected
 from .svg_settings import own_settings
 from .svg_style import INITIAL, Style, cascade, is_zero, paint, unread, unread_own
 from .svg_trace import LARGEST_MM, trace
-from .svg_xml import parse_xml
+from .svg_xml import Document, parse_xml
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _XLINK = "{http://www.w3.org/1999/xlink}"
@@ -42,7 +42,10 @@ _TEXT = (
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg"
 )
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
-_MOST_USED = 100_000  # elements that use may copy: a page of text has a tenth of it
+# A page of text has a hundredth of each.
+_MOST_USED = 100_000  # elements that use may copy
+_MOST_DASHES = 100_000
+_MOST_DATA = 10_000_000  # characters of path data
 
 
 def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
@@ -52,7 +55,13 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
 
     Error if it is not SVG, has no size, has nothing to paint, or copies itself beyond all bounds.
     """
-    document = parse_xml(data)
+    try:
+        return _read(parse_xml(data), options)
+    except RecursionError:
+        raise Error("its CSS is nested too deeply", where="style") from None
+
+
+def _read(document: Document, options: ReadOptions) -> Design:
     root = document.root
     if root.tag not in (_SVG + "svg", "svg"):
         raise Error(f"the root element is <{_local(root)[:40]}>, not <svg>")
@@ -125,7 +134,8 @@ class _Walk:
         self.ordinals: dict[ET.Element, int] = {}
         self.waiting: list[tuple[ET.Element, Iterator[ET.Element], _Context]] = []
         self.entered: set[ET.Element] = set()
-        self.copies = self.nameless = 0
+        self.copies = self.nameless = self.data = 0
+        self.dashes_left = _MOST_DASHES
 
     def run(self) -> None:
         page = self.page
@@ -347,6 +357,11 @@ class _Walk:
         self, node, tag: str, attributes, context: _Context, greatest: float
     ) -> tuple[SubPath, ...]:
         """An element's geometry on paper, as far as it is sound."""
+        self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
+        if self.data > _MOST_DATA:
+            raise Error(
+                f"the drawing has more than {_MOST_DATA} characters of path data", where=self._label(node)
+            )
         try:
             commands = svg_shapes.commands_of(tag, attributes, context.viewport)
             if not commands:
@@ -380,9 +395,15 @@ class _Walk:
         if subpaths[0].widths is not None:
             self._note(node, context, "its dashes are not read: its width varies")
             return subpaths
-        pieces = tuple(piece for subpath in subpaths for piece in dashed(subpath, pattern, offset))
+        pieces: list[SubPath] = []
+        try:
+            for subpath in subpaths:
+                pieces += dashed(subpath, pattern, offset, self.dashes_left - len(pieces))
+        except Error as error:
+            raise Error(str(error), where=self._label(node)) from None
+        self.dashes_left -= len(pieces)
         self._note(node, context, f"it is dashed: {len(pieces)} strokes, one for each dash")
-        return pieces
+        return tuple(pieces)
 
     def _shown(self, node, context: _Context, subpaths) -> tuple[SubPath, ...]:
         """What a nested viewport shows of it: all, or nothing. A line is not cut."""

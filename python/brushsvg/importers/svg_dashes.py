@@ -8,13 +8,11 @@ from ..design import SubPath
 from ..errors import Error
 from .arc_length import knots, parameters_at
 
-MOST_DASHES = 100_000  # of one element
 
-
-def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float) -> list[SubPath]:
+def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float, most: int) -> list[SubPath]:
     """The dashes of one sub-path, in order; the pattern's even entries are painted, an odd count repeats.
 
-    On a closed line the last dash and the first are one where they meet. Error when there are too many.
+    On a closed line the last dash and the first are one where they meet. Error when there are more than `most`.
     """
     pattern = np.array(pattern_mm if len(pattern_mm) % 2 == 0 else 2 * pattern_mm)
     period = float(pattern.sum())
@@ -23,9 +21,9 @@ def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float) -> list[
     if end == 0:
         return [subpath]
     count = end / period * len(pattern) / 2
-    if count > MOST_DASHES:
+    if count > most:
         raise Error(
-            f"its dashes of {period:.4g} mm would make {count:.3g} strokes, beyond the limit of {MOST_DASHES}"
+            f"its dashes of {period:.4g} mm would make {count:.3g} strokes where {most} are left of the drawing's limit"
         )
     ends = np.cumsum(pattern)
     first = -(offset_mm % period)

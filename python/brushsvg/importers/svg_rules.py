@@ -15,6 +15,7 @@ from ..errors import Error
 
 # Steps through the tree that selectors may take together: some seconds' worth, a hundred times what drawings need.
 STEP_LIMIT = 20_000_000
+TEXT_LIMIT = 1_000_000  # characters of style sheets: drawing programs write a hundredth of it
 
 Declaration = tuple[str, str, bool]  # name in lower case, value, important
 _SVG = "{http://www.w3.org/2000/svg}"
@@ -86,8 +87,11 @@ class Rules:
         self._matcher = Matcher()
         sheets = [node for node in root.iter() if node.tag in (_SVG + "style", "style") and _counts(node)]
         self._tree = _Tree(root) if sheets else None
-        for sheet in sheets:
-            self._add(tinycss2.parse_stylesheet("".join(sheet.itertext()), True, True))
+        texts = ["".join(sheet.itertext()) for sheet in sheets]
+        if (length := sum(map(len, texts))) > TEXT_LIMIT:
+            raise Error(f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}", where="style")
+        for text in texts:
+            self._add(tinycss2.parse_stylesheet(text, True, True))
 
     def of(self, node: ET.Element) -> list[Declaration]:
         """An element's declarations, from the weakest to the strongest among those of equal importance."""
@@ -135,7 +139,7 @@ def selected(root: ET.Element, text: str) -> set[ET.Element]:
     return found
 
 
-@lru_cache
+@lru_cache(4096)
 def declarations(text: str) -> tuple[Declaration, ...]:
     """The declarations of a style attribute or a rule's block; what is not one is passed over, as CSS asks."""
     parsed = tinycss2.parse_blocks_contents(text, skip_comments=True, skip_whitespace=True)

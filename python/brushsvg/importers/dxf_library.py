@@ -1,0 +1,53 @@
+"""ezdxf, loaded so that it neither scans this machine's fonts nor writes a cache into the user's home.
+
+On import ezdxf reads every font there is (seconds, and results that depend on the machine) unless it finds its
+cache of them. It finds an empty one here, in a folder that is gone afterwards. A program that draws text with ezdxf
+too gets its fonts back with ezdxf.fonts.fonts.load().
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+_HOMES = ("XDG_CACHE_HOME", "XDG_CONFIG_HOME")
+_NO_FONTS = '{"version": 2, "font-faces": []}'
+
+
+@contextmanager
+def _empty_home() -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in _HOMES}
+    with tempfile.TemporaryDirectory() as folder:
+        cache = Path(folder, "ezdxf", "font_manager_cache.json")
+        cache.parent.mkdir()
+        cache.write_text(_NO_FONTS, encoding="utf-8")
+        os.environ.update(dict.fromkeys(_HOMES, folder))
+        try:
+            yield
+        finally:
+            for name, value in before.items():
+                if value is None:
+                    del os.environ[name]
+                else:
+                    os.environ[name] = value
+
+
+with _empty_home():
+    import ezdxf
+    import ezdxf.audit
+    import ezdxf.colors
+    import ezdxf.document
+    import ezdxf.entities
+    import ezdxf.lldxf.tagger
+    import ezdxf.math
+    import ezdxf.protocols
+    import ezdxf.recover
+
+# What it logs is told as notices; without a handler the standard library would print it.
+logging.getLogger("ezdxf").addHandler(logging.NullHandler())
+
+__all__ = ["ezdxf"]

@@ -1,0 +1,108 @@
+"""What a DXF entity is drawn with: layer, colour and line weight, inherited from layers and blocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .dxf_file import shown
+from .dxf_library import ezdxf
+
+_BYBLOCK, _BYLAYER = 0, 256  # as colours
+_WEIGHT_BYLAYER, _WEIGHT_BYBLOCK = -1, -2
+_DEFAULT_WIDTH_MM = 0.25  # what CAD programs draw line weight "default" with; DXF itself does not say
+_BLACK = "#000000"
+
+
+@dataclass(frozen=True)
+class Pen:
+    """layer: its name, for people and to look it up; hidden: why nothing of it is painted, "" if it is.
+
+    line_type: "" if unbroken; frozen: blocks inserted on this layer are hidden with all they hold.
+    """
+
+    layer: str = "0"
+    key: str = "0"
+    colour: str = _BLACK
+    width_mm: float = _DEFAULT_WIDTH_MM
+    line_type: str = ""
+    hidden: str = ""
+    frozen: bool = False
+
+
+class Pens:
+    """The layers of a document, and what they make of its entities."""
+
+    def __init__(self, document: ezdxf.document.Drawing):
+        self._broken = {_key(t.dxf.name) for t in document.linetypes if len(t.simplified_line_pattern()) > 1}
+        self._layers = {_key(layer.dxf.name): self._of_layer(layer) for layer in document.layers}
+
+    def pen(self, entity, outer: Pen | None) -> Pen:
+        """outer: the pen of the block reference the entity is in, None outside of blocks."""
+        dxf, block = entity.dxf, outer or Pen()
+        name, key = shown(dxf.layer), _key(dxf.layer)
+        if key == "0":
+            name, key = block.layer, block.key
+        layer = self._layers.get(key) or Pen(name, key)
+        line_type = dxf.get("linetype", "BYLAYER").upper()
+        by = {"BYLAYER": layer.line_type, "BYBLOCK": block.line_type}
+        return Pen(
+            layer.layer,
+            key,
+            self._colour(entity, layer, block),
+            self._width_mm(dxf.get("lineweight", _WEIGHT_BYLAYER), layer, block),
+            by.get(line_type, self._broken_line(line_type)),
+            layer.hidden,
+            layer.frozen,
+        )
+
+    def _of_layer(self, layer) -> Pen:
+        name = layer.dxf.name
+        hidden = ""
+        if layer.is_frozen():
+            hidden = "the layer is frozen"
+        elif layer.is_off():
+            hidden = "the layer is off"
+        elif not layer.dxf.get("plot", 1) or _key(name) == "defpoints":
+            hidden = "the layer is not for plotting"
+        return Pen(
+            shown(name),
+            _key(name),
+            _rgb(layer.rgb, layer.color),
+            self._width_mm(layer.dxf.get("lineweight", -3), Pen(), Pen()),
+            self._broken_line(layer.dxf.get("linetype", "")),
+            hidden,
+            layer.is_frozen(),
+        )
+
+    def _broken_line(self, name: str) -> str:
+        return shown(name) if _key(name) in self._broken else ""
+
+    @staticmethod
+    def _colour(entity, layer: Pen, block: Pen) -> str:
+        number = entity.dxf.get("color", _BYLAYER)
+        if entity.dxf.hasattr("true_color"):
+            return _rgb(entity.rgb, number)
+        if number == _BYLAYER:
+            return layer.colour
+        return block.colour if number == _BYBLOCK else _rgb(None, number)
+
+    @staticmethod
+    def _width_mm(weight: int, layer: Pen, block: Pen) -> float:
+        """weight: in 1/100 mm. 0 is "as thin as can be", which a brush takes for the default."""
+        if weight == _WEIGHT_BYLAYER:
+            return layer.width_mm
+        if weight == _WEIGHT_BYBLOCK:
+            return block.width_mm
+        return weight / 100 if weight > 0 else _DEFAULT_WIDTH_MM
+
+
+def _rgb(true_colour: tuple[int, int, int] | None, number: int) -> str:
+    """White is what CAD programs show on black paper in place of black: number 7 is either."""
+    if true_colour is None:
+        true_colour = ezdxf.colors.aci2rgb(number) if 0 < number < 256 and number != 7 else (0, 0, 0)
+    colour = "#{:02x}{:02x}{:02x}".format(*true_colour)
+    return _BLACK if colour == "#ffffff" else colour
+
+
+def _key(name: str) -> str:
+    return name.casefold()

@@ -1,0 +1,85 @@
+"""DXF drawings made by ezdxf for the tests, and how far a curve read is from the true one."""
+
+import io
+
+import numpy as np
+import shapely
+
+from brushsvg.importers import ReadOptions
+from brushsvg.importers.dxf import read_dxf
+from brushsvg.importers.dxf_library import ezdxf
+
+SHEET = (1000.0, 1000.0)  # given: the drawing's origin stays where it is
+
+
+def drawing(draw=None, units=4, version="R2010"):
+    document = ezdxf.new(version, units=units)
+    if draw is not None:
+        draw(document.modelspace())
+    return document
+
+
+def encoded(document, binary=False):
+    stream = io.BytesIO() if binary else io.StringIO()
+    document.write(stream, **({"fmt": "bin"} if binary else {}))
+    return (
+        stream.getvalue() if binary else stream.getvalue().encode(document.output_encoding, "surrogateescape")
+    )
+
+
+def read(document, sheet_mm=SHEET, units=None, binary=False):
+    return read_dxf(encoded(document, binary), ReadOptions(sheet_mm=sheet_mm, units=units))
+
+
+def only(document, **options):
+    """The single element of a drawing without notices."""
+    design = read(document, **options)
+    assert design.notices == ()
+    (element,) = design.elements
+    return element
+
+
+def along(cubics, count=1000):
+    t = np.linspace(0, 1, count)[None, :, None]
+    a, b, c, d = (cubics[:, k, None] for k in range(4))
+    points = (1 - t) ** 3 * a + 3 * t * (1 - t) ** 2 * b + 3 * t**2 * (1 - t) * c + t**3 * d
+    return points.reshape(-1, 2)
+
+
+def apart(subpath, points):
+    """Greatest distance [mm] of the curve from a fine polyline and of the polyline from the curve."""
+    assert (subpath.cubics[1:, 0] == subpath.cubics[:-1, 3]).all()
+    if subpath.closed:
+        assert (subpath.cubics[0, 0] == subpath.cubics[-1, 3]).all()
+    read, true = along(subpath.cubics), np.asarray(points)[:, :2]
+    return max(_off(read, true), _off(true, read))
+
+
+def _off(points, line):
+    sides = shapely.linestrings(np.stack((line[:-1], line[1:]), axis=1))
+    _, distances = shapely.STRtree(sides).query_nearest(
+        shapely.points(points), all_matches=False, return_distance=True
+    )
+    return distances.max()
+
+
+def circle(centre, rx, ry=None, begin=0.0, end=360.0, turn=0.0, count=6000):
+    """Points of an elliptical arc; angles in degrees, of the parameter."""
+    t, turn = np.radians(np.linspace(begin, end, count)), np.radians(turn)
+    x, y = rx * np.cos(t), (rx if ry is None else ry) * np.sin(t)
+    x, y = x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
+    return np.column_stack((x, y)) + centre
+
+
+def bulged(vertices, closed=False):
+    """Points of a polyline of (x, y, bulge): each arc about its centre."""
+    places = [complex(x, y) for x, y, _ in vertices]
+    points = []
+    for k, p in enumerate(places if closed else places[:-1]):
+        q, bulge = places[(k + 1) % len(places)], vertices[k][2]
+        if not bulge:
+            points += [p, q]
+            continue
+        centre = (p + q) / 2 + 1j * (q - p) / 2 * (1 - bulge**2) / (2 * bulge)
+        points += list(centre + (p - centre) * np.exp(4j * np.arctan(bulge) * np.linspace(0, 1, 4000)))
+    return np.column_stack((np.real(points), np.imag(points)))

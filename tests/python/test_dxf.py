@@ -1,0 +1,549 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from dxf_text import SHEET, along, apart, bulged, circle, drawing, encoded, only, read
+from scipy.interpolate import BSpline
+
+from brushsvg.errors import Error
+from brushsvg.importers import READERS, ReadOptions, read_drawing
+from brushsvg.importers.dxf import read_dxf
+from brushsvg.importers.dxf_library import ezdxf
+from brushsvg.strokes import strokes
+
+CONTROL = np.array(
+    [(0, 0, 0), (20, 40, 0), (50, -30, 0), (70, 10, 0), (90, 35, 0), (120, 0, 0), (130, 30, 0)], float
+)
+BULGES = [(0, 0, 0.5), (40, 0, -1.3), (60, 30, 0.0), (10, 50, 3.0), (0, 20, 1e-3)]
+
+
+def b_spline(degree, knots=None, points=CONTROL):
+    if knots is None:
+        inner = np.arange(len(points) - degree + 1.0)
+        knots = np.concatenate((np.zeros(degree), inner, np.full(degree, inner[-1])))
+    t = np.linspace(knots[degree], knots[len(points)], 8001)
+    return BSpline(knots, points, degree)(t)
+
+
+def add_spline(msp, degree, knots=None, points=CONTROL, weights=None):
+    spline = msp.add_spline(degree=degree)
+    spline.control_points = points
+    if knots is None:
+        inner = np.arange(len(points) - degree + 1.0)
+        knots = [*[0.0] * degree, *inner, *[inner[-1]] * degree]
+    spline.knots = knots
+    if weights is not None:
+        spline.weights = weights
+
+
+def add_nurbs_circle(msp):
+    half = 2**-0.5
+    points = [(60, 0), (60, 60), (0, 60), (-60, 60), (-60, 0), (-60, -60), (0, -60), (60, -60), (60, 0)]
+    knots, weights = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], [1, half, 1, half, 1, half, 1, half, 1]
+    add_spline(msp, 2, knots, np.column_stack((points, np.zeros(9))), weights)
+
+
+def add_helix(msp):
+    helix = msp.add_helix(30, 5, 2)
+    assert len(helix.control_points)
+
+
+def add_edges(msp):
+    """Half a disc, half an ellipse and a side: the first and the last are drawn backwards."""
+    path = msp.add_hatch(color=1).paths.add_edge_path()
+    path.add_arc((40, 0), 20, 0, 180, ccw=False)
+    path.add_line((60, 0), (60, 80))
+    path.add_ellipse((0, 80), (60, 0), 0.5, 0, 180, ccw=True)
+    path.add_spline(
+        control_points=[(-60, 80), (-50, 40), (-30, 60), (-20, 0)], degree=3, knot_values=[0] * 4 + [1] * 4
+    )
+    path.add_line((20, 0), (-20, 0))
+
+
+EDGES = np.concatenate(
+    (
+        [(-20, 0), (20, 0)],
+        circle((40, 0), 20, begin=180, end=0),
+        [(60, 0), (60, 80)],
+        circle((0, 80), 60, 30, 0, 180),
+        BSpline([0] * 4 + [1] * 4, [(-60, 80), (-50, 40), (-30, 60), (-20, 0)], 3)(np.linspace(0, 1, 4000)),
+    )
+)
+UNCLAMPED = np.arange(11.0)
+CORNERED = [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2.0]
+SQUARE = [(0, 0), (40, 0), (40, 20), (0, 30)]
+ROUND = [(0, 0), (40, 0), (40, 20), (0, 30), (0, 0)]
+
+# What is drawn, its points, whether it is closed.
+SHAPES = {
+    "line": (lambda m: m.add_line((3, 4), (50, 20)), [(3, 4), (50, 20)], False),
+    "arc": (lambda m: m.add_arc((10, 20), 150, 30, 200), circle((10, 20), 150, begin=30, end=200), False),
+    "arc past 0": (lambda m: m.add_arc((10, 20), 50, 350, 20), circle((10, 20), 50, begin=350, end=380), False),
+    "circle": (lambda m: m.add_circle((10, 20), 200), circle((10, 20), 200), True),
+    "ellipse": (
+        lambda m: m.add_ellipse((5, 6), (60, 80), 0.3),
+        circle((5, 6), 100, 30, turn=np.degrees(np.arctan2(80, 60))),
+        True,
+    ),
+    "part of an ellipse": (
+        lambda m: m.add_ellipse((5, 6), (0, 90), 0.5, np.radians(40), np.radians(250)),
+        circle((5, 6), 90, 45, 40, 250, 90),
+        False,
+    ),
+    "lwpolyline": (lambda m: m.add_lwpolyline(BULGES, format="xyb"), bulged(BULGES), False),
+    "closed lwpolyline": (
+        lambda m: m.add_lwpolyline(BULGES, format="xyb", close=True),
+        bulged(BULGES, True),
+        True,
+    ),
+    "polyline": (lambda m: m.add_polyline2d(BULGES, format="xyb"), bulged(BULGES), False),
+    "closed polyline": (
+        lambda m: m.add_polyline2d(BULGES, format="xyb", close=True),
+        bulged(BULGES, True),
+        True,
+    ),
+    "3d polyline": (
+        lambda m: m.add_polyline3d([(*place, 7) for place in SQUARE]),
+        SQUARE,
+        False,
+    ),
+    "polyline back at its start": (lambda m: m.add_lwpolyline(ROUND), ROUND, True),
+    "degree 1": (lambda m: add_spline(m, 1), CONTROL, False),
+    "degree 2": (lambda m: add_spline(m, 2), b_spline(2), False),
+    "degree 3": (lambda m: add_spline(m, 3), b_spline(3), False),
+    "degree 5": (lambda m: add_spline(m, 5), b_spline(5), False),
+    "unclamped": (lambda m: add_spline(m, 3, UNCLAMPED), b_spline(3, UNCLAMPED), False),
+    "cornered": (lambda m: add_spline(m, 3, CORNERED), b_spline(3, CORNERED), False),
+    "rational": (add_nurbs_circle, circle((0, 0), 60), True),
+    "solid": (lambda m: m.add_solid([SQUARE[0], SQUARE[1], SQUARE[3], SQUARE[2]]), ROUND, True),
+    "trace": (lambda m: m.add_trace([SQUARE[0], SQUARE[1], SQUARE[3], SQUARE[2]]), ROUND, True),
+    "3dface": (lambda m: m.add_3dface(SQUARE), ROUND, True),
+    "hatch": (
+        lambda m: m.add_hatch().paths.add_polyline_path([(x, y, b) for x, y, b in BULGES], is_closed=True),
+        bulged(BULGES, True),
+        True,
+    ),
+    "hatch of edges": (add_edges, EDGES, True),
+    "mpolygon": (lambda m: m.add_mpolygon(fill_color=1).paths.add_polyline_path(SQUARE, is_closed=True), ROUND, True),
+    "circle seen from below": (
+        lambda m: m.add_circle((-10, 20), 30, dxfattribs={"extrusion": (0, 0, -1)}),
+        circle((10, 20), 30),
+        True,
+    ),
+    "arc seen from below": (
+        lambda m: m.add_arc((-10, 20), 30, 10, 60, dxfattribs={"extrusion": (0, 0, -1)}),
+        circle((10, 20), 30, begin=120, end=170),
+        False,
+    ),
+    "lwpolyline seen from below": (
+        lambda m: m.add_lwpolyline(BULGES, format="xyb", dxfattribs={"extrusion": (0, 0, -1)}),
+        bulged(BULGES) * (-1, 1),
+        False,
+    ),
+}  # fmt: skip
+FILLED = {"solid", "trace", "hatch", "hatch of edges", "mpolygon"}
+each_shape = pytest.mark.parametrize("name", SHAPES)
+
+
+@each_shape
+def test_every_entity_is_within_a_micrometre_of_the_true_curve(name):
+    draw, points, closed = SHAPES[name]
+    element = only(drawing(draw))
+    (subpath,) = element.subpaths
+    assert apart(subpath, points) < 2e-4
+    assert subpath.closed == closed
+    assert element.fill_rule == ("evenodd" if name in FILLED else "")
+    assert element.stroke_width_mm == (0 if name in FILLED else 0.25)
+
+
+@each_shape
+def test_every_entity_in_a_block_goes_where_the_block_goes(name):
+    """Scaled unevenly, turned and mirrored, in a block that is scaled and turned itself."""
+    draw, points, closed = SHAPES[name]
+    document = drawing()
+    inner, outer = document.blocks.new("inner", base_point=(5, 7)), document.blocks.new("outer")
+    draw(inner)
+    outer.add_blockref("inner", (20, 10), {"xscale": 2, "yscale": -0.5, "zscale": 1, "rotation": 30})
+    document.modelspace().add_blockref("outer", (-40, 60), {"xscale": 1.5, "yscale": 1.5, "rotation": 70})
+    element = only(document)
+    (subpath,) = element.subpaths
+    moved = turned((np.array(points)[:, :2] - (5, 7)) * (2, -0.5), 30) + np.array((20, 10))
+    moved = turned(moved * 1.5, 70) + np.array((-40, 60))
+    assert apart(subpath, moved) < 2e-4
+    assert subpath.closed == closed
+    assert element.stroke_width_mm == (0 if name in FILLED else 0.25)  # a line weight does not grow
+
+
+def turned(points, degrees):
+    turn = np.radians(degrees)
+    return points @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+
+
+def test_fit_points_are_met():
+    points = [(0, 0), (30, 40), (80, -10), (100, 20)]
+    (subpath,) = only(drawing(lambda m: m.add_spline(points))).subpaths
+    assert len(subpath.cubics) == 3
+    assert np.abs(subpath.cubics[[0, 1, 2, 2], [0, 0, 0, 3]] - points).max() < 1e-9
+
+
+def test_the_frame_of_a_smoothed_polyline_is_not_drawn():
+    def draw(msp):
+        line = msp.add_polyline2d([(0, 0), (5, 30), (10, 0), (5, 9)], dxfattribs={"flags": 4})
+        line.vertices[1].dxf.flags = line.vertices[3].dxf.flags = 16
+
+    assert apart(only(drawing(draw)).subpaths[0], [(0, 0), (10, 0)]) < 1e-9
+
+
+def test_a_helix_is_seen_from_above():
+    design = read(drawing(add_helix))
+    assert [notice.where for notice in design.notices] == ["z"]
+    (subpath,) = design.elements[0].subpaths
+    radii = np.hypot(*along(subpath.cubics).T)
+    assert radii.min() > 29.9
+    assert radii.max() < 30.1
+
+
+@pytest.mark.parametrize(
+    ("units", "mm"),
+    [
+        (1, 25.4),
+        (2, 304.8),
+        (3, 1609344.0),
+        (4, 1),
+        (5, 10),
+        (6, 1000),
+        (8, 25.4e-6),
+        (9, 0.0254),
+        (10, 914.4),
+    ],
+)
+def test_units(units, mm):
+    size = 100 / mm
+    element = only(drawing(lambda m: m.add_circle((size, 0), size), units))
+    assert apart(element.subpaths[0], circle((100, 0), 100)) < 2e-4
+    assert element.stroke_width_mm == 0.25
+
+
+def test_a_drawing_without_units_asks_for_them():
+    for version in ("R12", "R2010"):
+        document = drawing(lambda m: m.add_line((0, 0), (2, 0)), 0, version)
+        with pytest.raises(Error, match="does not say its unit: give --units mm or --units in"):
+            read(document)
+        for units, mm in (("mm", 1.0), ("in", 25.4)):
+            element = only(document, units=units)
+            assert element.subpaths[0].cubics[-1, 3].tolist() == pytest.approx([2 * mm, 0], rel=0, abs=1e-12)
+
+
+def test_units_asked_for_win_and_say_so():
+    design = read(drawing(lambda m: m.add_line((0, 0), (2, 0)), units=1), units="mm")
+    assert design.elements[0].subpaths[0].cubics[-1, 3].tolist() == [2, 0]
+    assert [notice.sentence for notice in design.notices] == [
+        "the drawing is in inches; read in millimetres, as asked for"
+    ]
+    for units in (None, "in"):
+        element = only(drawing(lambda m: m.add_line((0, 0), (2, 0)), units=1), units=units)
+        assert element.subpaths[0].cubics[-1, 3].tolist() == [50.8, 0]
+
+
+def test_the_sheet_is_what_is_drawn_and_20_mm_around():
+    def draw(msp):
+        msp.add_circle((100, 50), 10, {"lineweight": 200})
+        msp.add_lwpolyline([(100, 50, 4, 4), (130, 50, 4, 4)], format="xyse")
+
+    design = read(drawing(draw), sheet_mm=None)
+    # from 89 (circle, half of 2 mm) to 132 (polyline, half of 4 mm); from 39 to 61
+    assert design.sheet_mm == pytest.approx((20 + 43 + 20, 20 + 22 + 20), abs=1e-3)
+    assert apart(design.elements[0].subpaths[0], circle((31, 31), 10)) < 2e-4
+    given = read(drawing(draw), sheet_mm=(300.0, 200.0))
+    assert given.sheet_mm == (300, 200)
+    assert apart(given.elements[0].subpaths[0], circle((100, 50), 10)) < 2e-4
+
+
+# Widths ---------------------------------------------------------------------------------------------
+
+
+def test_widths_along_a_polyline():
+    rows = [(0, 0, 1, 3, 0), (30, 0, 2, 2, 1), (30, 20, 0, 0, 0), (0, 20, 0, 4, 0), (0, 60, 9, 9, 0)]
+    for add in ("add_lwpolyline", "add_polyline2d"):
+        document = drawing(
+            lambda m, add=add: getattr(m, add)(rows, format="xyseb", dxfattribs={"lineweight": 50})
+        )
+        element = only(document)
+        (subpath,) = element.subpaths
+        at = np.cumsum([0, 30, 10 * np.pi, 30, 40]) / (100 + 10 * np.pi)
+        # The third side is drawn with the line weight: both its widths are 0.
+        knots = [(0, 1), (at[1], 3), (at[1], 2), (at[2], 2), (at[2], 0.5), (at[3], 0.5), (at[3], 0), (1, 4)]
+        found = subpath.widths[np.r_[0:3, -5:0]]  # between them the arc's own
+        assert found == pytest.approx(np.array(knots), abs=1e-6)
+        assert (subpath.widths[2:-5, 1] == 2).all()
+        assert element.stroke_width_mm == 4
+
+
+def test_widths_scale_with_units_and_blocks():
+    document = drawing(units=1)
+    document.blocks.new("b").add_lwpolyline([(0, 0, 0.1, 0.2), (1, 0, 0, 0)], format="xyse")
+    document.modelspace().add_blockref("b", (0, 0), {"xscale": 3, "yscale": -3, "rotation": 20})
+    assert only(document).subpaths[0].widths == pytest.approx(np.array([(0, 7.62), (1, 15.24)]))
+
+
+def test_one_width_is_the_strokes_width():
+    element = only(drawing(lambda m: m.add_lwpolyline([(0, 0), (9, 0)], dxfattribs={"const_width": 2.5})))
+    assert element.stroke_width_mm == 2.5
+    assert element.subpaths[0].widths is None
+
+
+@pytest.mark.parametrize(
+    ("weight", "mm"), [(100, 1.0), (-1, 0.7), (-2, 0.25), (-3, 0.25), (0, 0.25), (211, 2.11)]
+)
+def test_line_weights(weight, mm):
+    document = drawing()
+    document.layers.add("thick", lineweight=70)
+    document.modelspace().add_line((0, 0), (9, 0), {"layer": "thick", "lineweight": weight})
+    assert only(document).stroke_width_mm == mm
+
+
+# Lines that meet ------------------------------------------------------------------------------------
+
+
+def test_lines_drawn_one_after_the_other_are_one():
+    def draw(msp):
+        msp.add_line((0, 0), (10, 0))
+        msp.add_line((10, 10), (10, 0))
+        msp.add_arc((10, 15), 5, 270, 90)
+        msp.add_line((10, 20), (-5, 20))
+        msp.add_line((40, 40), (50, 50))  # elsewhere
+        msp.add_line((50, 50), (60, 40), {"color": 1})  # another colour
+        msp.add_line((60, 40), (70, 40), {"color": 1})
+
+    design = read(drawing(draw))
+    true = np.concatenate(([(0, 0), (10, 0), (10, 10)], circle((10, 15), 5, begin=-90, end=90), [(-5, 20)]))
+    assert [len(element.subpaths) for element in design.elements] == [1, 1, 1]
+    line = design.elements[0].subpaths[0]
+    assert apart(line, true) < 2e-4
+    assert line.cubics[0, 0].tolist() == [0, 0]
+    assert not line.closed
+    assert design.elements[2].subpaths[0].cubics[[0, -1], [0, 3]].tolist() == [[50, 50], [70, 40]]
+
+
+def test_a_chain_that_comes_back_is_closed_and_its_first_line_turned_where_it_must():
+    corners = [(10, 0), (0, 0), (10, 0), (10, 10), (10, 10), (0, 0), (0, 0), (-9, -9)]
+
+    def draw(msp):
+        for begin, end in zip(corners[::2], corners[1::2], strict=True):
+            msp.add_line(begin, end)
+
+    ring, rest = read(drawing(draw)).elements
+    assert ring.subpaths[0].closed
+    assert ring.subpaths[0].cubics[:, 0].tolist() == [[0, 0], [10, 0], [10, 10]]
+    assert rest.subpaths[0].cubics[0, 0].tolist() == [0, 0]
+
+
+def test_lines_of_two_insertions_stay_apart():
+    document = drawing()
+    document.blocks.new("b").add_line((0, 0), (10, 0))
+    for x in (0, 10):
+        document.modelspace().add_blockref("b", (x, 0))
+    assert len(read(document).elements) == 2
+
+
+# Blocks, layers, colours ----------------------------------------------------------------------------
+
+
+def test_rows_and_columns():
+    document = drawing()
+    document.blocks.new("b").add_circle((1, 0), 3)
+    grid = {
+        "row_count": 2,
+        "column_count": 3,
+        "row_spacing": 20,
+        "column_spacing": 30,
+        "rotation": 90,
+        "xscale": 2,
+    }
+    document.modelspace().add_blockref("b", (5, 5), {**grid, "yscale": 2})
+    design = read(document)
+    found = {
+        tuple(np.mean(along(e.subpaths[0].cubics, 400)[:-1], axis=0).round(0) + 0.0) for e in design.elements
+    }
+    assert found == {(5.0 - 20 * row, 7.0 + 30 * column) for row in range(2) for column in range(3)}
+    assert len({element.id for element in design.elements}) == 6
+
+
+def test_ids_are_the_types_and_handles():
+    document = drawing()
+    line = document.blocks.new("b").add_line((0, 0), (9, 0))
+    circle_ = document.modelspace().add_circle((0, 0), 5)
+    insert = document.modelspace().add_blockref("b", (0, 30))
+    names = [f"CIRCLE-{circle_.dxf.handle}", f"INSERT-{insert.dxf.handle}/LINE-{line.dxf.handle}"]
+    assert [element.id for element in read(document).elements] == names
+
+
+def test_colours_layers_and_weights_come_from_layers_and_blocks():
+    document = drawing()
+    document.layers.add("Red", color=1, lineweight=100)
+    document.layers.add("Rose", true_color=ezdxf.colors.rgb2int((250, 100, 150)))
+    block = document.blocks.new("b")
+    for attributes in ({}, {"color": 0, "lineweight": -2}, {"color": 5}, {"layer": "Rose"}):
+        block.add_point((0, 0), attributes)
+    msp = document.modelspace()
+    msp.add_blockref("b", (0, 0), {"layer": "Red", "color": 3, "lineweight": 50})
+    for attributes in (
+        {"color": 7},
+        {"color": 255},
+        {"true_color": 0xFFFFFF},
+        {"true_color": 0x0A0B0C, "color": 1},
+    ):
+        msp.add_point((0, 0), attributes)
+    msp.add_point((0, 0), {"layer": "Not in the table", "color": 2})
+    found = [(e.colour, e.layer, e.stroke_width_mm) for e in read(document).elements]
+    assert found == [
+        ("#ff0000", "Red", 1.0),
+        ("#00ff00", "Red", 0.5),
+        ("#0000ff", "Red", 1.0),
+        ("#fa6496", "Rose", 0.25),
+        ("#000000", "0", 0.25),
+        ("#000000", "0", 0.25),
+        ("#000000", "0", 0.25),
+        ("#0a0b0c", "0", 0.25),
+        ("#ffff00", "Not in the table", 0.25),
+    ]
+
+
+def test_what_is_hidden_is_left_out_and_counted():
+    document = drawing()
+    document.layers.add("Off").off()
+    document.layers.add("Frozen").freeze()
+    document.layers.add("Plan").dxf.plot = 0
+    msp = document.modelspace()
+    block = document.blocks.new("b")
+    block.add_line((0, 0), (1, 1))
+    block.add_line((0, 0), (1, 2), {"layer": "Kept"})
+    msp.add_line((5, 5), (9, 9), {"layer": "off"})
+    msp.add_blockref("b", (0, 0), {"layer": "Off"})
+    msp.add_blockref("b", (0, 0), {"layer": "Frozen"})
+    msp.add_line((5, 5), (9, 9), {"layer": "Plan"})
+    msp.add_line((5, 5), (9, 9), {"invisible": 1})
+    document.paperspace().add_circle((0, 0), 5)
+    design = read(document)
+    assert [element.layer for element in design.elements] == ["Kept"]
+    assert {f"{notice.where}: {notice.sentence}" for notice in design.notices} == {
+        "Off: the layer is off: 2 entities left out",
+        "Frozen: the layer is frozen: 1 entity left out",
+        "Plan: the layer is not for plotting: 1 entity left out",
+        "invisible: entities made invisible are not painted: 1 entity left out",
+        "Layout1: paper space is not painted: 1 entity left out",
+    }
+
+
+def test_paper_space_alone_is_refused():
+    document = drawing()
+    document.paperspace().add_circle((0, 0), 5)
+    with pytest.raises(
+        Error, match="nothing to paint; for example Layout1: paper space is not painted: 1 entity"
+    ):
+        read(document)
+    with pytest.raises(Error, match=r"holds nothing to paint$"):
+        read(drawing())
+
+
+def test_what_is_not_read_is_named():
+    document = drawing()
+    document.linetypes.add("DASHED", [15.0, 10.0, -5.0])
+    msp = document.modelspace()
+    msp.add_text("Robot")
+    msp.add_mtext("Robot")
+    msp.add_ray((0, 0), (1, 0))
+    with msp.add_mesh().edit_data() as mesh:
+        mesh.vertices, mesh.faces = [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]
+    hatch = msp.add_hatch()
+    hatch.set_pattern_fill("ANSI31")
+    hatch.paths.add_polyline_path(SQUARE)
+    for _ in range(2):
+        msp.add_circle((0, 0), 5, {"linetype": "DASHED"})
+    found = {notice.where: notice.sentence for notice in read(document).notices}
+    assert found["TEXT"].startswith("text is not read: explode it into lines")
+    assert found["MTEXT"].endswith("1 entity left out")
+    assert found["RAY"] == "RAY has no ends: 1 entity left out"
+    assert found["MESH"] == "MESH is not read: 1 entity left out"
+    assert found["DASHED"] == "the line type is not read: its lines count as unbroken"
+    assert found[f"HATCH-{hatch.dxf.handle}"] == "its pattern is not read: it counts as filled"
+    assert len(found) == 6
+
+
+def test_a_hatch_keeps_its_holes():
+    document = drawing()
+    hatch = document.modelspace().add_hatch()
+    hatch.paths.add_polyline_path([(0, 0), (40, 0), (40, 40), (0, 40)], flags=1)
+    hatch.paths.add_polyline_path([(10, 10), (30, 10), (30, 30), (10, 30)], flags=16)
+    element = only(document)
+    assert element.fill_rule == "evenodd"
+    assert [subpath.cubics[0, 0].tolist() for subpath in element.subpaths] == [[0, 0], [10, 10]]
+    hatch.dxf.hatch_style = 2  # holes are ignored
+    assert len(only(document).subpaths) == 1
+
+
+def test_points_are_dabs_and_dimensions_are_unfolded():
+    def draw(msp):
+        msp.add_point((3, 4), {"lineweight": 100})
+        msp.add_linear_dim((0, 30), (0, 0), (50, 0)).render()
+
+    dab, *rest = read(drawing(draw)).elements
+    assert dab.stroke_width_mm == 1.0
+    assert dab.subpaths[0].cubics.tolist() == [[[3, 4]] * 4]
+    assert any((e.subpaths[0].cubics[..., 1] == 30).all() for e in rest)  # the dimension line
+
+
+def test_heights_are_left_out_once():
+    design = read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 25))))
+    assert [notice.sentence for notice in design.notices] == [
+        "the drawing is not flat: heights from 5 to 25 mm are left out"
+    ]
+    assert read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 5)))).notices == ()
+
+
+# Files ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("version", ["R12", "R2000", "R2004", "R2007", "R2010", "R2013", "R2018"])
+@pytest.mark.parametrize("binary", [False, True])
+def test_every_version_in_text_and_binary(version, binary):
+    document = drawing(None, 4, version)
+    document.layers.add("Größe", color=1)
+    document.modelspace().add_circle((10, 20), 30, {"layer": "Größe"})
+    element = only(document, binary=binary, units="mm")
+    assert apart(element.subpaths[0], circle((10, 20), 30)) < 2e-4
+    assert (element.layer, element.colour) == ("Größe", "#ff0000")
+
+
+def test_from_a_file_to_strokes(tmp_path):
+    def draw(msp):
+        msp.add_lwpolyline([(0, 0, 1, 3), (30, 0, 3, 1), (30, 40, 0, 0)], format="xyse")
+        msp.add_circle((50, 50), 20, {"lineweight": 200})
+
+    (tmp_path / "a.DXF").write_bytes(encoded(drawing(draw)))
+    design = read_drawing(tmp_path / "a.DXF", ReadOptions(sheet_mm=SHEET))
+    made, notices = strokes(design)
+    assert notices == []
+    assert [stroke.id.split("-")[0] for stroke in made] == ["LWPOLYLINE", "CIRCLE"]
+    assert np.array(made[0].half_width) == pytest.approx(np.array([(0, 0.5), (3 / 7, 1.5), (1, 0.5)]))
+    assert made[1].half_width == [(0.0, 1.0)]
+    assert read_dxf(encoded(drawing(draw))).sheet_mm == read_drawing(tmp_path / "a.DXF").sheet_mm
+
+
+def test_ezdxf_is_loaded_for_dxf_alone_and_leaves_nothing_at_home(tmp_path):
+    (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: m.add_line((0, 0), (9, 9)))))
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><path stroke="red" d="M1 1h5"/></svg>'
+    )
+    script = (
+        "import sys, brushsvg.importers as i; i.read_drawing('a.svg'); assert 'ezdxf' not in sys.modules; "
+        "i.read_drawing('a.dxf'); import ezdxf, os; assert os.environ['HOME'] == os.getcwd(); "
+        "assert 'XDG_CACHE_HOME' not in os.environ"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.dxf", "a.svg"]
+    assert ".dxf" in READERS

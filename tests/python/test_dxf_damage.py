@@ -1,0 +1,243 @@
+"""DXF files that are broken or made to break: each ends in an answer or in one sentence."""
+
+import random
+
+import numpy as np
+import pytest
+from dxf_text import SHEET, drawing, encoded, read
+
+from brushsvg.design import Design
+from brushsvg.errors import Error
+from brushsvg.importers import ReadOptions
+from brushsvg.importers.dxf import read_dxf
+from brushsvg.strokes import strokes
+
+OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
+
+
+def text_dxf(*entities):
+    """Only an ENTITIES section, of entities given as lines."""
+    words = f"0 SECTION 2 ENTITIES {' '.join(entities)} 0 ENDSEC 0 EOF".split()
+    return "\n".join([*words, ""]).encode()
+
+
+LINE = "0 LINE 8 0 10 0 20 0 11 5 21 5"
+
+
+def refusal(data):
+    with pytest.raises(Error) as caught:
+        read_dxf(data, OPTIONS)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 400
+    return str(caught.value)
+
+
+def some_drawing():
+    document = drawing()
+    msp = document.modelspace()
+    document.blocks.new("b").add_lwpolyline([(0, 0, 1, 2, 0.3), (9, 3, 2, 0, 0)], format="xyseb")
+    msp.add_blockref("b", (5, 5), {"column_count": 2, "column_spacing": 9})
+    msp.add_spline([(0, 0), (3, 3), (5, 1)])
+    msp.add_ellipse((0, 0), (9, 3), 0.5)
+    msp.add_hatch().paths.add_polyline_path([(0, 0), (5, 0), (5, 5)])
+    msp.add_linear_dim((0, 30), (0, 0), (50, 0)).render()
+    return document
+
+
+def test_sections_may_be_missing():
+    (element,) = read_dxf(text_dxf(LINE), OPTIONS).elements
+    assert element.subpaths[0].cubics[-1, 3].tolist() == [5, 5]
+    assert read_dxf(text_dxf(LINE).replace(b"\n", b"\r\n") + b"\x1a", OPTIONS).notices == ()
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [
+        (b"", "the file is not a DXF"),
+        (b"<svg/>", "the file is not a DXF"),
+        (b"AC1032\0\0\0\0", "the file is a DWG, not a DXF"),
+        (bytes(range(256)) + b"ENTITIES\n0\nEOF\n", "the DXF is damaged beyond repair: Invalid group code"),
+        (
+            b"AutoCAD Binary DXF\r\n\x1a\x00" + bytes(range(256)) + b"ENTITIES",
+            "the DXF is damaged beyond repair",
+        ),
+        (
+            text_dxf(LINE.replace("10 0", "10 x")),
+            "damaged beyond repair: Invalid floating point values near line: 14",
+        ),
+    ],
+)
+def test_what_is_no_dxf_is_refused(data, sentence):
+    assert sentence in refusal(data)
+
+
+def test_a_file_cut_short_is_read_up_to_there():
+    whole = encoded(drawing(lambda m: [m.add_circle((0, 0), 9), m.add_line((0, 0), (9, 9))]))
+    start = whole.rindex(b"AcDbLine")
+    for cut in range(start - 20, start + 40):
+        design = read_dxf(whole[:cut], OPTIONS)
+        assert [element.id.split("-")[0] for element in design.elements] == ["CIRCLE"]
+        notice = design.notices[0]
+        assert (notice.where, notice.sentence, notice.damaged) == (
+            "file",
+            "the end of the file is missing",
+            True,
+        )
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_any_damage_ends_in_a_design_or_a_sentence(binary):
+    """Cut anywhere, bytes changed, lines taken out or doubled."""
+    whole, rng = encoded(some_drawing(), binary), random.Random(7)
+    lines = whole.split(b"\n")
+    for _ in range(60):
+        data = bytearray(whole)
+        kind = rng.randrange(4)
+        if kind == 0:
+            data = data[: rng.randrange(len(data))]
+        elif kind == 1:
+            for _ in range(rng.randint(1, 30)):
+                data[rng.randrange(len(data))] = rng.choice(b"0123456789-.eE \n\0\xff")
+        else:
+            k = rng.randrange(len(lines))
+            data = b"\n".join(lines[:k] + lines[k : k + 1] * (kind - 2) * 2 + lines[k + 1 :])
+        try:
+            design = read_dxf(bytes(data), OPTIONS)
+        except Error as error:
+            assert str(error).isprintable()
+            continue
+        assert isinstance(design, Design)
+        assert all(np.isfinite(s.cubics).all() for element in design.elements for s in element.subpaths)
+        strokes(design)
+
+
+@pytest.mark.parametrize(
+    ("entity", "why"),
+    [
+        (LINE.replace("11 5", "11 nan"), "its geometry is not finite or beyond 1e6 mm"),
+        (LINE.replace("11 5", "11 1e400"), "its geometry is not finite or beyond 1e6 mm"),
+        (LINE.replace("11 5", "11 1000001"), "its geometry is not finite or beyond 1e6 mm"),
+        ("0 CIRCLE 8 0 10 0 20 0 40 1e300", "its geometry is not finite or beyond 1e6 mm"),
+        ("0 POLYLINE 8 0 66 1 0 VERTEX 8 0 10 0 20 0 40 -1 41 2 0 VERTEX 8 0 10 9 20 0 0 SEQEND", "its widths"),
+        ("0 INSERT 8 0 2 nowhere 10 0 20 0", "there is no block 'nowhere'"),
+    ],
+)  # fmt: skip
+def test_damaged_geometry_is_left_out_and_the_rest_is_read(entity, why):
+    design = read_dxf(text_dxf(entity, "0 CIRCLE 8 0 10 0 20 0 40 5"), OPTIONS)
+    assert len(design.elements) == 1
+    damaged = [notice for notice in design.notices if notice.damaged]
+    assert len(damaged) == 1
+    assert why in damaged[0].sentence
+    assert damaged[0].layer == "0"
+    assert refusal(text_dxf(entity)).startswith("the drawing holds nothing to paint; for example ")
+
+
+@pytest.mark.parametrize(
+    ("degree", "knots", "weights", "count", "why"),
+    [
+        (3, [0, 1], [], 4, "2 knots do not go with 4 control points of degree 3"),
+        (9, [], [], 2, "2 control points are too few for degree 9"),
+        (99, [], [], 2, "the degree 99 is outside the range [1, 32]"),
+        (1, [0, 1, 2, 3], [1, -1], 2, "each control point needs one weight above 0"),
+        (1, [3, 2, 1, 0], [], 2, "the knots do not ascend"),
+        (1, [3, 3, 3, 3], [], 2, "all knots coincide"),
+    ],
+)
+def test_broken_splines_are_left_out(degree, knots, weights, count, why):
+    def draw(msp):
+        spline = msp.add_spline(degree=degree)
+        spline.knots, spline.weights = knots, weights
+        spline.control_points = [(k, k % 2, 0) for k in range(count)]
+        msp.add_circle((0, 0), 5)
+
+    design = read(drawing(draw))
+    assert [element.id[:6] for element in design.elements] == ["CIRCLE"]
+    (notice,) = design.notices
+    assert notice.damaged
+    assert why in notice.sentence
+
+
+def test_splines_of_great_cost_are_left_out():
+    def draw(msp):
+        msp.add_spline([(k, k % 3) for k in range(4000)])
+        rough = msp.add_spline(degree=5)
+        rough.control_points = [(k * 300, k % 3 * 1e5, 0) for k in range(3000)]
+        rough.knots = list(range(3006))
+        msp.add_circle((0, 0), 5)
+
+    design = read(drawing(draw))
+    assert [element.id[:6] for element in design.elements] == ["CIRCLE"]
+    assert "4000 fit points without control points" in design.notices[0].sentence
+    assert "more than 100000 cubics" in design.notices[1].sentence
+
+
+def test_things_of_no_size():
+    lying = "0 CIRCLE 8 0 10 0 20 0 40 0"
+    assert "it has no geometry" in refusal(text_dxf(lying))
+    for draw in (lambda m: m.add_line((3, 4), (3, 4)), lambda m: m.add_lwpolyline([(3, 4)], close=True)):
+        (element,) = read(drawing(draw)).elements
+        assert element.subpaths[0].cubics.tolist() == [[[3, 4]] * 4]
+        assert not element.subpaths[0].closed
+
+
+# Blocks made to break -------------------------------------------------------------------------------
+
+
+def chain(count, *others):
+    """Blocks of which each inserts the next twice: by one name, or by the names of others, doubled as well."""
+    document = drawing()
+    kinds = ("A", *others)
+    for k in range(count):
+        for kind in kinds:
+            document.blocks.new(f"{kind}{k}")
+    for k in range(count - 1):
+        for kind in kinds:
+            for place in range(2):
+                document.blocks.get(f"{kind}{k}").add_blockref(
+                    f"{kinds[place % len(kinds)]}{k + 1}", (place, 0)
+                )
+    document.modelspace().add_blockref("A0", (0, 0))
+    return document
+
+
+@pytest.mark.parametrize("others", [(), ("B",)])
+def test_chains_that_double_are_refused(others):
+    with pytest.raises(Error, match="unfolds to more than 100000 entities"):
+        read(chain(41, *others))
+
+
+def test_blocks_in_themselves_are_refused():
+    document = drawing()
+    for name, other in (("A", "B"), ("B", "a")):
+        document.blocks.new(name).add_line((0, 0), (1, 1))
+        document.blocks.get(name).add_blockref(other, (1, 1))
+    document.modelspace().add_blockref("A", (0, 0))
+    with pytest.raises(Error, match="block 'a' inserts itself"):
+        read(document)
+
+
+def test_deep_blocks_and_wide_arrays_are_refused():
+    document = drawing()
+    for k in range(2000):
+        block = document.blocks.new(f"B{k}")
+        if k:
+            block.add_blockref(f"B{k - 1}", (0, 0))
+    insert = document.modelspace().add_blockref("B1999", (0, 0))
+    with pytest.raises(Error, match="nested more than 50 deep"):
+        read(document)
+    insert.dxf.name = "B0"
+    insert.dxf.update({"row_count": 32767, "column_count": 32767, "row_spacing": 1, "column_spacing": 1})
+    with pytest.raises(Error, match="32767 rows of 32767 columns are more than 100000"):
+        read(document)
+    insert.dxf.column_spacing = 0  # all columns in one place: one
+    document.blocks.get("B0").add_point((0, 0))
+    assert len(read(document).elements) == 32767
+
+
+def test_heavy_blocks_are_refused():
+    document = drawing()
+    document.blocks.new("heavy").add_lwpolyline([(k, k % 7) for k in range(5000)])
+    array = {"row_count": 20, "column_count": 20, "row_spacing": 1, "column_spacing": 1}
+    document.modelspace().add_blockref("heavy", (0, 0), array)
+    with pytest.raises(Error, match="unfolds to more than 1000000 curves"):
+        read(document)
