@@ -1,0 +1,49 @@
+"""PowerStroke as Inkscape itself draws it: the outline it leaves in d against our line and width."""
+
+import re
+
+import numpy as np
+import pytest
+import shapely
+
+from brushsvg import flatten, strokes
+from brushsvg.importers.svg import read_svg
+
+LINE = "M 10,30 C 30,10 40,50 60,30 S 90,20 110,40"
+SOURCE = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
+ width="120mm" height="60mm" viewBox="0 0 120 60"><defs>
+ <inkscape:path-effect effect="powerstroke" id="pe" is_visible="true" lpeversion="1.3" scale_width="1"
+  offset_points="0.2,1 | 1,2.5 | 1.6,1.2" not_jump="false" sort_points="true" interpolator_type="{kind}"
+  interpolator_beta="0.2" start_linecap_type="butt" linejoin_type="extrp_arc" miter_limit="4"
+  end_linecap_type="butt"/></defs>
+ <path id="p" style="fill:#000000;stroke:none" inkscape:path-effect="#pe" inkscape:original-d="{line}" d="{line}"/>
+</svg>"""
+
+
+def polygon_of_outline(cubics):
+    t = np.linspace(0, 1, 40)[1:, None, None]
+    p0, p1, p2, p3 = (cubics[:, k] for k in range(4))
+    points = (1 - t) ** 3 * p0 + 3 * t * (1 - t) ** 2 * p1 + 3 * t**2 * (1 - t) * p2 + t**3 * p3
+    return shapely.Polygon(points.transpose(1, 0, 2).reshape(-1, 2)).buffer(0)
+
+
+def polygon_of_stroke(stroke):
+    line = flatten(stroke, 0.002)
+    along = np.gradient(line[:, :2], axis=0)
+    along /= np.hypot(*along.T)[:, None]
+    aside = np.column_stack([-along[:, 1], along[:, 0]]) * line[:, 3:]
+    return shapely.Polygon(np.vstack([line[:, :2] + aside, (line[:, :2] - aside)[::-1]])).buffer(0)
+
+
+@pytest.mark.parametrize("kind", ["Linear", "CubicBezierJohan", "CentripetalCatmullRom"])
+def test_as_inkscape_draws_it(kind, inkscape, tmp_path):
+    source, saved = tmp_path / "source.svg", tmp_path / "saved.svg"
+    source.write_text(SOURCE.format(kind=kind, line=LINE))
+    # an effect is drawn again only when its path changes
+    inkscape(f"--actions=select-by-id:p;transform-translate:5,0;export-filename:{saved};export-do", source)
+    text = saved.read_text()
+    (stroke,), _ = strokes(read_svg(text.encode()))
+    (outline,) = read_svg(re.sub(r'inkscape:original-d="[^"]*"', "", text).encode()).elements[0].subpaths
+    ours, theirs = polygon_of_stroke(stroke), polygon_of_outline(outline.cubics)
+    assert theirs.area > 300, "Inkscape has not drawn the effect"
+    assert ours.hausdorff_distance(theirs) < 0.04

@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+from svg_text import read, sentences
+
+EFFECT = (
+    '<inkscape:path-effect effect="{effect}" id="e" is_visible="{visible}" interpolator_type="{kind}" '
+    'offset_points="{points}" scale_width="{scale}" sort_points="true" interpolator_beta="0.2"/>'
+)
+PATH = (
+    '<path id="p" stroke="none" fill="#00f" inkscape:path-effect="#e" d="M0 0H9V9Z" '
+    'inkscape:original-d="M10 10H30L50 10" {}/>'
+)
+
+
+def powered(points="0,1 | 1.5,3", kind="Linear", scale=1, effect="powerstroke", visible="true", more=""):
+    effects = EFFECT.format(points=points, kind=kind, scale=scale, effect=effect, visible=visible)
+    return read(f"<defs>{effects}</defs>{PATH.format(more)}")
+
+
+def width_at(design, fraction):
+    (subpath,) = design.elements[0].subpaths
+    return float(np.interp(fraction, subpath.widths[:, 0], subpath.widths[:, 1]))
+
+
+def test_the_line_that_was_drawn_with_its_width():
+    design = powered()
+    (element,) = design.elements
+    assert element.subpaths[0].cubics[[0, -1], [0, 3]].tolist() == [[10, 40], [50, 40]]
+    assert (element.colour, element.fill_rule, element.is_stroked) == ("#0000ff", "", True)
+    assert [width_at(design, at) for at in (0, 0.25, 0.75, 1)] == pytest.approx([2, 2 + 4 / 3, 6, 6])
+    assert not design.notices
+
+
+def test_widths_scale_with_the_transform_and_the_effect():
+    assert width_at(powered(scale=1.5, more='transform="scale(2)"'), 0) == pytest.approx(6)
+    assert width_at(powered("1.5,-3 | 0,1"), 0.75) == pytest.approx(6), "sorted; the side does not matter"
+
+
+def test_johan_is_flat_at_its_points_and_in_the_middle_between_them():
+    design = powered("0,1 | 2,3", "CubicBezierJohan")
+    assert width_at(design, 0.5) == pytest.approx(4)
+    assert width_at(design, 0.05) < 2 + 0.05 * 4
+
+
+def test_catmull_rom_passes_through_its_points():
+    design = powered("0.5,1 | 1,3 | 1.5,2", "CentripetalCatmullRom")
+    assert [width_at(design, at) for at in (0.25, 0.5, 0.75)] == pytest.approx([2, 6, 4], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("choices", "sentence"),
+    [
+        ({"kind": "SpiroInterpolator"}, "p: its width is interpolated SpiroInterpolator, read as Linear"),
+        ({"effect": "skeletal"}, "p: path effect skeletal is not read: its outline counts"),
+        (
+            {"points": "0,1 | nan"},
+            "p: its PowerStroke has no offset points that can be read: its outline counts",
+        ),
+    ],
+)
+def test_what_is_not_read_is_named(choices, sentence):
+    assert sentence in sentences(powered(**choices))
+
+
+def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():
+    for choices in ({"visible": "false"}, {"effect": "spiro"}):
+        (element,) = powered(**choices).elements
+        assert element.fill_rule and not element.is_stroked
+        assert element.subpaths[0].cubics[0, 0].tolist() == [0, 50]
+
+
+def test_many_points_on_a_long_line():
+    design = powered(" | ".join(f"{k / 500:.4f},{1 + k % 3}" for k in range(1001)))
+    assert width_at(design, 0.5) == pytest.approx(2 * (1 + 500 % 3))
