@@ -1,0 +1,128 @@
+"""The command line's choices among what a drawing holds: layers, selections, sizes, settings, and looking at it."""
+
+import json
+import re
+
+import pytest
+
+from brushsvg.cli import main
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
+ width="160mm" height="90mm" viewBox="0 0 160 90" fill="none" stroke="#203060" stroke-width="3"><title>Layers</title>
+ <g inkscape:groupmode="layer" inkscape:label="Ink"><path id="a" d="M30 40 C50 20 70 20 90 40"/></g>
+ <g inkscape:groupmode="layer" inkscape:label="Red" stroke="red"><path id="b" d="M30 60 H90"/>
+ <text id="t">x</text></g></svg>"""
+DXF = "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nINK\n10\n0\n20\n0\n11\n2\n21\n0\n0\nENDSEC\n0\nEOF\n"
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "d.svg").write_text(DRAWING)
+    (tmp_path / "d.dxf").write_text(DXF)
+    return tmp_path
+
+
+def plan(desk, capsys, *words, drawing="d.svg"):
+    status = main(["convert", drawing, "plan.json", *words])
+    err = capsys.readouterr().err.splitlines()
+    assert status == 0, err
+    return json.loads((desk / "plan.json").read_text())["passes"], err
+
+
+def refusal(capsys, *words):
+    assert main(list(words)) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+def test_layers_and_selections(desk, capsys):
+    passes, err = plan(desk, capsys, "--layer", "Ink")
+    assert ([each["stroke"] for each in passes], err) == (["a"], [])
+    passes, err = plan(desk, capsys, "--select", "#b, text")
+    assert [each["stroke"] for each in passes] == ["b"]
+    assert len(err) == 1 and "--export-text-to-path" in err[0]
+    said = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
+    assert said == "brushsvg: d.svg: layer: no layer 'Blue' with something to paint; there are: Ink, Red"
+    assert "matches no element" in refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
+
+
+def test_size_and_place(desk, capsys):
+    passes, _ = plan(desk, capsys, "--scale", "150%", "--layer", "Red")
+    deepest = min(z for *_, z in passes[0]["poses_mm"])
+    plain, _ = plan(desk, capsys, "--layer", "Red", "--width", "4.5")
+    assert deepest == pytest.approx(min(z for *_, z in plain[0]["poses_mm"]), abs=1e-6), "widths are scaled"
+    main(["predict", "d.svg", "m.json", "--fit", "100x80", "--width", "2"])
+    rings = json.loads((desk / "m.json").read_text())["outline_mm"]
+    xs, ys = zip(*(point for ring in rings for point in ring), strict=True)
+    assert max(xs) - min(xs) == pytest.approx(100, abs=1.5)
+    assert (max(xs) + min(xs)) / 2 == pytest.approx(80, abs=1)
+    assert (max(ys) + min(ys)) / 2 == pytest.approx(45, abs=1)
+
+
+def test_flags_have_no_effect_on_a_plan(desk, capsys):
+    plan(desk, capsys)
+    assert main(["convert", "plan.json", "p2.json", "--fit", "50x50", "--layer", "Ink"]) == 0
+    err = capsys.readouterr().err
+    assert "--fit has no effect on a plan" in err and "--layer has no effect on a plan" in err
+
+
+def test_settings_steer_the_plan(desk, capsys):
+    text = DRAWING.replace(
+        'id="b"', 'id="b" data-brushsvg-order="-1" data-brushsvg-passes="2" data-brushsvg-speed="7"'
+    )
+    text = text.replace('id="a"', 'id="a" data-brushsvg-brush="rigid"')
+    (desk / "d.svg").write_text(text)
+    passes, err = plan(desk, capsys)
+    assert [(each["stroke"], each["speed_mm_s"]) for each in passes] == [("b", 7), ("b#2", 7), ("a", 20)]
+    assert passes[0]["settings"] == {"order": -1, "passes": 2, "speed_mm_s": 7}
+    assert any("asks for brush rigid, all is painted with round-6" in line for line in err)
+    (desk / "d.svg").write_text(text.replace('speed="7"', 'speed="26"'))
+    assert main(["convert", "d.svg", "out.ngc"]) == 1
+    assert "speed 26.0 mm/s is outside the range (0, 25.0]" in capsys.readouterr().err
+
+
+def test_dxf_needs_its_units(desk, capsys):
+    assert "--units mm" in refusal(capsys, "convert", "d.dxf", "x.json")
+    passes, _ = plan(desk, capsys, "--units", "in", "--width", "3", drawing="d.dxf")
+    assert [each["layer"] for each in passes] == ["INK"]
+    assert main(["convert", "d.dxf", "x.json", "--units", "mm", "--select", "g"]) == 2
+
+
+def test_import_draws_what_was_understood(desk, capsys):
+    for drawing, words in (("d.svg", []), ("d.dxf", ["--units", "mm"])):
+        for suffix, start in ((".svg", b"<svg"), (".png", b"\x89PNG")):
+            assert main(["import", drawing, f"seen{suffix}", *words]) == 0
+            assert (desk / f"seen{suffix}").read_bytes().startswith(start)
+    assert main(["import", "d.svg", "seen.svg", "--layer", "Ink"]) == 0
+    words = re.findall(r"<text[^>]*>([^<]*)<", (desk / "seen.svg").read_text())
+    assert "1  a: 3 mm, Ink" in words and not any("text is not read" in word for word in words)
+
+
+def test_import_shows_damage_that_convert_refuses(desk, capsys):
+    (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L"))
+    assert main(["convert", "d.svg", "x.json", "--layer", "Red"]) == 1
+    assert "b: d is damaged at character 13" in capsys.readouterr().err
+    assert main(["import", "d.svg", "seen.png"]) == 0
+    assert main(["convert", "d.svg", "x.json", "--layer", "Ink"]) == 0, "damage elsewhere does not count"
+
+
+def test_only_filled_shapes_are_refused_but_shown(desk, capsys):
+    (desk / "f.svg").write_text(
+        DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', "")
+    )
+    assert "filled outlines do not become strokes yet" in refusal(capsys, "convert", "f.svg", "x.json")
+    assert main(["import", "f.svg", "seen.png"]) == 0
+
+
+def test_text(desk, capsys):
+    font = """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
+      <glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>"""
+    (desk / "font.svg").write_text(font)
+    assert main(["text", "T\\nTT", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
+    passes, err = plan(desk, capsys, drawing="t.svg")
+    assert (len(passes), err) == (6, [])
+    assert "no such file" in refusal(capsys, "text", "T", "t.svg", "--font", "none.svg")
+    assert "has no glyph for" in refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
+    for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
+        assert main(["text", *words, "--font", "font.svg"]) == 2
