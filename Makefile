@@ -98,6 +98,9 @@ python-test: $(VENV)/.dev
 integration: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	$(call install,$(shell cat tests/integration/apt-packages.txt))
+	if ! command -v npm >/dev/null; then
+	$(call install,nodejs npm)
+	fi
 	$(BIN)/pip install -q -r tests/integration/requirements.txt
 	$(BIN)/python -m pytest tests/integration
 
