@@ -102,7 +102,7 @@ integration: setup
 	$(call install,nodejs npm)
 	fi
 	$(BIN)/pip install -q -r tests/integration/requirements.txt
-	$(BIN)/python -m pytest tests/integration
+	$(BIN)/python -m pytest -rs tests/integration
 
 bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev

@@ -115,7 +115,12 @@ def check_feeds(sections, passes, limit_mm_s):
         assert min(feeds) > 0
         assert max(feeds) <= 60 * limit_mm_s + 1e-6
         speed = 60 * wanted["speed_mm_s"]
-        assert feeds[2:-1] == pytest.approx([speed] * len(feeds[2:-1]), abs=0.051)
+        at = [event[1:4] for event in section.events if event[0] == "feed"]
+        steps = list(zip(feeds[2:-1], at[1:], at[2:], strict=False))
+        moving = [feed for feed, here, there in steps if here[:2] != there[:2]]
+        pressing = [feed for feed, here, there in steps if here[:2] == there[:2] and here[2] != there[2]]
+        assert moving == pytest.approx([speed] * len(moving), abs=0.051)
+        assert pressing == pytest.approx([feeds[1]] * len(pressing), abs=0.051), "as slowly as it lands"
         assert feeds[1] <= speed + 0.051
         assert feeds[-1] <= speed + 0.051
 

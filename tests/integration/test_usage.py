@@ -35,16 +35,18 @@ USAGE = [
 ]
 # of house rules, but not there yet: neither understood nor promised
 LATER = {
-    "flags": ["--cell", "--width", "--fit", "--units", "--caps", "--as", "--wide", "--scale"],
-    "commands": ["import", "chart", "calibrate", "cell", "check"],
+    "flags": ["--cell", "--caps", "--as", "--wide", "--order"],
+    "commands": ["chart", "calibrate", "cell", "check", "animate"],
     "brush commands": ["plot", "new"],
-    "formats": [".dxf", ".script", ".mod", ".pdf", ".krl", ".gcode"],
+    "formats": [".script", ".mod", ".pdf", ".krl", ".gcode"],
 }
 PAGES = [
     [],
     ["convert"],
     ["predict"],
     ["report"],
+    ["import"],
+    ["text"],
     ["brush"],
     ["brush", "list"],
     ["brush", "show"],
@@ -74,7 +76,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     for absent in (*LATER["flags"], *LATER["formats"]):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
     commands = set(re.findall(r"(?m)^    ([a-z]+) ", pages[()]))
-    assert commands == {"convert", "predict", "report", "brush"}
+    assert commands == {"convert", "predict", "report", "import", "text", "brush"}
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {"list", "show", "check"}
     for page, text in pages.items():
         for flag in set(re.findall(r"--[a-z-]+", text)) - {"--help"}:
