@@ -22,7 +22,10 @@ struct Compensated {
 void bind_compensate(py::module_& m) {
     using namespace brushsvg;
     py::class_<Miss>(m, "Miss",
-                     "Distance of the widest point from the middle line [mm] from the first taut row to the last.")
+                     R"(Distance of the widest point from the middle line [mm], from the first taut row to the last.
+
+largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
+too sharp for the lever.)")
         .def_readonly("largest_mm", &Miss::largest_mm)
         .def_readonly("at_mm", &Miss::at_mm)
         .def_readonly("mean_mm", &Miss::mean_mm)
@@ -55,6 +58,14 @@ void bind_compensate(py::module_& m) {
         py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed",
         py::arg("tolerance_mm") = 0.05, py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0,
         py::arg("progress") = py::none(),
-        "Where the TCP must go: a plan for strokes, simulated before it is returned. method: none, constant, closed.");
-    m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05);
+        R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
+
+sheet_mm: (w, h), kept in the plan. method: "none", the TCP on the line; "constant", ahead by lag_mm (None: the lag at
+each stroke's median depth); "closed", the inverse of the brush's law. tolerance_mm: how far the widest point of the
+mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its miss
+returned. speed_mm_s: of painting, at most the brush's. progress: called with (strokes done, strokes).
+
+Error, naming the stroke, for widths or depths out of the brush's reach.)");
+    m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,
+          "Miss of one pass against the stroke it should paint, by simulating it.");
 }

@@ -33,7 +33,11 @@ void bind_marks(py::module_& m) {
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_readwrite("outline_mm", &PassMarks::outline_mm);
-    py::class_<Marks>(m, "Marks")
+    py::class_<Marks>(m, "Marks",
+                      R"(What is painted: marks.json as a value.
+
+passes: a PassMarks per stroke; outline_mm: rings [(n, 2) mm] of all paint together, filled by trace_outlines, outer
+ones counter-clockwise, holes clockwise, unclosed.)")
         .def(py::init<>())
         .def_readwrite("passes", &Marks::passes)
         .def_readwrite("outline_mm", &Marks::outline_mm);

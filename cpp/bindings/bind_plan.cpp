@@ -20,7 +20,11 @@ void bind_plan(py::module_& m) {
         .def_readwrite("colour", &Pass::colour)
         .def_readwrite("settings", &Pass::settings)
         .def_readwrite("extra", &Pass::extra);
-    py::class_<Plan>(m, "Plan")
+    py::class_<Plan>(m, "Plan",
+                     R"(TCP poses for every stroke, in the frame of the paper: plan.json as a value.
+
+brush, brush_sha256: what it was made for; sheet_mm: (w, h); passes: one Pass per stroke, in painting order; extra:
+unknown keys of the file, as JSON.)")
         .def(py::init([](std::string brush, std::string brush_sha256, std::array<double, 2> sheet_mm,
                          std::vector<Pass> passes, std::string extra) {
                  return Plan{std::move(brush), std::move(brush_sha256), sheet_mm, std::move(passes), std::move(extra)};

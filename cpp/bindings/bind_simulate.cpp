@@ -13,7 +13,10 @@ void bind_simulate(py::module_& m) {
             return marks;
         },
         py::arg("plan"), py::arg("brush"), py::arg("tolerance_mm") = 0.02, py::arg("progress") = py::none(),
-        "What the brush does along a plan: Marks, rows as close as the tolerance [mm] asks.");
+        R"(What the brush does along a plan: Marks without outlines (see trace_outlines and coverage).
+
+tolerance_mm: how far the painted area between two rows may be off the hull of both; it has nothing to do with the
+tolerance that a plan was made with. progress: called with (passes done, passes).)");
     m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"),
           "Centre of the widest section at every row (n, 2) [mm].");
 }

@@ -14,6 +14,7 @@ TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slo
 if TYPE_CHECKING:  # what the table below resolves to
     from ._core import (
         Brush,
+        Compensated,
         Marks,
         Pass,
         Plan,
@@ -56,6 +57,7 @@ _HOME = {
 } | dict.fromkeys(
     [
         "Brush",
+        "Compensated",
         "Marks",
         "Pass",
         "Plan",
@@ -79,6 +81,7 @@ _HOME = {
 
 __all__ = [
     "Brush",
+    "Compensated",
     "Error",
     "Marks",
     "Pass",
