@@ -15,7 +15,7 @@ import numpy as np
 
 from brushsvg import _core
 from brushsvg.brushes import find_brush
-from brushsvg.cell import load_cell
+from brushsvg.cell import find_cell
 from brushsvg.convert import encode, problems
 from brushsvg.importers import read_drawing
 from brushsvg.strokes import strokes as strokes_of
@@ -65,7 +65,7 @@ def main() -> None:
             lambda: _core.compensate(strokes, brush, design.sheet_mm),
         )
         marks = stage("simulate", lambda: _core.simulate(done.plan, brush))
-        stage("limits", lambda: problems(done.plan, brush, marks, load_cell()))
+        stage("limits", lambda: problems(done.plan, brush, marks, find_cell()))
         stage("G-code", lambda: encode(".ngc", done.plan, brush, "page"))
         begin = time.perf_counter()
         ran = subprocess.run(

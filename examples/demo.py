@@ -7,7 +7,7 @@ import numpy as np
 
 import brushsvg
 from brushsvg import convert, report
-from brushsvg.cell import load_cell
+from brushsvg.cell import find_cell
 from brushsvg.console import RefusedError, about, say, warn
 from brushsvg.describe import one_line
 from brushsvg.files import write_files
@@ -15,7 +15,7 @@ from brushsvg.render import MIDDLE_LINE, Panel, panels_png
 
 
 def main(drawing: Path, directory: Path) -> None:
-    cell = load_cell()
+    cell = find_cell()
     ways = ("none", "constant", "closed")
     works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ways}
     work = works["closed"]

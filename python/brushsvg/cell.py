@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 import tomllib
 from dataclasses import dataclass, fields
-from importlib.resources import files
+from pathlib import Path
 
 from .errors import Error
+from .files import read_bytes
 
 
 @dataclass(frozen=True)
@@ -29,12 +31,41 @@ class Cell:
     decimals: int
 
 
-def load_cell(name: str = "linuxcnc-3axis") -> Cell:
-    """A cell that comes with the package. Error when there is none of that name or its file is not sound."""
-    file = files("brushsvg") / "data" / "cells" / f"{name}.toml"
-    if not file.is_file():
-        raise Error(f"there is no cell named {name}", where="cell")
-    return read_cell(file.read_text(encoding="utf-8"))
+SHIPPED = Path(__file__).parent / "data" / "cells"
+DEFAULT_CELL = "linuxcnc-3axis"
+
+
+def cell_names() -> list[str]:
+    """Names of the cells that come with the package, in alphabetical order."""
+    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+
+
+def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
+    """The shipped cell of a name, or the cell in a .toml file.
+
+    Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
+    file in `file`, the last the key in `where`.
+    """
+    path = _path_of(name_or_path)
+    data = read_bytes(path)
+    try:
+        return read_cell(data.decode("utf-8"))
+    except UnicodeDecodeError:
+        raise Error("the file is not a cell: it is not text in UTF-8", file=str(path)) from None
+    except Error as refusal:
+        refusal.file = str(path)
+        raise
+
+
+def _path_of(name_or_path: str | os.PathLike) -> Path:
+    if isinstance(name_or_path, os.PathLike):
+        return Path(name_or_path)
+    if name_or_path in cell_names():
+        return SHIPPED / f"{name_or_path}.toml"
+    if name_or_path.endswith(".toml") or "/" in name_or_path or os.sep in name_or_path:
+        return Path(name_or_path)
+    known = ", ".join(cell_names())
+    raise Error(f"cell {name_or_path!r} is not known; known are {known}, and any file that ends in .toml")
 
 
 def read_cell(text: str) -> Cell:

@@ -7,21 +7,22 @@ import os
 from . import convert
 from ._core import remarks
 from .brushes import brush_names, find_brush
-from .cell import load_cell
+from .cell import Cell, cell_names, find_cell
 from .console import RefusedError, about, clear_stage, say, stage, tell, warn
-from .describe import one_line, page
+from .describe import cell_page, one_line, page
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
 from .importers import ReadOptions, read_drawing
 from .layout import Layout, arrange
+from .posts import POSTS
 from .strokes import strokes as strokes_of
 
 
 def convert_file(args) -> None:
     _check_places(args.output, args.preview, args.report)
+    cell = _cell(args)
     work = _prepare(args)
-    cell = load_cell()
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
     with about(args.input):
@@ -88,7 +89,7 @@ def text_file(args) -> None:
 def report_file(args) -> None:
     work, marks, warnings = _look(args, outlines=True)
     with about(args.input):
-        text = convert.report_text(".json" if args.json else ".txt", work, marks, load_cell(), warnings)
+        text = convert.report_text(".json" if args.json else ".txt", work, marks, _cell(args), warnings)
     tell(text)
 
 
@@ -98,7 +99,7 @@ def _look(args, outlines: bool):
     with about(args.input):
         marks = convert.predict(work, outlines, stage)
         warnings = [(n.where, n.sentence) for n in work.notices]
-        warnings += convert.problems(work.plan, work.brush, marks, load_cell())
+        warnings += convert.problems(work.plan, work.brush, marks, _cell(args))
     warn(args.input, warnings)
     return work, marks, warnings
 
@@ -123,6 +124,11 @@ def _prepare(args) -> convert.Work:
 
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin")
+
+
+def _cell(args) -> Cell:
+    with about(args.cell or ""):
+        return find_cell(args.cell) if args.cell is not None else find_cell()
 
 
 def _reading(args) -> ReadOptions:
@@ -178,3 +184,26 @@ def brush_check(args) -> None:
         odd = remarks(brush)
     warn(args.input, odd)
     tell(f"{args.input}: brush {brush.name} can be used\n")
+
+
+def cell_list(_args) -> None:
+    names = cell_names()
+    width = max(map(len, names))
+    for name in names:
+        with about(name):
+            tell(f"{name.ljust(width)}  {find_cell(name).description}\n")
+
+
+def cell_show(args) -> None:
+    with about(args.input):
+        tell(cell_page(find_cell(args.input)) + "\n")
+
+
+def cell_check(args) -> None:
+    with about(args.input):
+        cell = find_cell(args.input)
+        if cell.language not in POSTS:
+            raise Error(
+                f"language {cell.language!r} is not known; known: {', '.join(POSTS)}", where="language"
+            )
+    tell(f"{args.input}: cell {cell.name} can be used\n")

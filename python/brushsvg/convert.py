@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _core, importers, layout, report
 from .brushes import find_brush
-from .cell import Cell, load_cell
+from .cell import Cell, find_cell
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
@@ -187,7 +187,7 @@ def encode(suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = N
     """
     if suffix == ".json":
         return _core.write_plan(plan).encode()
-    cell = cell or load_cell()
+    cell = cell or find_cell()
     post = POSTS.get(cell.language)
     if post is None:
         known = ", ".join(POSTS)
@@ -222,7 +222,7 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
 
     Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
     """
-    cell = cell or load_cell()
+    cell = cell or find_cell()
     for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell):
         raise Error(sentence, where=where)
     write_files({path: encode(Path(path).suffix.lower(), plan, brush, title, cell=cell)})

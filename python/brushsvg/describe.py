@@ -1,4 +1,4 @@
-"""A brush in words and numbers."""
+"""A brush and a cell in words and numbers."""
 
 from __future__ import annotations
 
@@ -94,3 +94,25 @@ def _table(brush, least: float, greatest: float) -> list[str]:
         values = (getattr(brush, name)(depth) for name, _ in LAWS)
         lines.append(f"{depth:7.2f}" + "".join(f"{value:15.2f}" for value in values))
     return lines
+
+
+def cell_page(cell) -> str:
+    """All that a cell file says, one fact a line."""
+    low, high = cell.z_range_mm
+    rows = [
+        ("language", cell.language),
+        ("travels at", f"{cell.safe_height_mm:g} mm above the paper, {cell.travel_mm_s:g} mm/s"),
+        (
+            "comes down at",
+            f"{cell.approach_mm_s:g} mm/s, below {cell.clearance_mm:g} mm {cell.press_mm_s:g} mm/s",
+        ),
+        ("paints at", f"{cell.max_paint_mm_s:g} mm/s at most"),
+        ("heights", f"from {low:g} to {high:g} mm"),
+        ("workspace", f"the sheet and {cell.workspace_margin_mm:g} mm around it"),
+        ("rounds joints by", f"{cell.path_tolerance_mm:g} mm at most"),
+        ("writes", f"{cell.decimals} decimals"),
+    ]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(
+        [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    )

@@ -11,7 +11,7 @@ from .importers import READERS
 from .posts import POSTS
 
 DRAWINGS = (*READERS, ".json")
-PROGRAMS = (".json", *(post.extension for post in POSTS.values()))
+PROGRAMS = (".json", *dict.fromkeys(post.extension for post in POSTS.values()))
 PREDICTIONS = (".png", ".svg", ".json")
 PREVIEWS = (".png", ".svg")
 REPORTS = (".txt", ".json")
@@ -100,6 +100,16 @@ def _parser() -> argparse.ArgumentParser:
     check = whats.add_parser("check", help="say whether a brush file can be used")
     check.add_argument("input", metavar="FILE", help="a brush.json")
     check.set_defaults(run="brush_check")
+
+    cell = commands.add_parser("cell", help="look at cells: machines and their limits")
+    whats = cell.add_subparsers(metavar="WHAT", required=True)
+    whats.add_parser("list", help="name those that come along").set_defaults(run="cell_list")
+    show = whats.add_parser("show", help="heights, speeds and limits of one")
+    show.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
+    show.set_defaults(run="cell_show")
+    check = whats.add_parser("check", help="say whether a cell file can be used")
+    check.add_argument("input", metavar="FILE", help="a cell.toml")
+    check.set_defaults(run="cell_check")
     return parser
 
 
@@ -114,6 +124,7 @@ def _add_input(command: argparse.ArgumentParser) -> None:
 def _add_choices(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
+    add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     _add_layout(command)
     add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
     add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
@@ -196,7 +207,7 @@ def _read(reader, text: str):
 
 def _check_operands(args) -> None:
     """Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
-    if args.run.startswith("brush_"):
+    if args.run.startswith(("brush_", "cell_")):
         return
     if args.run == "text_file":
         if os.path.splitext(args.output)[1].lower() != ".svg":

@@ -35,8 +35,8 @@ USAGE = [
 ]
 # of house rules, but not there yet: neither understood nor promised
 LATER = {
-    "flags": ["--cell", "--caps", "--as", "--wide", "--order"],
-    "commands": ["chart", "calibrate", "cell", "check", "animate"],
+    "flags": ["--caps", "--as", "--wide", "--order"],
+    "commands": ["chart", "calibrate", "check", "animate"],
     "brush commands": ["plot", "new"],
     "formats": [".script", ".mod", ".pdf", ".krl", ".gcode"],
 }
@@ -48,6 +48,10 @@ PAGES = [
     ["import"],
     ["text"],
     ["brush"],
+    ["cell"],
+    ["cell", "list"],
+    ["cell", "show"],
+    ["cell", "check"],
     ["brush", "list"],
     ["brush", "show"],
     ["brush", "check"],
@@ -76,7 +80,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     for absent in (*LATER["flags"], *LATER["formats"]):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
     commands = set(re.findall(r"(?m)^    ([a-z]+) ", pages[()]))
-    assert commands == {"convert", "predict", "report", "import", "text", "brush"}
+    assert commands == {"convert", "predict", "report", "import", "text", "brush", "cell"}
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {"list", "show", "check"}
     for page, text in pages.items():
         for flag in set(re.findall(r"--[a-z-]+", text)) - {"--help"}:

@@ -280,7 +280,6 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.ngc --tolerance thick",
         "convert a.svg out.ngc --sheet A4",
         "convert a.svg out.ngc --sheet 0x10",
-        "convert a.svg out.ngc --cell mine",
         "convert a.svg out.ngc --width 0",
         "convert a.svg out.ngc --fit 5x5 --scale 2",
         "convert a.svg out.ngc --scale 0",
@@ -508,9 +507,41 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     status, out, _ = run(capsys, "convert", "--help")
     assert status == 0
     flags = set(re.findall(r"--[a-z]+", out))
-    choices = {"--brush", "--compensation", "--lag", "--tolerance", "--lenient"}
+    choices = {"--brush", "--cell", "--compensation", "--lag", "--tolerance", "--lenient"}
     choices |= {"--sheet", "--units", "--layer", "--select", "--width", "--fit", "--scale", "--origin"}
     assert flags == choices | {"--help", "--preview", "--report"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.convert"} & set(done.stderr.split())
+
+
+def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
+    status, out, err = run(capsys, "cell", "list")
+    assert (status, err) == (0, [])
+    names = [line.split()[0] for line in out.splitlines()]
+    assert {"linuxcnc-3axis", "grbl-3axis"} <= set(names)
+    for name in names:
+        assert run(capsys, "cell", "show", name)[0] == 0
+        assert run(capsys, "cell", "check", name) == (0, f"{name}: cell {name} can be used\n", [])
+    assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis") == (0, "", [])
+    lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
+    assert not any(line.startswith("G64") for line in lines)
+    assert max(map(len, lines)) <= 70
+    text = (Path(commands.__file__).parent / "data" / "cells" / "grbl-3axis.toml").read_text()
+    for old, new, said in (
+        ('"grbl"', '"krl"', "language: language 'krl' is not known; known: linuxcnc, grbl"),
+        ("press_mm_s = 6.0", "press_mm_s = 0", "press_mm_s: press_mm_s 0.0 must be above 0"),
+        ("name", "nom", "nom: a cell has no key nom"),
+    ):
+        (desk / "my.toml").write_text(text.replace(old, new))
+        assert run(capsys, "cell", "check", "my.toml") == (1, "", [f"brushsvg: my.toml: {said}"])
+    (desk / "my.toml").write_text(text.replace("= 30.0", "= 0.0"))
+    status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
+    assert status == 1 and any("beyond the right edge of the workspace" in line for line in err)
+    for cell, said in (
+        ("mine", "cell 'mine' is not known; known are grbl-3axis"),
+        ("no.toml", "there is no such file"),
+    ):
+        status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", cell)
+        assert status == 1 and said in err[0]
+    assert not (desk / "x.ngc").exists()

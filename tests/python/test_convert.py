@@ -7,7 +7,7 @@ import pytest
 
 from brushsvg import convert, report
 from brushsvg.brushes import find_brush
-from brushsvg.cell import load_cell
+from brushsvg.cell import find_cell
 from brushsvg.errors import Error
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -65,7 +65,7 @@ def test_a_program_is_in_the_language_of_its_cell(drawing):
     for suffix in (".txt", "", ".NGC"):
         with pytest.raises(Error, match=r"neither \.json.* nor \.ngc, for G-code for LinuxCNC"):
             convert.encode(suffix, *parts)
-    cell = replace(load_cell(), language="semaphore")
+    cell = replace(find_cell(), language="semaphore")
     assert convert.encode(".json", *parts, cell=cell).startswith(b"{")
     with pytest.raises(
         Error, match="'semaphore' of cell linuxcnc-3axis is not known; known: linuxcnc"

@@ -7,21 +7,22 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from brushsvg.cell import load_cell
+from brushsvg.cell import find_cell
 from brushsvg.posts import POSTS
-from brushsvg.posts.gcode import LINE_LIMIT, gcode
+from brushsvg.posts.gcode import LINE_LIMIT, grbl, linuxcnc
 from brushsvg.program import program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
 
-def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0):
+def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0, cell="linuxcnc-3axis"):
     passes = [
         SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed)
         for stroke, poses, speed in passes
     ]
     brush = SimpleNamespace(name="b", max_speed_mm_s=limit)
-    return gcode(program(SimpleNamespace(sheet_mm=sheet, passes=passes), brush, load_cell(), header))
+    write = {"linuxcnc-3axis": linuxcnc, "grbl-3axis": grbl}[cell]
+    return write(program(SimpleNamespace(sheet_mm=sheet, passes=passes), brush, find_cell(cell), header))
 
 
 def feeds_in(text):
@@ -93,6 +94,20 @@ def test_numbers_are_plain(tiny):
     for word in words:
         assert re.fullmatch(r"[XYZFP]-?\d+\.\d+", word), word
         assert not re.fullmatch(r".-0\.0*", word), word
+
+
+def test_golden_grbl():
+    header = ("title: two strokes", "brush: round-6, 2 strokes")
+    text = text_of(*TWO, header=header, cell="grbl-3axis")
+    assert text == (GOLDEN.parent / "two_strokes_grbl.ngc").read_text(encoding="ascii")
+
+
+def test_grbl_is_spared_what_it_does_not_know():
+    text = text_of(("a" * 200, TWO[0][1], 20.0), cell="grbl-3axis")
+    words = {word for line in code_lines(text) for word in re.findall(r"[GM]\d+", line)}
+    assert words == {"G0", "G1", "G17", "G21", "G40", "G80", "G90", "G94", "M2"}  # all in grbl 1.1's list
+    assert max(map(len, text.splitlines())) <= 70
+    assert "%" not in text
 
 
 def test_nothing_rapid_below_safe_height():

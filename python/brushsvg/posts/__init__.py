@@ -18,9 +18,18 @@ class Post(NamedTuple):
 
 
 def _linuxcnc(program: Program) -> str:
-    from .gcode import gcode  # loaded for who writes, not for who only asks what can be written
+    from .gcode import linuxcnc  # loaded for who writes, not for who only asks what can be written
 
-    return gcode(program)
+    return linuxcnc(program)
 
 
-POSTS = {"linuxcnc": Post("G-code for LinuxCNC", ".ngc", _linuxcnc)}  # by the language a cell names
+def _grbl(program: Program) -> str:
+    from .gcode import grbl
+
+    return grbl(program)
+
+
+POSTS = {  # by the language a cell names
+    "linuxcnc": Post("G-code for LinuxCNC", ".ngc", _linuxcnc),
+    "grbl": Post("G-code for grbl", ".ngc", _grbl),
+}

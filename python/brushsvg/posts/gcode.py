@@ -1,4 +1,4 @@
-"""Moves -> G-code for LinuxCNC (RS274/NGC), 7-bit text, the same bytes for the same moves."""
+"""Moves -> G-code for LinuxCNC (RS274/NGC) and grbl 1.1, 7-bit text, the same bytes for the same moves."""
 
 from __future__ import annotations
 
@@ -10,19 +10,30 @@ import numpy as np
 from ..program import SAFE_MEANINGS, Move, Program
 
 LINE_LIMIT = 120  # LinuxCNC reads 255 characters; this also fits a screen
+GRBL_LINE_LIMIT = 70  # grbl 1.1 keeps 80 characters of a line, builds with less memory 70
 
 
-def gcode(program: Program) -> str:
+def linuxcnc(program: Program) -> str:
     """The whole program as text: header, one commented section per stroke, M2."""
-    decimals = program.decimals
-    lines = [_comment(line) for line in program.header]
     # G64 P, not G61: exact path stops the machine at the joint of any two moves, and a brush that stands
     # still bleeds. Rounding the joints by a fraction of the plan's tolerance keeps the speed even.
-    lines += ["G21 G90 G94 G17 G40 G80", f"G64 P{_number(program.path_tolerance_mm, decimals)}"]
+    tolerance = _number(program.path_tolerance_mm, program.decimals)
+    return _text(program, ["G21 G90 G94 G17 G40 G80", f"G64 P{tolerance}"], LINE_LIMIT)
+
+
+def grbl(program: Program) -> str:
+    """As for LinuxCNC, but for G64, which grbl does not know: its setting $11 says how joints are taken."""
+    return _text(program, ["G21 G90 G94 G17 G40 G80"], GRBL_LINE_LIMIT)
+
+
+def _text(program: Program, modes: list[str], line_limit: int) -> str:
+    decimals = program.decimals
+    lines = [_comment(line, line_limit) for line in program.header]
+    lines += modes
     lines.append(f"G0 Z{_number(program.safe_height_mm, decimals)}")
     feed = ""
     for number, section in enumerate(program.sections, 1):
-        lines += ["", _comment(f"stroke {number} of {len(program.sections)}: {section.stroke}")]
+        lines += ["", _comment(f"stroke {number} of {len(program.sections)}: {section.stroke}", line_limit)]
         for move in section.moves:
             points = _lines(move, decimals)
             if move.meaning not in SAFE_MEANINGS:
@@ -49,12 +60,12 @@ def _number(value: float, decimals: int) -> str:
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 
-def _comment(text: str) -> str:
+def _comment(text: str, line_limit: int) -> str:
     """One line of comment. LinuxCNC acts on comments that start with MSG, DEBUG, LOG, PRINT and the like, so
     callers begin with a word of their own; brackets, line ends and letters beyond ASCII cannot stay."""
     plain = unicodedata.normalize("NFKD", text)
     plain = "".join(letter for letter in plain if not unicodedata.combining(letter))
     plain = plain.translate({ord("("): "[", ord(")"): "]", ord("\n"): " ", ord("\r"): " ", ord("\t"): " "})
     plain = "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
-    room = LINE_LIMIT - 2
+    room = line_limit - 2
     return f"({plain if len(plain) <= room else plain[: room - 3] + '...'})"
