@@ -91,7 +91,6 @@ Rings unite(const Rings& rings) {
         level.back().insert(to_polygon(ring), hole);
     }
     if (level.empty()) return {};
-    for (Set& set : level) set.clean();
     while (level.size() > 1) {
         std::vector<Set> next;
         for (std::size_t i = 0; i < level.size(); i += 4) {

@@ -27,6 +27,12 @@ def encoded(document, binary=False):
     )
 
 
+def text_dxf(*entities, header=""):
+    """Only an ENTITIES section, of entities given as lines."""
+    words = f"{header} 0 SECTION 2 ENTITIES {' '.join(entities)} 0 ENDSEC 0 EOF".split()
+    return "\n".join([*words, ""]).encode()
+
+
 def read(document, sheet_mm=SHEET, units=None, binary=False):
     return read_dxf(encoded(document, binary), ReadOptions(sheet_mm=sheet_mm, units=units))
 

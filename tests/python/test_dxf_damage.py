@@ -4,7 +4,7 @@ import random
 
 import numpy as np
 import pytest
-from dxf_text import SHEET, drawing, encoded, read
+from dxf_text import SHEET, apart, bulged, drawing, encoded, read, text_dxf
 
 from brushsvg.design import Design
 from brushsvg.errors import Error
@@ -13,12 +13,6 @@ from brushsvg.importers.dxf import read_dxf
 from brushsvg.strokes import strokes
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
-
-
-def text_dxf(*entities):
-    """Only an ENTITIES section, of entities given as lines."""
-    words = f"0 SECTION 2 ENTITIES {' '.join(entities)} 0 ENDSEC 0 EOF".split()
-    return "\n".join([*words, ""]).encode()
 
 
 LINE = "0 LINE 8 0 10 0 20 0 11 5 21 5"
@@ -48,6 +42,71 @@ def test_sections_may_be_missing():
     (element,) = read_dxf(text_dxf(LINE), OPTIONS).elements
     assert element.subpaths[0].cubics[-1, 3].tolist() == [5, 5]
     assert read_dxf(text_dxf(LINE).replace(b"\n", b"\r\n") + b"\x1a", OPTIONS).notices == ()
+
+
+# As minimal exporters write them: no markers, the properties in any place.
+BARE = {
+    "LWPOLYLINE": "90 3 70 1 43 2.5 10 0 20 0 62 1 10 50 20 0 42 1 10 50 20 50 8 L",
+    "SPLINE": "8 L 70 8 71 3 72 8 73 4 40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 10 0 20 0 10 10 20 0 10 10 20 10 "
+    "10 20 20 10 62 1",
+    "HATCH": "8 L 62 1 10 0 20 0 30 0 210 0 220 0 230 1 2 SOLID 70 1 71 0 91 1 92 2 72 0 73 1 93 3 10 0 20 0 10 5 20 0 "
+    "10 5 20 5 97 0 75 0 76 1 98 0",
+    "MTEXT": "8 L 62 1 10 0 20 0 40 5 71 1 1 Hello",
+}  # fmt: skip
+HEADERS = {
+    "none": "",
+    "no version": "0 SECTION 2 HEADER 9 $INSBASE 10 0 20 0 30 0 0 ENDSEC",
+    "R12": "0 SECTION 2 HEADER 9 $ACADVER 1 AC1009 9 $EXTMIN 10 0 20 0 30 0 0 ENDSEC",
+    "R2000": "0 SECTION 2 HEADER 9 $ACADVER 1 AC1015 0 ENDSEC",
+}
+
+
+@pytest.mark.parametrize("header", HEADERS)
+@pytest.mark.parametrize("kind", BARE)
+@pytest.mark.parametrize("markers", ["", "100 AcDbEntity", "100 AcDbPolyline", "5 2F 330 1F"])
+def test_newer_entities_are_read_without_header_and_markers(header, kind, markers):
+    data = text_dxf(
+        LINE, f"0 {kind} {markers} {BARE[kind]}", "0 CIRCLE 8 0 10 0 20 0 40 5", header=HEADERS[header]
+    )
+    design = read_dxf(data, OPTIONS)
+    first, *found, last = design.elements
+    assert (first.id, last.id[:6]) == ("LINE-1", "CIRCLE")
+    if kind == "MTEXT":
+        return  # with or without a font
+    assert design.notices == ()
+    (element,) = found
+    assert (element.layer, element.colour) == ("L", "#ff0000")
+    assert element.id.startswith(f"{kind}-")
+    ((subpath,), width) = (element.subpaths, element.stroke_width_mm)
+    if kind == "LWPOLYLINE":
+        assert (subpath.closed, width) == (True, 2.5)
+        assert apart(subpath, bulged([(0, 0, 0), (50, 0, 1), (50, 50, 0)], closed=True)) < 2e-4
+    elif kind == "SPLINE":
+        assert subpath.cubics.tolist() == [[[0, 0], [10, 0], [10, 10], [20, 10]]]
+    else:
+        assert (element.fill_rule, subpath.cubics[:, 0].tolist()) == ("evenodd", [[0, 0], [5, 0], [5, 5]])
+    with pytest.raises(Error, match="does not say its unit"):
+        read_dxf(data, ReadOptions())
+
+
+def test_blocks_layers_and_handles_of_r12_stay_when_newer_entities_are_among_them():
+    document = drawing(version="R12")
+    document.layers.add("Off").off()
+    block = document.blocks.new("b")
+    block.add_polyline2d([(0, 0), (9, 0), (9, 9)])
+    msp = document.modelspace()
+    msp.add_blockref("b", (30, 0), {"xscale": -1})
+    msp.add_line((0, 0), (9, 9), {"layer": "Off"})
+    msp.add_linear_dim((0, 30), (0, 0), (50, 0)).render()
+    document.paperspace().add_viewport((0, 0), (9, 9), (0, 0), 9)
+    document.paperspace().add_line((0, 0), (9, 9))
+    plain = encoded(document)
+    end = plain.rindex(b"  0\nENDSEC")
+    bare = f"0 LWPOLYLINE {BARE['LWPOLYLINE']}".replace(" ", "\n").encode() + b"\n"
+    before, after = (read_dxf(data, OPTIONS) for data in (plain, plain[:end] + bare + plain[end:]))
+    assert [e.id for e in after.elements[:-1]] == [e.id for e in before.elements]
+    assert after.elements[-1].id.startswith("LWPOLYLINE")
+    assert after.notices == before.notices
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ import numpy as np
 from ..design import Design, Element, Notice, extremes
 from ..errors import Error
 from . import AS_DRAWN, ReadOptions
+from .dxf_dashes import Dashes
 from .dxf_file import open_dxf
 from .dxf_lines import chained, element_of
 from .dxf_walk import Walk
@@ -72,7 +73,9 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     if highest - lowest > _FLAT_MM:
         sentence = f"the drawing is not flat: heights from {lowest:.6g} to {highest:.6g} mm are left out"
         notices.append(Notice("z", sentence))
-    elements = [element_of(piece) for piece in chained(walk.pieces)]
+    dashes = Dashes()
+    elements = [dashes.cut(element_of(piece), piece.pen) for piece in chained(walk.pieces)]
+    notices += dashes.notices
     if options.sheet_mm is not None:
         return Design(options.sheet_mm, tuple(elements), tuple(notices))
     least, greatest = _extents(elements)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arcs import arc_count
 from .dxf_library import ezdxf
 from .dxf_splines import b_spline, interpolated, joined
 
@@ -70,21 +71,12 @@ def _ellipse(entity, tolerance: float) -> list[Curve]:
 def _elliptical(tool, tolerance: float) -> list[Curve]:
     if tool.major_axis.magnitude == 0:
         return []
-    count = _arc_count(tool.param_span, tool.major_axis.magnitude, tolerance)
+    count = arc_count(tool.param_span, tool.major_axis.magnitude, tolerance)
     beziers = list(ezdxf.math.cubic_bezier_from_ellipse(tool, count))
     if not beziers:
         return []
     cubics = np.array([[point.xyz for point in bezier.control_points] for bezier in beziers])
     return [Curve(cubics, math.isclose(tool.param_span, math.tau, rel_tol=1e-9))]
-
-
-def _arc_count(turn: float, radius: float, tolerance: float) -> int:
-    """Cubics needed: one over an angle t is off by (2/27) sin(t/4)^6 / cos(t/4)^2 of the radius."""
-    count = max(1, math.ceil(turn / (math.pi / 2) - 1e-9))
-    radius = min(radius, 1e15 * tolerance)  # beyond, a double has no such digits
-    while radius * 2 / 27 * math.sin(turn / count / 4) ** 6 > tolerance * math.cos(turn / count / 4) ** 2:
-        count += 1
-    return count
 
 
 # Polylines ------------------------------------------------------------------------------------------
@@ -155,7 +147,7 @@ def _bulge(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray
     """Cubics (n, 4) of an arc from p to q, in complex numbers. bulge: tangent of a quarter of its angle, left > 0."""
     turn = 4 * math.atan(bulge)
     chord = 2 * math.sin(turn / 2)
-    count = _arc_count(abs(turn), abs((q - p) / chord), tolerance)
+    count = arc_count(abs(turn), abs((q - p) / chord), tolerance)
     s = np.linspace(0.0, 1.0, count + 1)
     at = p + (q - p) * np.exp(0.5j * turn * (s - 1)) * np.sin(turn * s / 2) / math.sin(turn / 2)
     at[-1] = q

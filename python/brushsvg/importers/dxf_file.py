@@ -7,6 +7,7 @@ import io
 from ..design import Notice
 from ..errors import Error
 from .dxf_library import ezdxf
+from .dxf_markers import marked_tags
 
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 _MOST_NOTICES = 5
@@ -52,7 +53,7 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[str]]:
     if not data.rstrip(b" \t\r\n\0\x1a").endswith(b"EOF"):
         damage.append("the end of the file is missing")
         data = _up_to_the_last_entity(data)
-    recovered = ezdxf.recover.Recover.run(io.BytesIO(data))
+    recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=marked_tags)
     document = ezdxf.document.Drawing()
     document._load_section_dict(recovered.section_dict)
     return document, damage + [message for _, message in (*recovered.errors, *recovered.fixes)]

@@ -38,14 +38,23 @@ def _empty_home() -> Iterator[None]:
 
 with _empty_home():
     import ezdxf
+    import ezdxf.addons.mtxpl
+    import ezdxf.addons.text2path
     import ezdxf.audit
     import ezdxf.colors
     import ezdxf.document
     import ezdxf.entities
+    import ezdxf.fonts.font_manager
+    import ezdxf.fonts.fonts
+    import ezdxf.layouts
     import ezdxf.lldxf.tagger
+    import ezdxf.lldxf.types
     import ezdxf.math
+    import ezdxf.path
     import ezdxf.protocols
     import ezdxf.recover
+    import ezdxf.tools.text
+    import ezdxf.xclip
 
 # What it logs is told as notices; without a handler the standard library would print it.
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())

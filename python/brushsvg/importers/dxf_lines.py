@@ -60,15 +60,13 @@ def _joined(chain: list[Piece]) -> Piece:
 
 
 def element_of(piece: Piece) -> Element:
-    """Fills are even-odd and have no stroke: two outlines may run either way round."""
-    default_mm = 0.0 if piece.filled else piece.pen.width_mm
+    default_mm = 0.0 if piece.fill_rule else piece.pen.width_mm
     subpaths = tuple(_subpath(curve, default_mm) for curve in piece.curves)
     drawn = [subpath.widths[:, 1] for subpath in subpaths if subpath.widths is not None]
     width_mm = float(np.concatenate(drawn).max()) if drawn else default_mm
     if len(subpaths) == len(drawn) == 1 and np.ptp(drawn[0]) == 0:
         subpaths = (replace(subpaths[0], widths=None),)
-    rule = "evenodd" if piece.filled else ""
-    return Element(piece.id, subpaths, width_mm, piece.pen.colour, piece.pen.layer, fill_rule=rule)
+    return Element(piece.id, subpaths, width_mm, piece.pen.colour, piece.pen.layer, fill_rule=piece.fill_rule)
 
 
 def _subpath(curve: Curve, default_mm: float) -> SubPath:

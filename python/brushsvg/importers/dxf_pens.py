@@ -14,17 +14,27 @@ _BLACK = "#000000"
 
 
 @dataclass(frozen=True)
+class LineType:
+    """pattern_mm: dash, gap, dash, gap ...; () if it has letters or shapes, or is broken itself."""
+
+    name: str
+    pattern_mm: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Pen:
     """layer: its name, for people and to look it up; hidden: why nothing of it is painted, "" if it is.
 
-    line_type: "" if unbroken; frozen: blocks inserted on this layer are hidden with all they hold.
+    line_type: None if unbroken; line_scale: of its pattern; frozen: blocks inserted on this layer are hidden with all
+    they hold.
     """
 
     layer: str = "0"
     key: str = "0"
     colour: str = _BLACK
     width_mm: float = _DEFAULT_WIDTH_MM
-    line_type: str = ""
+    line_type: LineType | None = None
+    line_scale: float = 1.0
     hidden: str = ""
     frozen: bool = False
 
@@ -32,8 +42,10 @@ class Pen:
 class Pens:
     """The layers of a document, and what they make of its entities."""
 
-    def __init__(self, document: ezdxf.document.Drawing):
-        self._broken = {_key(t.dxf.name) for t in document.linetypes if len(t.simplified_line_pattern()) > 1}
+    def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
+        scale = document.header.get("$LTSCALE", 1.0) * mm_per_unit
+        types = ((_key(line.dxf.name), _line_type(line, scale)) for line in document.linetypes)
+        self._line_types = {key: line_type for key, line_type in types if line_type is not None}
         self._layers = {_key(layer.dxf.name): self._of_layer(layer) for layer in document.layers}
 
     def pen(self, entity, outer: Pen | None) -> Pen:
@@ -43,14 +55,15 @@ class Pens:
         if key == "0":
             name, key = block.layer, block.key
         layer = self._layers.get(key) or Pen(name, key)
-        line_type = dxf.get("linetype", "BYLAYER").upper()
-        by = {"BYLAYER": layer.line_type, "BYBLOCK": block.line_type}
+        line_type = _key(dxf.get("linetype", "BYLAYER"))
+        by = {"bylayer": layer.line_type, "byblock": block.line_type}
         return Pen(
             layer.layer,
             key,
             self._colour(entity, layer, block),
             self._width_mm(dxf.get("lineweight", _WEIGHT_BYLAYER), layer, block),
-            by.get(line_type, self._broken_line(line_type)),
+            by.get(line_type, self._line_types.get(line_type)),
+            dxf.get("ltscale", 1.0),
             layer.hidden,
             layer.frozen,
         )
@@ -69,13 +82,10 @@ class Pens:
             _key(name),
             _rgb(layer.rgb, layer.color),
             self._width_mm(layer.dxf.get("lineweight", -3), Pen(), Pen()),
-            self._broken_line(layer.dxf.get("linetype", "")),
-            hidden,
-            layer.is_frozen(),
+            self._line_types.get(_key(layer.dxf.get("linetype", ""))),
+            hidden=hidden,
+            frozen=layer.is_frozen(),
         )
-
-    def _broken_line(self, name: str) -> str:
-        return shown(name) if _key(name) in self._broken else ""
 
     @staticmethod
     def _colour(entity, layer: Pen, block: Pen) -> str:
@@ -94,6 +104,33 @@ class Pens:
         if weight == _WEIGHT_BYBLOCK:
             return block.width_mm
         return weight / 100 if weight > 0 else _DEFAULT_WIDTH_MM
+
+
+def _line_type(line, scale: float) -> LineType | None:
+    tags = line.pattern_tags
+    elements = [tag.value for tag in tags.tags if tag.code == 49]
+    if tags.is_complex_type():
+        return LineType(shown(line.dxf.name), ())
+    if not any(element < 0 for element in elements):  # no gaps
+        return None
+    return LineType(shown(line.dxf.name), tuple(scale * length for length in _cyclic(elements)))
+
+
+def _cyclic(elements: list[float]) -> list[float]:
+    """Lengths of dash, gap, dash, gap ... of a line type, [] without a dash; elements: its dashes, its gaps below 0.
+
+    It starts with a whole dash, as CAD programs start lines.
+    """
+    first = next((k for k, element in enumerate(elements) if not element < 0), len(elements))
+    pattern: list[float] = []
+    for element in elements[first:] + elements[:first] if first < len(elements) else []:
+        if len(pattern) % 2 == (element < 0):
+            pattern.append(abs(element))
+        else:
+            pattern[-1] += abs(element)
+    if len(pattern) % 2:
+        pattern[0] += pattern.pop()
+    return pattern
 
 
 def _rgb(true_colour: tuple[int, int, int] | None, number: int) -> str:

@@ -23,7 +23,7 @@ def interpolated(fit_points, tangents, tolerance: float) -> np.ndarray:
     """Cubics (n, 4, 3) through fit points as CAD programs lay them; tangents: at the start and end, or None."""
     if len(fit_points) > _MOST_FIT_POINTS:
         raise ValueError(f"{len(fit_points)} fit points without control points, {_MOST_FIT_POINTS} are read")
-    both = None if None in tangents else tangents
+    both = None if any(tangent is None for tangent in tangents) else tangents
     tool = ezdxf.math.fit_points_to_cad_cv(fit_points, both)
     points = [point.xyz for point in tool.control_points]
     return b_spline(tool.degree, tool.knots(), points, tool.weights(), tolerance)

@@ -15,6 +15,8 @@ from ..errors import Error
 from . import dxf_curves
 from .dxf_curves import Curve
 from .dxf_file import reason, shown
+from .dxf_fonts import NoFontError
+from .dxf_letters import Letters
 from .dxf_library import ezdxf
 from .dxf_pens import Pen, Pens
 from .svg_trace import LARGEST_MM
@@ -25,7 +27,7 @@ _MOST_CUBICS = 1_000_000
 _DEEPEST = 50  # blocks in blocks
 _JOINABLE = frozenset(("LINE", "ARC", "ELLIPSE", "SPLINE"))
 _SILENT = frozenset(("VIEWPORT", "ATTDEF", "SEQEND"))
-_TEXT = frozenset(("TEXT", "MTEXT", "ATTRIB"))
+_TEXT = frozenset(("TEXT", "ATTRIB"))
 _TEXT_ADVICE = "text is not read: explode it into lines in the program that made the drawing"
 _ENDLESS = frozenset(("RAY", "XLINE"))
 
@@ -34,14 +36,15 @@ _ENDLESS = frozenset(("RAY", "XLINE"))
 class Piece:
     """What one entity paints. curves: cubics (n, 4, 3) on paper [mm], z up to the caller; widths in mm.
 
-    block: the block reference it comes from, "" for the drawing itself; joinable: may be part of a longer line.
+    block: the block reference it comes from, "" for the drawing itself; fill_rule: "" for lines; joinable: may be
+    part of a longer line.
     """
 
     id: str
     block: str
     pen: Pen
     curves: tuple[Curve, ...]
-    filled: bool = False
+    fill_rule: str = ""
     joinable: bool = False
 
 
@@ -69,12 +72,18 @@ def _top(name: str) -> str:
     return name.partition("/")[0]
 
 
+def _lines_of(attribute):
+    """What shows an attribute: newer ones can have several lines."""
+    return attribute.virtual_mtext_entity() if attribute.has_embedded_mtext_entity else attribute
+
+
 class Walk:
     """pieces and notices of the model space, once run."""
 
     def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
         self.document = document
-        self.pens = Pens(document)
+        self.pens = Pens(document, mm_per_unit)
+        self.letters = Letters(document)
         self.top = _Place(np.diag([mm_per_unit, mm_per_unit, mm_per_unit, 1.0]))
         self.pieces: list[Piece] = []
         self.notices: list[Notice] = []
@@ -93,6 +102,7 @@ class Walk:
             if count:
                 entities = "1 entity" if count == 1 else f"{count} entities"
                 self.notices.append(Notice(where, f"{why}: {entities} left out", layer=layer))
+        self.notices += self.letters.notices
 
     def _walk(self, entities, place: _Place) -> None:
         for number, entity in enumerate(entities, 1):
@@ -118,6 +128,8 @@ class Walk:
                 self._entity(entity, kind, name, pen, place)
             except Error:
                 raise
+            except NoFontError:
+                self._leave_out(kind, _TEXT_ADVICE, layer)
             except Exception as problem:  # whatever ezdxf meets in numbers that anyone may have written
                 self._note(name, f"it is damaged ({reason(problem)}): left out", layer, damaged=True)
 
@@ -129,7 +141,10 @@ class Walk:
         elif pen.hidden:
             self._leave_out(pen.layer, pen.hidden, pen.layer)
         elif kind in _TEXT:
-            self._leave_out(kind, _TEXT_ADVICE)
+            lines = self.letters.outlines(entity, name, pen.layer)
+            self._piece(entity, kind, name, pen, place, lines)
+        elif kind == "MTEXT":
+            self._parts(self.letters.parts(entity, name), name, pen, place)
         elif kind in _ENDLESS:
             self._leave_out(kind, f"{kind} has no ends")
         elif (lines := self._curves(entity, place.stretch)) is not None:
@@ -138,10 +153,13 @@ class Walk:
             parts = list(ezdxf.protocols.virtual_entities(entity))
             if not parts:
                 self._leave_out(kind, f"{kind} is not read")
-            self._deeper(name, place)
-            self._walk(parts, _Place(place.mm_from_block, pen, name, (*place.blocks, name)))
+            self._parts(parts, name, pen, place)
         else:
             self._leave_out(kind, f"{kind} is not read")
+
+    def _parts(self, parts: list, name: str, pen: Pen, place: _Place) -> None:
+        self._deeper(name, place)
+        self._walk(parts, _Place(place.mm_from_block, pen, name, (*place.blocks, name)))
 
     def _curves(self, entity, stretch: float) -> list[Curve] | None:
         """Kept for the next time its block is inserted at about that size: unfolding must not cost more than once."""
@@ -155,9 +173,8 @@ class Walk:
         if pen.frozen:
             self._leave_out(pen.layer, pen.hidden, pen.layer)
             return
-        for attribute in insert.attribs:
-            if not (attribute.is_invisible or attribute.dxf.get("invisible", 0)):
-                self._leave_out("ATTRIB", _TEXT_ADVICE)
+        shown_here = [attribute for attribute in insert.attribs if not attribute.is_invisible]
+        self._parts([_lines_of(attribute) for attribute in shown_here], name, pen, place)
         block = insert.block()
         block_name = shown(insert.dxf.get("name", ""), 40)
         if block is None:
@@ -171,6 +188,8 @@ class Walk:
         key = insert.dxf.name.casefold()
         if key in place.blocks:
             raise Error(f"block {block_name!r} inserts itself", where=_top(name))
+        if ezdxf.xclip.XClip(insert).is_clipping_enabled:
+            self._note(name, "its clipping (XCLIP) is not read: it counts as whole", pen.layer)
         self._deeper(name, place)
         matrix = np.array(list(insert.matrix44())).reshape(4, 4)
         for suffix, shift in self._array(insert, name):
@@ -206,7 +225,7 @@ class Walk:
             raise Error(f"blocks are nested more than {_DEEPEST} deep", where=_top(name))
 
     def _piece(self, entity, kind: str, name: str, pen: Pen, place: _Place, lines: list[Curve]) -> None:
-        filled = kind in dxf_curves.FILLED
+        fill_rule = "nonzero" if kind in _TEXT else "evenodd" if kind in dxf_curves.FILLED else ""
         found = []
         for line in lines:
             self._cubics += len(line.cubics)
@@ -230,15 +249,8 @@ class Walk:
             return
         if kind in ("HATCH", "MPOLYGON") and not entity.dxf.solid_fill:
             self._note(name, "its pattern is not read: it counts as filled", pen.layer)
-        if pen.line_type and not filled and kind != "POINT":
-            self._counts_as(pen.line_type)
         joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
-        self.pieces.append(Piece(name, place.name, pen, tuple(found), filled, joinable))
-
-    def _counts_as(self, line_type: str) -> None:
-        notice = Notice(line_type, "the line type is not read: its lines count as unbroken")
-        if notice not in self.notices:
-            self.notices.append(notice)
+        self.pieces.append(Piece(name, place.name, pen, tuple(found), fill_rule, joinable))
 
     def _leave_out(self, where: str, why: str, layer: str | None = None) -> None:
         self._counts[where, why, layer] += 1

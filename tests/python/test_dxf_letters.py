@@ -1,0 +1,324 @@
+"""Text of a DXF, in fonts made here: every letter is a box whose place is known beforehand."""
+
+import platform
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from dxf_text import drawing, encoded, only, read, text_dxf
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
+
+from brushsvg.errors import Error
+from brushsvg.importers import ReadOptions
+from brushsvg.importers.dxf import read_dxf
+from brushsvg.importers.dxf_library import ezdxf
+
+ALIGN = ezdxf.enums.TextEntityAlignment
+FOLDERS = ezdxf.fonts.font_manager.FONT_DIRECTORIES
+TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # p goes down to -200
+LIKE_SHX = "the drawing's SHX fonts are no strokes here"
+
+
+def save_font(path, family, wide=600):
+    """A, x and p are boxes of that width, 1000 to the em and 100 between them, A 700 high."""
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder([".notdef", "space", "A", "x", "p"])
+    builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space"})
+    glyphs = {"space": TTGlyphPen(None).glyph()}
+    for name, top in TOPS.items():
+        pen, bottom = TTGlyphPen(None), -200 if name == "p" else 0
+        pen.moveTo((0, bottom))
+        for corner in ((0, top), (wide, top), (wide, bottom)):
+            pen.lineTo(corner)
+        pen.closePath()
+        glyphs[name] = pen.glyph()
+    builder.setupGlyf(glyphs)
+    builder.setupHorizontalMetrics({name: (wide + 100, 0) for name in glyphs})
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupNameTable({"familyName": family, "styleName": "Regular"})
+    builder.setupOS2()
+    builder.setupPost()
+    builder.save(path)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The only place where fonts are looked for."""
+    monkeypatch.setitem(FOLDERS, platform.system(), [str(tmp_path)])
+    return tmp_path
+
+
+@pytest.fixture
+def fonts(folder):
+    (folder / "more").mkdir()
+    save_font(folder / "more" / "Boxes.TTF", "Boxes")
+    save_font(folder / "boxesbd.ttf", "Boxes Bold", 900)
+    save_font(folder / "PlainSans.ttf", "Plain Sans", 400)
+    (folder / "Arial.ttf").write_bytes(b"\0\1\0\0 no font")
+
+
+def in_boxes(version="R2010"):
+    document = drawing(version=version)
+    document.styles.add("Boxes", font="boxes.ttf")
+    return document
+
+
+def boxes(element):
+    """Lower left and upper right corner of each outline, from left to right."""
+    found = [
+        [*s.cubics.min(axis=(0, 1)).round(6) + 0.0, *s.cubics.max(axis=(0, 1)).round(6) + 0.0]
+        for s in element.subpaths
+    ]
+    return sorted(map(tuple, found))
+
+
+def sentences(design):
+    return [notice.sentence for notice in design.notices]
+
+
+def test_text_is_a_filled_shape_in_its_font(fonts):
+    document = in_boxes()
+    text = document.modelspace().add_text(
+        "A px", height=7, dxfattribs={"style": "Boxes", "insert": (3, 4), "color": 1}
+    )
+    design = read(document)
+    (element,) = design.elements
+    assert boxes(element) == [(3, 4, 9, 11), (17, 2, 23, 9), (24, 4, 30, 9)]
+    assert all(s.closed and len(s.cubics) == 4 for s in element.subpaths)
+    assert (element.id, element.stroke_width_mm, element.fill_rule, element.colour) == (
+        f"TEXT-{text.dxf.handle}",
+        0,
+        "nonzero",
+        "#ff0000",
+    )
+    assert [(n.where, n.sentence, n.damaged, n.layer) for n in design.notices] == [
+        (element.id, "text 'A px' became the outlines of font Boxes", False, "0")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("align", "box"),
+    [
+        ("LEFT", (0, 0, 13, 7)),
+        ("CENTER", (-6.5, 0, 6.5, 7)),
+        ("RIGHT", (-13, 0, 0, 7)),
+        ("TOP_LEFT", (0, -7, 13, 0)),
+        ("MIDDLE_CENTER", (-6.5, -3.5, 6.5, 3.5)),
+    ],
+)
+@pytest.mark.parametrize("turned", [0, 90])
+def test_text_is_aligned_turned_and_stretched(fonts, align, box, turned):
+    document = in_boxes()
+    text = document.modelspace().add_text(
+        "AA", height=7, rotation=turned, dxfattribs={"style": "Boxes", "width": 2}
+    )
+    text.set_placement((50, 60), align=ALIGN[align])
+    (element,) = read(document).elements
+    points = np.concatenate([s.cubics.reshape(-1, 2) for s in element.subpaths]) - (50, 60)
+    if turned:
+        points = points @ np.array([[0, -1], [1, 0]])
+    corners = np.concatenate((points.min(axis=0), points.max(axis=0)))
+    assert corners / (2, 1, 2, 1) == pytest.approx(np.array(box), abs=1e-9)
+
+
+def test_text_fits_between_two_points(fonts):
+    document = in_boxes()
+    text = document.modelspace().add_text("AA", height=7, dxfattribs={"style": "Boxes"})
+    text.set_placement((0, 0), (26, 0), align=ALIGN.FIT)
+    (element,) = read(document).elements
+    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]
+
+
+def test_text_in_blocks_and_from_below(fonts):
+    document = in_boxes()
+    document.blocks.new("b").add_text("A", height=7, dxfattribs={"style": "Boxes", "insert": (1, 0)})
+    document.modelspace().add_blockref("b", (100, 0), {"xscale": -2, "yscale": 3})
+    document.modelspace().add_text(
+        "A", height=7, dxfattribs={"style": "Boxes", "insert": (-60, 5), "extrusion": (0, 0, -1)}
+    )
+    design = read(document)
+    assert [boxes(element) for element in design.elements] == [[(86, 0, 98, 21)], [(54, 5, 60, 12)]]
+    assert sentences(design) == ["text 'A' and 1 more became the outlines of font Boxes"]
+
+
+def test_attributes_are_text_at_their_own_place(fonts):
+    document = in_boxes()
+    document.blocks.new("b").add_circle((0, 0), 1)
+    insert = document.modelspace().add_blockref("b", (50, 50), {"color": 3, "xscale": 5})
+    for hidden in (False, True):
+        attribute = insert.add_attrib("TAG", "A", (10, 0), {"style": "Boxes", "height": 7, "color": 0})
+        attribute.is_invisible = hidden
+    element, _ = read(document).elements
+    assert element.id.startswith(f"INSERT-{insert.dxf.handle}/ATTRIB-")
+    assert boxes(element) == [(10, 0, 16, 7)]
+    assert element.colour == "#00ff00"
+
+
+def test_an_attribute_may_have_lines(fonts):
+    document = in_boxes(version="R2018")
+    document.blocks.new("b").add_circle((0, 0), 1)
+    attribute = document.modelspace().add_blockref("b", (0, 0)).add_attrib("TAG", "", (0, 0))
+    lines = ezdxf.entities.MText.new(
+        dxfattribs={"insert": (0, 50), "char_height": 7, "style": "Boxes", "width": 90}, doc=document
+    )
+    lines.text = r"A\PA"
+    attribute.embed_mtext(lines)
+    shapes = [element for element in read(document).elements if element.fill_rule]
+    assert [boxes(element)[0][0] for element in shapes] == [0, 0]
+    assert boxes(shapes[0])[0][3] == 50
+    assert boxes(shapes[1])[0][3] < 43
+
+
+def test_dimensions_show_their_text(fonts):
+    document = in_boxes()
+    dimension = document.modelspace().add_linear_dim((0, 30), (0, 0), (50, 0), text="A")
+    dimension.render()
+    (shape,) = (e for e in read(document).elements if "TEXT" in e.id)
+    assert shape.fill_rule == "nonzero"
+    assert len(shape.subpaths) == 1
+
+
+def test_mtext_is_words_and_lines(fonts):
+    document = in_boxes()
+    text = document.modelspace().add_mtext(
+        r"A \H14;A\H7; {\C1;x}\P{\fBoxes|b1|i0;A}\L x\l",
+        {"insert": (10, 90), "char_height": 7, "style": "Boxes", "width": 200},
+    )
+    elements = read(document).elements
+    words = [element for element in elements if element.fill_rule]
+    first, tall, red, bold, last = (boxes(element)[0] for element in words)
+    assert first == (10, 76, 16, 83)  # as high as the line's highest letter
+    assert tall == (24, 76, 36, 90)  # after advances of 7 and 7
+    assert red == (45, 76, 51, 81)  # and of 14 and 7
+    assert bold[2] - bold[0] == pytest.approx(9)
+    assert (last[2] - last[0], last[3] - last[1]) == pytest.approx((6, 5))
+    assert [element.colour for element in words] == ["#000000"] * 2 + ["#ff0000"] + ["#000000"] * 2
+    (line,) = (element for element in elements if not element.fill_rule)
+    assert line.stroke_width_mm == 0.25
+    assert line.id.startswith(f"MTEXT-{text.dxf.handle}/LINE-")
+
+
+def test_mtext_breaks_its_lines_only_where_it_has_a_width(fonts):
+    for width, lines in ((0, 1), (200, 1), (64, 2), (62, 3)):
+        document = in_boxes()
+        document.modelspace().add_mtext(
+            "AAAA AAAA AAAA", {"char_height": 7, "style": "Boxes", "width": width, "insert": (50, 50)}
+        )
+        tops = {boxes(element)[0][3] for element in read(document).elements}
+        assert len(tops) == lines
+
+
+@pytest.mark.parametrize(
+    ("font", "family", "name", "why"),
+    [
+        ("boxes.ttf", "", "Boxes", ""),
+        ("C:\\Fonts\\BOXES.ttf", "", "Boxes", ""),
+        ("boxes", "", "Boxes", ""),
+        ("", "Boxes", "Boxes", ""),
+        ("txt", "", "Plain Sans", LIKE_SHX),
+        ("romans.shx", "", "Plain Sans", LIKE_SHX),
+        ("arial.ttf", "", "Plain Sans", "there is no font arial.ttf here"),  # it is broken
+        ("gone.ttf", "Gone", "Plain Sans", "there is no font Gone here"),
+    ],
+)
+def test_fonts_are_found_by_name_or_stood_in_for(fonts, font, family, name, why):
+    document = drawing()
+    style = document.styles.add("Some", font=font)
+    if family:
+        style.set_extended_font_data(family)
+    document.modelspace().add_text("A", dxfattribs={"style": "Some"})
+    expected = f"text 'A' became the outlines of font {name}" + (f": {why}" if why else "")
+    assert sentences(read(document)) == [expected]
+
+
+def test_a_style_that_is_not_in_the_drawing(fonts):
+    document = drawing(lambda m: m.add_text("A", dxfattribs={"style": "Nowhere"}))
+    assert sentences(read(document)) == [f"text 'A' became the outlines of font Plain Sans: {LIKE_SHX}"]
+
+
+def test_letters_without_a_glyph_are_left_out_and_named(fonts):
+    document = in_boxes()
+    document.modelspace().add_text("AÄ漢A", height=7, dxfattribs={"style": "Boxes"})
+    design = read(document)
+    assert [box[0] for box in boxes(design.elements[0])] == [0, 21]
+    assert sentences(design)[1] == "font Boxes has no glyph for 'Ä', '漢': left out"
+
+
+def test_without_any_font_text_is_left_out(folder):
+    def draw(msp):
+        msp.add_text("A")
+        msp.add_mtext("A")
+        msp.add_circle((0, 0), 5)
+
+    design = read(drawing(draw))
+    assert len(design.elements) == 1
+    advice = "text is not read: explode it into lines in the program that made the drawing: 1 entity left out"
+    assert [(notice.where, notice.sentence) for notice in design.notices] == [
+        ("TEXT", advice),
+        ("MTEXT", advice),
+    ]
+
+
+def test_empty_text_is_named(fonts):
+    design = read(drawing(lambda m: [m.add_text("  "), m.add_circle((0, 0), 5)]))
+    assert sentences(design) == ["it has no geometry: left out"]
+    assert only(drawing(lambda m: [m.add_mtext(""), m.add_circle((0, 0), 5)])).id.startswith("CIRCLE")
+
+
+# Made to break --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["add_text", "add_mtext"])
+def test_long_text_is_refused_however_it_is_repeated(fonts, kind):
+    document = in_boxes()
+    getattr(document.blocks.new("b"), kind)("A" * 100, dxfattribs={"style": "Boxes"})
+    grid = {"row_count": 30, "column_count": 30, "row_spacing": 9, "column_spacing": 9}
+    document.modelspace().add_blockref("b", (0, 0), grid)
+    with pytest.raises(Error, match="the drawing's text unfolds to more than 50000 letters"):
+        read(document)
+
+
+@pytest.mark.parametrize(
+    "attributes",
+    [
+        {"width": 1e300},
+        {"width": 1e300, "char_height": 1e-300},
+        {"char_height": 1e300},
+        {"char_height": 0},
+        {"line_spacing_factor": 1e300},
+        {"text_direction": (0, 0, 0)},
+    ],
+)
+def test_mtext_with_strange_numbers_ends(fonts, attributes):
+    def draw(msp):
+        msp.add_mtext(r"A\pxt1e9,5;A" + "{" * 500 + r"\H1e99x;A\S1/2;", attributes)
+        msp.add_circle((0, 0), 5)
+
+    design = read(drawing(draw))
+    assert design.elements[-1].id.startswith("CIRCLE")
+    assert all(np.isfinite(s.cubics).all() for element in design.elements for s in element.subpaths)
+
+
+@pytest.mark.parametrize("height", ["0", "-1", "nan", "1e300"])
+def test_text_of_no_height_is_damaged(fonts, height):
+    data = text_dxf(f"0 TEXT 8 0 10 0 20 0 40 {height} 1 A", "0 CIRCLE 8 0 10 0 20 0 40 5")
+    design = read_dxf(data, ReadOptions(units="mm"))
+    assert [element.id[:6] for element in design.elements] == ["CIRCLE"]
+    assert next(notice.damaged for notice in design.notices if notice.where.startswith("TEXT"))
+
+
+def test_text_leaves_nothing_at_home(tmp_path):
+    """Whatever fonts this machine has."""
+    (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
+    script = "import brushsvg.importers as i; print(i.read_drawing('a.dxf'))"
+    runs = [
+        subprocess.run(
+            [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True
+        )
+        for _ in range(2)
+    ]
+    assert {(done.returncode, done.stderr) for done in runs} == {(0, b"")}
+    assert runs[0].stdout == runs[1].stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["a.dxf"]
