@@ -111,6 +111,7 @@ bench: setup
 	build/release/benchmarks/advance_bench
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
+	$(BIN)/python benchmarks/read.py
 
 clean:
 	@rm -rf build demo $(VENV)

@@ -9,7 +9,6 @@ import textwrap
 from dataclasses import dataclass, field
 from xml.sax.saxutils import escape
 
-import cv2
 import numpy as np
 
 from . import _core
@@ -177,11 +176,13 @@ def _path(points: np.ndarray) -> str:
 
 
 def _png(canvas: _Canvas) -> bytes:
+    import cv2  # a tenth of a second that the SVG pen does not need
+
     shape = (round(canvas.height), round(canvas.width))
     image = np.full((*shape, 3), _bgr(PAPER), np.uint8)
     for kind, *thing in canvas.things:
         if kind == "area":
-            _fill(image, *thing)
+            _fill(cv2, image, *thing)
         elif kind == "line":
             points, colour, width = thing
             fixed = np.round((points - 0.5) * 16).astype(np.int32).reshape(-1, 1, 2)
@@ -192,7 +193,7 @@ def _png(canvas: _Canvas) -> bytes:
     return cv2.imencode(".png", image)[1].tobytes()
 
 
-def _fill(image: np.ndarray, rings, colour: str, opacity: float) -> None:
+def _fill(cv2, image: np.ndarray, rings, colour: str, opacity: float) -> None:
     points = np.vstack(rings)
     height, width = image.shape[:2]
     x0, y0 = np.clip(np.floor(points.min(axis=0)), 0, (width - 1, height - 1)).astype(int)

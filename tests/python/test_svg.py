@@ -1,10 +1,13 @@
 import math
 import random
+import subprocess
+import sys
 import tracemalloc
 
 import numpy as np
 import pytest
 import svgpathtools
+import tinycss2
 
 from brushsvg.errors import Error
 from brushsvg.importers import ReadOptions, read_drawing
@@ -12,6 +15,7 @@ from brushsvg.importers.svg import read_svg
 from brushsvg.importers.svg_colour import parse_colour
 from brushsvg.importers.svg_frame import IDENTITY, multiply, parse_transform
 from brushsvg.importers.svg_path import parse_path
+from brushsvg.importers.svg_rules import declarations
 from brushsvg.importers.svg_trace import trace
 
 NAMESPACES = (
@@ -726,6 +730,33 @@ def test_long_nonsense_takes_no_longer_than_its_length(body):
     assert read(FIRST + body).elements  # what takes the square of its length does not end
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "stroke:red;fill:none;stroke-width:1.5mm;stroke-opacity:50%;stroke:#F00",
+        " stroke : red ;; ;fill:\tnone\n;junk;: ;9:1;a:",
+        "font-family:'a;b';stroke:red",
+        'font-family:"a;stroke:red',
+        "fill:url(a;b);stroke:red",
+        "fill:rgb(1, 2, 3);stroke:red !important",
+        "a{b:c;d:e};stroke:red",
+        "grid:[a;b];stroke:red",
+        "/* a;b */stroke:red/*;*/;fill:no/**/ne",
+        "@media a;stroke:red",
+        "a:b\\;c;stroke:red",
+        "STROKE:Red;--Own:x;-a:b;_a:b;opacity:-.5;x:1e3;y:+1;z:1em;v:1e;w:a-",
+    ],
+)
+def test_declarations_are_what_css_says_they_are(text):
+    parsed = tinycss2.parse_blocks_contents(text, skip_comments=True, skip_whitespace=True)
+    wanted = [
+        (each.name if each.name.startswith("--") else each.lower_name, value, each.important)
+        for each in parsed
+        if each.type == "declaration" and (value := tinycss2.serialize(each.value).strip())
+    ]
+    assert list(declarations(text)) == wanted
+
+
 def test_files(tmp_path):
     drawing = f'<svg {NAMESPACES} {PAGE}><path d="M0 0H5"/></svg>'
     (tmp_path / "vincent.SVG").write_text(drawing)
@@ -745,10 +776,28 @@ def test_files(tmp_path):
         assert sentence in str(refused.value)
 
 
-def test_reading_a_drawing_imports_nothing_heavy():
-    import subprocess
-    import sys
+def loaded_by(code: str, *arguments) -> set[str]:
+    """Modules in a fresh process that has run a piece of code."""
+    code += "\nprint(*sys.modules, file=sys.stderr)"
+    command = [sys.executable, "-c", code, *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return set(done.stderr.split())
 
-    code = "import sys, brushsvg.importers; print({'svgpathtools', 'scipy', 'cv2'} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "set()"
+
+HEAVY = {"scipy", "cv2", "svgpathtools", "ezdxf"}
+
+
+def test_reading_a_small_drawing_loads_nothing_heavy(tmp_path):
+    drawing = tmp_path / "small.svg"
+    drawing.write_text(
+        f'<svg {NAMESPACES} {PAGE}><style>path{{fill:none}}</style>{FIRST}<circle r="3"/></svg>'
+    )
+    loaded = loaded_by("import sys, brushsvg\nbrushsvg.read_drawing(sys.argv[1])", drawing)
+    assert "brushsvg.importers.svg" in loaded
+    assert not loaded & HEAVY
+
+
+def test_help_loads_nothing_that_computes():
+    loaded = loaded_by("import sys\nfrom brushsvg.cli import main\nassert main(['--help']) == 0")
+    assert "brushsvg.usage" in loaded
+    assert not loaded & {*HEAVY, "numpy", "tinycss2"}

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -96,8 +97,7 @@ def _one_line(text: str) -> str:
     return text if text.isprintable() else "".join(c if c.isprintable() else "?" for c in text)
 
 
-@dataclass(frozen=True)
-class _Context:
+class _Context(NamedTuple):
     """What an element takes from where it stands. viewport: (w, h) in user units; window_mm: (x0, y0, x1, y1) outside
     of which a nested viewport shows nothing; prefix: ids of the uses that led here; size: width and height that a use
     asks of a symbol or svg right below it.
@@ -174,7 +174,7 @@ class _Walk:
         if style.own["display"] == "none":
             return
         if self.chosen is not None and node in self.chosen:
-            context = replace(context, chosen=True)
+            context = context._replace(chosen=True)
         inner = self._inside(node, context, style, problems)
         if inner is None:
             return
@@ -186,7 +186,7 @@ class _Walk:
             if node is self.root and not is_target:
                 self._enter(node, iter(node), inner)
             else:
-                self._viewport(node, replace(inner, size=context.size))
+                self._viewport(node, inner._replace(size=context.size))
         elif tag == "use":
             self._use(node, inner)
         elif style.inherited["visibility"] != "visible" or not context.chosen:
@@ -205,8 +205,8 @@ class _Walk:
             label = _one_line(node.get(INKSCAPE + "label") or node.get("id", ""))
             layer = f"{layer}/{label}" if layer else label
         settings, invalid = own_settings(node.attrib)
-        context = replace(
-            context, style=style, layer=layer, settings={**context.settings, **settings}, size=None
+        context = context._replace(
+            style=style, layer=layer, settings={**context.settings, **settings}, size=None
         )
         if is_zero(style.own["opacity"]):
             self._note(node, context, "it is fully transparent: left out")
@@ -222,7 +222,7 @@ class _Walk:
             matrix = parse_transform(text)
             if origin := style.geometry.get("transform-origin", node.get("transform-origin")):
                 matrix = about_origin(matrix, origin, context.viewport)
-            context = replace(context, matrix=multiply(context.matrix, matrix))
+            context = context._replace(matrix=multiply(context.matrix, matrix))
         except Error as error:
             self._note(node, context, f"{error}; it counts as none", damaged=True)
         if not all(map(math.isfinite, context.matrix)):
@@ -248,7 +248,7 @@ class _Walk:
             window = _overlap(window, _box(context.matrix, corners))
         matrix = multiply(context.matrix, inner)
         self._enter(
-            node, iter(node), replace(context, matrix=matrix, viewport=viewport, window_mm=window, size=None)
+            node, iter(node), context._replace(matrix=matrix, viewport=viewport, window_mm=window, size=None)
         )
 
     def _use(self, node: ET.Element, context: _Context) -> None:
@@ -278,8 +278,7 @@ class _Walk:
             self._note(node, context, f"{error}: left out", damaged=True)
             return
         prefix = "/".join(filter(None, (context.prefix, _one_line(node.get("id", "")))))
-        inner = replace(
-            context,
+        inner = context._replace(
             matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
             prefix=prefix,
             used=True,
@@ -339,8 +338,9 @@ class _Walk:
         if not name:
             self.nameless += 1
             name = f"stroke{self.nameless}"
-            label = f"{name} ({self._label(node)})"
-            self.notices[told:] = [replace(notice, where=label) for notice in self.notices[told:]]
+            if len(self.notices) > told:
+                label = f"{name} ({self._label(node)})"
+                self.notices[told:] = [replace(notice, where=label) for notice in self.notices[told:]]
         self.elements.append(
             Element(
                 id=name,

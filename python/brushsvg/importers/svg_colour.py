@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import lru_cache
 
 from tinycss2 import color4
+
+_HEX = re.compile("#[0-9a-fA-F]{6}")
 
 
 @lru_cache
@@ -13,6 +16,8 @@ def parse_colour(value: str) -> str | None:
     """ "#rrggbb", "none" (also for a colour that is fully transparent) or "currentcolor"; None if it is neither."""
     if value.lower() == "none":
         return "none"
+    if _HEX.fullmatch(value):
+        return value.lower()
     try:
         colour = color4.parse_color(value)
         if colour is None or colour == "currentcolor":

@@ -12,7 +12,7 @@ from ..units import NUMBER as _NUMBER
 _SPACE = r"[ \t\n\r\f]*+"
 _GAP = rf"{_SPACE}(?:,{_SPACE})?"
 NUMBER, SPACE, GAP, FLAG = (re.compile(text) for text in (_NUMBER, _SPACE, _GAP, "[01]"))
-_NEXT_NUMBER = re.compile(f"{_GAP}({_NUMBER})")
+_NEXT_NUMBER = re.compile(f"{_GAP}({_NUMBER})|")  # or nothing, where a list ends: no search beyond
 _ARC_ARGUMENTS = (NUMBER, NUMBER, NUMBER, FLAG, FLAG, NUMBER, NUMBER)
 
 _COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
@@ -69,14 +69,17 @@ def parse_points(text: str) -> tuple[list[Command], int | None]:
 
 def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
     """Where the numbers that follow begin, what they are, and where the last one ends."""
-    places, values = [], []
-    found = NUMBER.match(text, at)
-    while found:
-        places.append(found.start(found.lastindex or 0))
-        values.append(float(found[found.lastindex or 0]))
-        at = found.end()
-        found = _NEXT_NUMBER.match(text, at)
-    return places, values, at
+    first = NUMBER.match(text, at)
+    if not first:
+        return [], [], at
+    places, values, end = [at], [float(first[0])], first.end()
+    for found in _NEXT_NUMBER.finditer(text, end):
+        if found[1] is None:
+            break
+        places.append(found.start(1))
+        values.append(float(found[1]))
+        end = found.end()
+    return places, values, end
 
 
 def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -13,8 +14,8 @@ from cssselect2 import ElementWrapper, Matcher, SelectorError, compile_selector_
 from ..design import Notice
 from ..errors import Error
 
-# Steps through the tree that selectors may take together: some seconds' worth, a hundred times what drawings need.
-STEP_LIMIT = 20_000_000
+# Steps through the tree that selectors may take together: some ten seconds' worth, a hundred times what drawings need.
+STEP_LIMIT = 3_000_000
 TEXT_LIMIT = 1_000_000  # characters of style sheets: drawing programs write a hundredth of it
 
 Declaration = tuple[str, str, bool]  # name in lower case, value, important
@@ -139,9 +140,24 @@ def selected(root: ET.Element, text: str) -> set[ET.Element]:
     return found
 
 
+# A declaration of one word, colour or number, as drawing programs write most: there is nothing to parse.
+_PLAIN = re.compile(
+    r"[ \t\n]*+([a-z][a-z-]*+)[ \t\n]*+:[ \t\n]*+"
+    r"([a-zA-Z][a-zA-Z-]*+|#[0-9a-fA-F]++|-?[0-9]++(?:\.[0-9]++)?(?:%|[a-df-zA-DF-Z]*+))[ \t\n]*+"
+)
+_NOT_SPLIT = re.compile(r"[\"'(){}\[\]\\/]")  # where a semicolon may be part of a value
+
+
 @lru_cache(4096)
 def declarations(text: str) -> tuple[Declaration, ...]:
     """The declarations of a style attribute or a rule's block; what is not one is passed over, as CSS asks."""
+    parts = [text] if _NOT_SPLIT.search(text) else text.split(";")
+    return tuple(declaration for part in parts for declaration in _declarations(part))
+
+
+def _declarations(text: str) -> tuple[Declaration, ...]:
+    if plain := _PLAIN.fullmatch(text):
+        return ((plain[1], plain[2], False),)
     parsed = tinycss2.parse_blocks_contents(text, skip_comments=True, skip_whitespace=True)
     return tuple(
         (each.name if each.name.startswith("--") else each.lower_name, value, each.important)

@@ -25,8 +25,7 @@ def commands_of(tag: str, attributes: dict[str, str], viewport: tuple[float, flo
 class _Lengths:
     def __init__(self, attributes: dict[str, str], viewport: tuple[float, float]):
         self.attributes = attributes
-        width, height = viewport
-        self.base = {"x": width, "y": height, "r": math.hypot(width, height) / math.sqrt(2)}
+        self.viewport = viewport
 
     def __call__(self, name: str, base: str, least: float = -math.inf) -> float:
         value = self.optional(name, base, least)
@@ -37,12 +36,16 @@ class _Lengths:
         if text is None or text.strip() == "auto":
             return None
         try:
-            value = length_px(text, self.base[base])
+            value = length_px(text, self._base(base))
         except Error as error:
             raise DamageError(f"{name}: {error}", []) from None
         if value < least:
             raise DamageError(f"{name}: {snippet(text, 0)} is negative", [])
         return value
+
+    def _base(self, name: str) -> float:
+        width, height = self.viewport
+        return {"x": width, "y": height, "r": math.hypot(width, height) / math.sqrt(2)}[name]
 
 
 def _damage_at(name: str, text: str, error: int, commands: list[Command]) -> DamageError:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Container
 from dataclasses import dataclass
+from functools import cache, lru_cache
+from operator import itemgetter
 
 import tinycss2
 
@@ -39,6 +41,8 @@ OWN = {
 }
 # Attributes that CSS may set as well; CSS wins.
 _GEOMETRY = frozenset("transform transform-origin d x y width height cx cy r rx ry".split())
+_PRESENTED = (*INHERITED, *OWN)  # as attributes, in the order of what is told about them
+_READ = frozenset(_PRESENTED) | _GEOMETRY
 _MARKERS = ("marker-start", "marker-mid", "marker-end")
 _URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
 _LONGEST_VALUE = 10_000  # of custom properties put into each other
@@ -69,17 +73,14 @@ def cascade(
 
     rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
     """
-    said: dict[str, list[str]] = {
-        name: [value] for name in (*INHERITED, *OWN) if (value := attributes.get(name)) is not None
-    }
     inline = declarations(attributes["style"]) if "style" in attributes else ()
-    for important in (False, True):
-        for name, value, is_important in (*rules, *inline):
-            if is_important != important:
-                continue
-            for each in _MARKERS if name == "marker" else (name,):
-                if each in INHERITED or each in OWN or each in _GEOMETRY or each.startswith("--"):
-                    said.setdefault(each, []).append(value)
+    said: dict[str, list[str]] = {name: [attributes[name]] for name in _PRESENTED if name in attributes}
+    if not (said or rules or inline):
+        return Style(parent.inherited, OWN, {}), []
+    for name, value, _ in sorted((*rules, *inline), key=itemgetter(2)):
+        for each in _MARKERS if name == "marker" else (name,):
+            if each in _READ or each.startswith("--"):
+                said.setdefault(each, []).append(value)
     inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
     inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
     problems: list[Problem] = []
@@ -132,19 +133,24 @@ def _computed(name: str, value: str, inherited: dict[str, str]) -> str:
     return value if name == "stroke-width" or name in _MARKERS else value.lower()
 
 
-def _substituted(value: str, inherited: dict[str, str], depth: int = 0) -> str:
+def _substituted(value: str, inherited: dict[str, str]) -> str:
     """A value with its var(--name, fallback) replaced; "" where that leads nowhere."""
-    parts = []
-    for token in tinycss2.parse_component_value_list(value):
-        if token.type != "function" or token.lower_name != "var":
-            parts.append(tinycss2.serialize([token]))
-            continue
-        name, _, fallback = tinycss2.serialize(token.arguments).partition(",")
-        found = inherited.get(name.strip(), fallback.strip())
-        if depth > 20 or len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
-            return ""
-        parts.append(_substituted(found, inherited, depth + 1) if "var(" in found.lower() else found)
-    return "".join(parts).strip()
+
+    @cache  # or variables that name two others each would take for ever
+    def at(depth: int, value: str) -> str:
+        parts = []
+        for token in tinycss2.parse_component_value_list(value):
+            if token.type != "function" or token.lower_name != "var":
+                parts.append(tinycss2.serialize([token]))
+                continue
+            name, _, fallback = tinycss2.serialize(token.arguments).partition(",")
+            found = inherited.get(name.strip(), fallback.strip())
+            if depth > 20 or len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
+                return ""
+            parts.append(at(depth + 1, found) if "var(" in found.lower() else found)
+        return "".join(parts).strip()
+
+    return at(0, value)
 
 
 def _path_text(value: str) -> str:
@@ -172,6 +178,7 @@ def paint(properties: dict[str, str], of: str, names: Container[str]) -> tuple[s
     return properties["color"] if value == "currentcolor" else value, None
 
 
+@lru_cache
 def is_zero(number: str) -> bool:
     """Whether an opacity leaves nothing to see: 0, 0.0, 0%."""
     try:

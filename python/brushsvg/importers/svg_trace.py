@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..design import SubPath
+from .arcs import arc_count
 from .svg_path import Command
 
 LARGEST_MM = 1e6  # a number beyond it is damage: no table is that large
@@ -28,22 +29,29 @@ class Line:
 def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: float) -> Line:
     """Sub-paths on paper [mm]. scale: greatest stretch of the matrix, mm per user unit."""
     a, b, c, d, e, f = paper_from_user
-    linear, shift = np.array([[a, b], [c, d]]), np.array([e, f])
     subpaths: list[SubPath] = []
     lone_movetos = 0
-    with np.errstate(all="ignore"):
-        for segments, places, closed in _user_subpaths(commands, scale):
-            if not segments:
-                lone_movetos += 1
-                continue
-            cubics = np.array(segments).reshape(-1, 4, 2) @ linear + shift
-            if np.abs(cubics).max() <= LARGEST_MM:  # False for nan as well
-                subpaths.append(_tidy(cubics, closed))
-                continue
-            broken = int(np.argmin((np.abs(cubics) <= LARGEST_MM).all(axis=(1, 2))))
-            if broken:
-                subpaths.append(_tidy(cubics[:broken], False))
-            return Line(tuple(subpaths), lone_movetos, places[broken])
+    for segments, places, closed in _user_subpaths(commands, scale):
+        if not segments:
+            lone_movetos += 1
+            continue
+        # Most paths are short: number by number is faster than by matrix product, and alike on every machine.
+        points = [
+            (
+                *(a * x0 + c * y0 + e, b * x0 + d * y0 + f, a * x1 + c * y1 + e, b * x1 + d * y1 + f),
+                *(a * x2 + c * y2 + e, b * x2 + d * y2 + f, a * x3 + c * y3 + e, b * x3 + d * y3 + f),
+            )
+            for x0, y0, x1, y1, x2, y2, x3, y3 in segments
+        ]
+        cubics = np.array(points).reshape(-1, 4, 2)
+        if all(-LARGEST_MM <= v <= LARGEST_MM for p in points for v in p):  # False for nan as well
+            has_tiny = any(abs(p[6] - p[0]) < _NOTHING_MM and abs(p[7] - p[1]) < _NOTHING_MM for p in points)
+            subpaths.append(_tidy(cubics, closed) if has_tiny else SubPath(cubics, closed))
+            continue
+        broken = int(np.argmin((np.abs(cubics) <= LARGEST_MM).all(axis=(1, 2))))
+        if broken:
+            subpaths.append(_tidy(cubics[:broken], False))
+        return Line(tuple(subpaths), lone_movetos, places[broken])
     return Line(tuple(subpaths), lone_movetos, None)
 
 
@@ -163,7 +171,7 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
         swept -= math.tau
     centre_x = (x + ex) / 2 + cos * rx * ux - sin * ry * uy
     centre_y = (y + ey) / 2 + sin * rx * ux + cos * ry * uy
-    count = _arc_count(abs(swept), max(rx, ry) * scale)
+    count = arc_count(abs(swept), max(rx, ry) * scale, _TOLERANCE_MM)
     step = swept / count
     reach = 4 / 3 * math.tan(step / 4)
 
@@ -180,13 +188,3 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
         points.append((*here, *handles, *there))
         here = there
     return points
-
-
-def _arc_count(swept: float, radius_mm: float) -> int:
-    """Cubics needed: one over an angle t is off by (2/27) sin(t/4)^6 / cos(t/4)^2 of the radius."""
-    count = max(1, math.ceil(swept / (math.pi / 2) - 1e-9))
-    while True:
-        quarter = swept / count / 4
-        if radius_mm * 2 / 27 * math.sin(quarter) ** 6 <= _TOLERANCE_MM * math.cos(quarter) ** 2:
-            return count
-        count += 1
