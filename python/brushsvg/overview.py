@@ -182,7 +182,7 @@ def _png(canvas: _Canvas) -> bytes:
     image = np.full((*shape, 3), _bgr(PAPER), np.uint8)
     for kind, *thing in canvas.things:
         if kind == "area":
-            _fill(cv2, image, *thing)
+            _fill(image, *thing)
         elif kind == "line":
             points, colour, width = thing
             fixed = np.round((points - 0.5) * 16).astype(np.int32).reshape(-1, 1, 2)
@@ -193,7 +193,9 @@ def _png(canvas: _Canvas) -> bytes:
     return cv2.imencode(".png", image)[1].tobytes()
 
 
-def _fill(cv2, image: np.ndarray, rings, colour: str, opacity: float) -> None:
+def _fill(image: np.ndarray, rings, colour: str, opacity: float) -> None:
+    import cv2
+
     points = np.vstack(rings)
     height, width = image.shape[:2]
     x0, y0 = np.clip(np.floor(points.min(axis=0)), 0, (width - 1, height - 1)).astype(int)
