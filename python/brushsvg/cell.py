@@ -117,11 +117,20 @@ def _check(cell: Cell) -> None:
             f"within (0, {highest}] mm",
             where="safe_height_mm",
         )
-    for key in ("travel_mm_s", "approach_mm_s", "press_mm_s", "max_paint_mm_s", "path_tolerance_mm"):
-        if getattr(cell, key) <= 0:
-            raise Error(f"{key} {getattr(cell, key)} must be above 0", where=key)
-    if cell.workspace_margin_mm < 0:
-        key = "workspace_margin_mm"
-        raise Error(f"{key} {cell.workspace_margin_mm} must not be negative", where=key)
+    for key, least, greatest in (
+        ("travel_mm_s", 0.01, 10_000),
+        ("approach_mm_s", 0.01, 10_000),
+        ("press_mm_s", 0.01, 10_000),
+        ("max_paint_mm_s", 0.01, 10_000),
+        ("path_tolerance_mm", 0.0001, 10),
+        ("workspace_margin_mm", 0, 10_000),
+        ("safe_height_mm", 0, 10_000),
+    ):
+        value = getattr(cell, key)
+        if not least <= value <= greatest:
+            raise Error(f"{key} {value} is outside the range [{least}, {greatest}]", where=key)
+    for key in ("name", "description", "language"):
+        if not getattr(cell, key).isprintable() or not getattr(cell, key):
+            raise Error(f"{key} must be one line of text", where=key)
     if not 1 <= cell.decimals <= 6:
         raise Error(f"decimals {cell.decimals} is outside the range [1, 6]", where="decimals")

@@ -118,6 +118,7 @@ def _prepare(args) -> convert.Work:
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
         tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
+        speed_mm_s=min(convert.Options.speed_mm_s, _cell(args).max_paint_mm_s),
     )
     with about(args.input):
         return convert.prepare(args.input, options, stage)

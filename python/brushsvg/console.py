@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from .errors import Error
 
@@ -30,7 +30,9 @@ def say(*parts: str) -> None:
     if sys.stderr is not None:
         text = ": ".join(part for part in ("brushsvg", *parts) if part)
         clear_stage()
-        sys.stderr.write("".join(letter if letter.isprintable() else " " for letter in text) + "\n")
+        with suppress(BrokenPipeError):  # nobody reads: what was asked for is done or refused all the same
+            sys.stderr.write("".join(letter if letter.isprintable() else " " for letter in text) + "\n")
+            sys.stderr.flush()
 
 
 def tell(text: str) -> None:

@@ -32,6 +32,7 @@ class Options:
     compensation: str = "closed"
     lag_mm: float | None = None
     tolerance_mm: float = 0.05
+    speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,7 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
         options.compensation,
         options.tolerance_mm,
         options.lag_mm,
+        options.speed_mm_s,
         progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
     )
     plan = _with_speeds(done.plan, strokes)
@@ -139,7 +141,13 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
         options = replace(work.options, compensation="constant", lag_mm=lag_mm)
         done = _core.compensate(
-            work.strokes, work.brush, work.plan.sheet_mm, "constant", options.tolerance_mm, lag_mm
+            work.strokes,
+            work.brush,
+            work.plan.sheet_mm,
+            "constant",
+            options.tolerance_mm,
+            lag_mm,
+            options.speed_mm_s,
         )
         painted = _core.coverage(_core.simulate(done.plan, work.brush), work.brush, window, px_per_mm)
         overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()

@@ -112,13 +112,18 @@ def _with_width(element: Element, width_mm: float) -> Element:
     if not element.is_stroked:
         return element
     plain = tuple(replace(subpath, widths=None) for subpath in element.subpaths)
-    return replace(element, stroke_width_mm=width_mm, subpaths=plain)
+    settings = {name: value for name, value in element.settings.items() if name != "width_mm"}
+    return replace(element, stroke_width_mm=width_mm, subpaths=plain, settings=settings)
 
 
 def _moved(element: Element, scale: float, shift: np.ndarray, width_scale: float) -> Element:
     return replace(
         element,
         stroke_width_mm=element.stroke_width_mm * width_scale,
+        settings={
+            name: value * width_scale if name == "width_mm" else value
+            for name, value in element.settings.items()
+        },
         subpaths=tuple(
             replace(
                 subpath,

@@ -30,7 +30,10 @@ def strokes(design: Design) -> tuple[list[Stroke], list[Notice]]:
         first = next((element.id for element in shapes if element.id), "filled")
         notices.append(Notice(first, f"{count} not become strokes yet: left out"))
     if not lines:
-        raise Error(f"there is nothing to paint: {notices[-1].sentence}", where=notices[-1].where)
+        sentence = f"there is nothing to paint: {notices[-1].sentence}"
+        if told := next(iter(design.notices), None):
+            sentence += f"; for example {told.where}: {told.sentence}"
+        raise Error(sentence, where=notices[-1].where)
     made = [
         (element.settings.get("order", 0), stroke)
         for element, own in zip(lines, names, strict=True)
@@ -76,16 +79,23 @@ def _names(elements: tuple[Element, ...]) -> tuple[list[list[str]], list[Notice]
     for element, base in zip(elements, nominal, strict=True):
         name, names = base, _with_numbers(base, len(element.subpaths))
         suffix = last_suffix.get(base, 1)
-        while not taken.isdisjoint((name, *names)) or (name != base and name in reserved):
+        while not taken.isdisjoint((name, *_with_repeats(element, names))) or (
+            name != base and name in reserved
+        ):
             suffix += 1
             name = f"{base}-{suffix}"
             names = _with_numbers(name, len(element.subpaths))
         if name != base:
             last_suffix[base] = suffix
             notices.append(Notice(base, f"the name {base!r} is taken: this one is called {name!r}"))
-        taken.update((name, *names))
+        taken.update((name, *_with_repeats(element, names)))
         result.append(names)
     return result, notices
+
+
+def _with_repeats(element: Element, names: list[str]) -> list[str]:
+    passes = element.settings.get("passes", 1)
+    return [*names, *(f"{name}#{k}" for name in names for k in range(2, passes + 1))]
 
 
 def _with_numbers(name: str, count: int) -> list[str]:

@@ -136,8 +136,19 @@ def _add_layout(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add("--sheet", metavar="WxH", type=_size, help="the sheet in mm or with units; default: the drawing's")
     add("--units", choices=("mm", "in"), help="of a drawing that does not say them (DXF)")
-    add("--layer", metavar="NAME", action="append", help="paint this layer; several: more than once")
-    add("--select", metavar="CSS", help="paint what this selector names and what lies in it (SVG)")
+    add(
+        "--layer",
+        metavar="NAME",
+        action="append",
+        type=_words,
+        help="paint this layer; several: more than once",
+    )
+    add(
+        "--select",
+        metavar="CSS",
+        type=_words,
+        help="paint what this selector names and what lies in it (SVG)",
+    )
     add("--width", metavar="MM", type=_width, help="of all strokes, whatever the drawing says")
     size = command.add_mutually_exclusive_group()
     size.add_argument(
@@ -159,6 +170,12 @@ def _lag(text: str) -> float:
 
 def _tolerance(text: str) -> float:
     return _length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
+
+
+def _words(text: str) -> str:
+    if not text.strip():
+        raise argparse.ArgumentTypeError("it is empty")
+    return text
 
 
 def _width(text: str) -> float:
@@ -212,6 +229,8 @@ def _check_operands(args) -> None:
     if args.run == "text_file":
         if os.path.splitext(args.output)[1].lower() != ".svg":
             args.parser.error(f"{args.output} does not end in .svg")
+        if os.path.realpath(args.output) == os.path.realpath(args.font):
+            args.parser.error(f"{args.output} cannot be two files at once")
         return
     drawing = os.path.splitext(args.input)[1].lower()
     if args.units and drawing == ".svg":

@@ -287,6 +287,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.ngc --origin 5",
         "convert a.svg out.ngc --origin 5,1e9",
         "convert a.svg out.ngc --units mm",
+        "text Hi font.svg --font font.svg",
         "import a.svg out.ngc",
         "import a.json out.svg",
         "import a.svg out.svg --brush rigid",
@@ -530,11 +531,18 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     text = (Path(commands.__file__).parent / "data" / "cells" / "grbl-3axis.toml").read_text()
     for old, new, said in (
         ('"grbl"', '"krl"', "language: language 'krl' is not known; known: linuxcnc, grbl"),
-        ("press_mm_s = 6.0", "press_mm_s = 0", "press_mm_s: press_mm_s 0.0 must be above 0"),
+        (
+            "press_mm_s = 6.0",
+            "press_mm_s = 0",
+            "press_mm_s: press_mm_s 0.0 is outside the range [0.01, 10000]",
+        ),
         ("name", "nom", "nom: a cell has no key nom"),
     ):
         (desk / "my.toml").write_text(text.replace(old, new))
         assert run(capsys, "cell", "check", "my.toml") == (1, "", [f"brushsvg: my.toml: {said}"])
+    (desk / "my.toml").write_text(text.replace("max_paint_mm_s = 40.0", "max_paint_mm_s = 9"))
+    assert run(capsys, "convert", "a.svg", "slow.ngc", "--cell", "my.toml") == (0, "", [])
+    assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("= 30.0", "= 0.0"))
     status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
     assert status == 1 and any("beyond the right edge of the workspace" in line for line in err)

@@ -1,7 +1,10 @@
 """The command line's choices among what a drawing holds: layers, selections, sizes, settings, and looking at it."""
 
 import json
+import os
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -45,6 +48,23 @@ def test_layers_and_selections(desk, capsys):
     said = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
     assert said == "brushsvg: d.svg: layer: no layer 'Blue' with something to paint; there are: Ink, Red"
     assert "matches no element" in refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
+
+
+def test_an_empty_choice_is_wrong_usage(desk, capsys):
+    for flag in ("--layer", "--select"):
+        assert main(["convert", "d.svg", "x.json", flag, ""]) == 2
+
+
+def test_a_compressed_drawing_is_told(desk, capsys):
+    (desk / "z.svg").write_bytes(b"\x1f\x8b\x08\0")
+    assert "the file is compressed (SVGZ)" in refusal(capsys, "convert", "z.svg", "x.json")
+
+
+def test_the_exit_status_does_not_depend_on_who_reads(desk):
+    command = [sys.executable, "-m", "brushsvg", "convert", "d.svg", "x.json", "--sheet", "10x10"]
+    reading, writing = os.pipe()
+    os.close(reading)
+    assert subprocess.run(command, stderr=writing).returncode == 1
 
 
 def test_size_and_place(desk, capsys):

@@ -64,3 +64,9 @@ def test_from_svg_to_strokes_in_drawing_order():
     assert ends == [[10, 40, 30, 40], [40, 40, 60, 40], [30, 30, 10, 30], [5, 45, 5, 40]]
     assert [stroke.half_width[0][1] for stroke in result] == [1.0, 1.0, 1.0, 0.5]
     assert notices == []
+
+
+def test_repeats_are_told_apart_from_names_that_look_like_them():
+    made = (Element("a", (LINE,), 1.0, settings={"passes": 2}), Element("a#2", (LINE,), 1.0))
+    names = [stroke.id for stroke in strokes(Design((10.0, 10.0), made))[0]]
+    assert len(set(names)) == 3, names

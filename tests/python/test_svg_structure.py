@@ -76,7 +76,7 @@ def test_what_a_viewport_hides_is_left_out_or_told():
     [
         ('<use id="u" href="#none"/>', "u: what it uses, '#none', is nowhere in the drawing: left out", False),
         ('<use id="u" href="other.svg#a"/>', "u: what it uses, 'other.svg#a', lies outside", False),
-        ('<use id="u"/>', "u: what it uses, '', lies outside", False),
+        ('<use id="u"/>', "u: it has no href, so it uses nothing", False),
         ('<use id="u" href="#u"/>', "u: it uses #u, in which it lies itself", True),
         ('<g id="g"><use id="u" href="#g"/></g>', "u: it uses #g, in which it lies itself", True),
         ('<defs><g id="a"><use id="ub" href="#b"/></g><g id="b"><use id="ua" href="#a"/></g></defs><use href="#a"/>',
@@ -185,7 +185,7 @@ def test_illustrator_is_known_by_its_comment():
     from brushsvg.importers.svg import read_svg
 
     design = read_svg(head + b'<path d="M0 0H5" stroke="red"/></svg>')
-    assert "25.4 x 25.4 mm there, read it with --scale 1.33333" in design.notices[0].sentence
+    assert '25.4 x 25.4 mm there, give its svg width="72pt" height="72pt"' in design.notices[0].sentence
 
 
 def test_settings_are_inherited_and_carried():

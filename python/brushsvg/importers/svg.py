@@ -73,9 +73,13 @@ def _read(document: Document, options: ReadOptions) -> Design:
             Notice("xml-stylesheet", "CSS in another file is not read: what it says is missing")
         )
     if any("Adobe Illustrator" in comment for comment in document.comments) and page.in_px:
-        inch = tuple(side * 96 / 72 for side in page.sheet_mm)
-        sentence = "written by Adobe Illustrator, which counts 72 px to the inch: if it has {:.4g} x {:.4g} mm there, "
-        walk.notices.append(Notice("svg", sentence.format(*inch) + "read it with --scale 1.33333"))
+        w, h = page.sheet_mm
+        sentence = (
+            "written by Adobe Illustrator, which counts 72 px to the inch: if it has "
+            f"{w * 96 / 72:.4g} x {h * 96 / 72:.4g} mm there, give its svg "
+            f'width="{w / MM_PER["px"]:.6g}pt" height="{h / MM_PER["px"]:.6g}pt"'
+        )
+        walk.notices.append(Notice("svg", sentence))
     walk.run()
     if not walk.elements:
         sentence = "the drawing holds nothing to paint"
@@ -257,6 +261,9 @@ class _Walk:
         if target is None:
             if context.style.inherited["visibility"] != "visible":
                 return
+            if not reference:
+                self._note(node, context, "it has no href, so it uses nothing: left out")
+                return
             shown = repr(reference[:40])
             lacking = (
                 "is nowhere in the drawing" if reference.startswith("#") else "lies outside of the drawing"
@@ -390,7 +397,10 @@ class _Walk:
         except Error as error:
             self._note(node, context, f"stroke-dasharray: {error}: the line counts as solid")
             return subpaths
-        if not pattern or min(pattern) < 0 or sum(pattern) == 0:
+        if min(pattern, default=0.0) < 0:
+            self._note(node, context, "stroke-dasharray has a negative length: the line counts as solid")
+            return subpaths
+        if sum(pattern) == 0:
             return subpaths
         if subpaths[0].widths is not None:
             self._note(node, context, "its dashes are not read: its width varies")

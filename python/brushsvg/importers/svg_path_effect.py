@@ -50,7 +50,9 @@ def drawn_line(node: ET.Element, by_id: dict[str, ET.Element]) -> tuple[PowerStr
         return None, [f"path effect {name} is not read: its outline counts" for name in others]
     said = power[-1]
     pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
-    if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
+    scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
+    numbered = [*pairs, *(each and [*each, 0.0] for each in scales)]
+    if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in numbered):
         return None, ["its PowerStroke has no offset points that can be read: its outline counts"]
     scale = numbers(said.get("scale_width", "1").strip()) or [1.0]
     beta = numbers(said.get("interpolator_beta", "0.2").strip()) or [0.2]

@@ -34,6 +34,8 @@ def parse_xml(data: bytes) -> Document:
     """
     if not data.strip():
         raise Error("the file is empty")
+    if data.startswith(b"\x1f\x8b"):
+        raise Error("the file is compressed (SVGZ): save it as plain SVG")
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     builder = ET.TreeBuilder()
