@@ -22,6 +22,13 @@ constexpr double kLargestLawMm = 1000.0;
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
 constexpr double kLawAgainstOutlineMm = 0.5;             // outlines rule the mark, laws the inverse; they must agree
 
+std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
+    return {{{&brush.lag, "lag"},
+             {&brush.tip_gap, "tip_gap"},
+             {&brush.tip_to_widest, "tip_to_widest"},
+             {&brush.half_width, "half_width"}}};
+}
+
 /// Least value of a profile over the depth range and where it stands.
 struct Least {
     double depth, value;
@@ -202,9 +209,7 @@ void check(const Brush& brush) {
     if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kDeepestMm))
         throw Error(format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
                     "depth_range_mm");
-    for (const auto& [profile, where] :
-         {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
-          std::pair{&brush.tip_to_widest, "tip_to_widest"}, std::pair{&brush.half_width, "half_width"}}) {
+    for (const auto& [profile, where] : laws(brush)) {
         if (profile->coefficients.empty()) throw Error("the law has no coefficients", where);
         if (int(profile->coefficients.size()) > kMaxLawDegree + 1)
             throw Error(
@@ -236,9 +241,7 @@ void check(const Brush& brush) {
 std::vector<Warning> remarks(const Brush& brush) {
     std::vector<Warning> out;
     const auto [lo, hi] = brush.depth_range_mm;
-    for (const auto& [profile, where] :
-         {std::pair{&brush.lag, "lag"}, std::pair{&brush.tip_gap, "tip_gap"},
-          std::pair{&brush.tip_to_widest, "tip_to_widest"}, std::pair{&brush.half_width, "half_width"}}) {
+    for (const auto& [profile, where] : laws(brush)) {
         if (profile->assumed) out.push_back({where, "the law is assumed, not measured"});
         if (profile->calibrated_mm && ((*profile->calibrated_mm)[0] > lo || (*profile->calibrated_mm)[1] < hi))
             out.push_back({where, format("the law was measured between depths %.2f and %.2f mm, the brush may be used ",

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from . import _core
 from .errors import Error
-from .files import read_bytes, write_files
+from .files import find_file, names_in, read_bytes, write_files
 
 SHIPPED = Path(__file__).parent / "data" / "brushes"
 
 
 def brush_names() -> list[str]:
     """Names of the brushes that come with brushsvg, in alphabetical order."""
-    return sorted(path.stem for path in SHIPPED.glob("*.json"))
+    return names_in(SHIPPED, ".json")
 
 
 def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
@@ -24,7 +24,7 @@ def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
     Raises Error for an unknown name, a file that cannot be read and a brush that is refused; the latter two
     have the file in `file`, the last the key in `where`.
     """
-    path = _path_of(name_or_path)
+    path = find_file("brush", SHIPPED, ".json", name_or_path)
     data = read_bytes(path)
     try:
         brush = _core.read_brush(data)
@@ -43,14 +43,3 @@ def save_brush(brush: _core.Brush, path: str | os.PathLike) -> None:
     """
     _core.check(brush)
     write_files({path: _core.write_brush(brush)})
-
-
-def _path_of(name_or_path: str | os.PathLike) -> Path:
-    if isinstance(name_or_path, os.PathLike):
-        return Path(name_or_path)
-    if name_or_path in brush_names():
-        return SHIPPED / f"{name_or_path}.json"
-    if name_or_path.endswith(".json") or "/" in name_or_path or os.sep in name_or_path:
-        return Path(name_or_path)
-    known = ", ".join(brush_names())
-    raise Error(f"brush {name_or_path!r} is not known; known are {known}, and any file that ends in .json")

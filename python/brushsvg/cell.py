@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from .errors import Error
-from .files import read_bytes
+from .files import find_file, names_in, read_bytes
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ DEFAULT_CELL = "linuxcnc-3axis"
 
 def cell_names() -> list[str]:
     """Names of the cells that come with the package, in alphabetical order."""
-    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+    return names_in(SHIPPED, ".toml")
 
 
 def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
@@ -46,7 +46,7 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
     Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
     file in `file`, the last the key in `where`.
     """
-    path = _path_of(name_or_path)
+    path = find_file("cell", SHIPPED, ".toml", name_or_path)
     data = read_bytes(path)
     try:
         return read_cell(data.decode("utf-8"))
@@ -55,17 +55,6 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
     except Error as refusal:
         refusal.file = str(path)
         raise
-
-
-def _path_of(name_or_path: str | os.PathLike) -> Path:
-    if isinstance(name_or_path, os.PathLike):
-        return Path(name_or_path)
-    if name_or_path in cell_names():
-        return SHIPPED / f"{name_or_path}.toml"
-    if name_or_path.endswith(".toml") or "/" in name_or_path or os.sep in name_or_path:
-        return Path(name_or_path)
-    known = ", ".join(cell_names())
-    raise Error(f"cell {name_or_path!r} is not known; known are {known}, and any file that ends in .toml")
 
 
 def read_cell(text: str) -> Cell:

@@ -22,7 +22,7 @@ from .strokes import strokes as strokes_of
 def convert_file(args) -> None:
     _check_places(args.output, args.preview, args.report)
     cell = _cell(args)
-    work = _prepare(args)
+    work = _prepare(args, cell)
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
     with about(args.input):
@@ -46,7 +46,7 @@ def convert_file(args) -> None:
 
 def predict_file(args) -> None:
     _check_places(args.output)
-    work, marks, _ = _look(args, outlines=_suffix(args.output) != ".png")
+    work, marks, _ = _look(args, _cell(args), outlines=_suffix(args.output) != ".png")
     with about(args.input):
         picture = convert.picture(_suffix(args.output), work, marks)
     _write({args.output: picture})
@@ -87,24 +87,25 @@ def text_file(args) -> None:
 
 
 def report_file(args) -> None:
-    work, marks, warnings = _look(args, outlines=True)
+    cell = _cell(args)
+    work, marks, warnings = _look(args, cell, outlines=True)
     with about(args.input):
-        text = convert.report_text(".json" if args.json else ".txt", work, marks, _cell(args), warnings)
+        text = convert.report_text(".json" if args.json else ".txt", work, marks, cell, warnings)
     tell(text)
 
 
-def _look(args, outlines: bool):
+def _look(args, cell: Cell, outlines: bool):
     """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
-    work = _prepare(args)
+    work = _prepare(args, cell)
     with about(args.input):
         marks = convert.predict(work, outlines, stage)
         warnings = [(n.where, n.sentence) for n in work.notices]
-        warnings += convert.problems(work.plan, work.brush, marks, _cell(args))
+        warnings += convert.problems(work.plan, work.brush, marks, cell)
     warn(args.input, warnings)
     return work, marks, warnings
 
 
-def _prepare(args) -> convert.Work:
+def _prepare(args, cell: Cell) -> convert.Work:
     if _suffix(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "compensation", "lag", "tolerance"):
             if getattr(args, flag) is not None:
@@ -118,7 +119,7 @@ def _prepare(args) -> convert.Work:
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
         tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
-        speed_mm_s=min(convert.Options.speed_mm_s, _cell(args).max_paint_mm_s),
+        speed_mm_s=min(convert.Options.speed_mm_s, cell.max_paint_mm_s),
     )
     with about(args.input):
         return convert.prepare(args.input, options, stage)
@@ -166,12 +167,15 @@ def _write(files) -> None:
     clear_stage()
 
 
-def brush_list(args) -> None:
-    names = brush_names()
+def _tell_list(names: list[str], describe) -> None:
     width = max(map(len, names))
     for name in names:
         with about(name):
-            tell(f"{name.ljust(width)}  {one_line(find_brush(name))}\n")
+            tell(f"{name.ljust(width)}  {describe(name)}\n")
+
+
+def brush_list(_args) -> None:
+    _tell_list(brush_names(), lambda name: one_line(find_brush(name)))
 
 
 def brush_show(args) -> None:
@@ -188,11 +192,7 @@ def brush_check(args) -> None:
 
 
 def cell_list(_args) -> None:
-    names = cell_names()
-    width = max(map(len, names))
-    for name in names:
-        with about(name):
-            tell(f"{name.ljust(width)}  {find_cell(name).description}\n")
+    _tell_list(cell_names(), lambda name: find_cell(name).description)
 
 
 def cell_show(args) -> None:

@@ -24,6 +24,29 @@ def read_bytes(path: str | os.PathLike) -> bytes:
     raise Error(sentence, file=os.fspath(path))
 
 
+def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike) -> Path:
+    """Where a brush or cell lies: that of a name among the shipped ones, or a user's own file.
+
+    Error, naming the kind and the shipped ones, for a name that is neither.
+    """
+    if isinstance(name_or_path, os.PathLike):
+        return Path(name_or_path)
+    names = names_in(shipped, suffix)
+    if name_or_path in names:
+        return shipped / f"{name_or_path}{suffix}"
+    if name_or_path.endswith(suffix) or "/" in name_or_path or os.sep in name_or_path:
+        return Path(name_or_path)
+    known = ", ".join(names)
+    raise Error(
+        f"{kind} {name_or_path!r} is not known; known are {known}, and any file that ends in {suffix}"
+    )
+
+
+def names_in(folder: Path, suffix: str) -> list[str]:
+    """Names of the files of a kind in a folder, without their suffix, in alphabetical order."""
+    return sorted(path.stem for path in folder.glob(f"*{suffix}"))
+
+
 def write_files(files: Mapping[str | os.PathLike, bytes | str]) -> None:
     """Put data (text as UTF-8) at each path, at all of them or at none: written beside them, then renamed.
 

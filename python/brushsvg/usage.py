@@ -91,25 +91,18 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--json", action="store_true", help="as JSON")
     report.set_defaults(run="report_file", parser=report)
 
-    brush = commands.add_parser("brush", help="look at brushes")
-    whats = brush.add_subparsers(metavar="WHAT", required=True)
-    whats.add_parser("list", help="name those that come along").set_defaults(run="brush_list")
-    show = whats.add_parser("show", help="laws and ranges of one")
-    show.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
-    show.set_defaults(run="brush_show")
-    check = whats.add_parser("check", help="say whether a brush file can be used")
-    check.add_argument("input", metavar="FILE", help="a brush.json")
-    check.set_defaults(run="brush_check")
-
-    cell = commands.add_parser("cell", help="look at cells: machines and their limits")
-    whats = cell.add_subparsers(metavar="WHAT", required=True)
-    whats.add_parser("list", help="name those that come along").set_defaults(run="cell_list")
-    show = whats.add_parser("show", help="heights, speeds and limits of one")
-    show.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
-    show.set_defaults(run="cell_show")
-    check = whats.add_parser("check", help="say whether a cell file can be used")
-    check.add_argument("input", metavar="FILE", help="a cell.toml")
-    check.set_defaults(run="cell_check")
+    for kind, about, told, file in (
+        ("brush", "look at brushes", "laws and ranges", "brush.json"),
+        ("cell", "look at cells: machines and their limits", "heights, speeds and limits", "cell.toml"),
+    ):
+        whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
+        whats.add_parser("list", help="name those that come along").set_defaults(run=f"{kind}_list")
+        show = whats.add_parser("show", help=f"{told} of one")
+        show.add_argument("input", metavar="NAME", help=f"a {kind} that comes along, or a {file}")
+        show.set_defaults(run=f"{kind}_show")
+        check = whats.add_parser("check", help=f"say whether a {kind} file can be used")
+        check.add_argument("input", metavar="FILE", help=f"a {file}")
+        check.set_defaults(run=f"{kind}_check")
     return parser
 
 

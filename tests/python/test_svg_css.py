@@ -84,6 +84,8 @@ def test_own_properties_are_inherited_only_when_asked():
     [
         ("path:hover::foo(){stroke:red}", "selector 'path:hover::foo()' is not read"),
         ("@import 'x.css';", "@import names another file"),
+        ("@layer ink{path{stroke-width:2}}", "@layer is not read: what it says is missing"),
+        ("@supports (fill: red){path{stroke-width:2}}", "@supports is not read"),
         ("path stroke:red", "is not CSS"),
     ],
 )

@@ -205,6 +205,14 @@ def test_settings_are_inherited_and_carried():
     assert [element.stroke_width_mm for element in design.elements] == [3, 1, 1, 2]
 
 
+def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
+    body = '<path id="f" d="M0 0H5V5Z" fill="black"/><path id="l" d="M0 0H5"/>'
+    body = f'<g data-brushsvg-width="3" stroke="none">{body}</g>'
+    shape, line = read(body).elements
+    assert (shape.is_stroked, shape.fill_rule) == (False, "nonzero")
+    assert (line.is_stroked, line.stroke_width_mm) == (True, 3)
+
+
 @pytest.mark.parametrize(
     ("setting", "sentence"),
     [

@@ -313,7 +313,8 @@ class _Walk:
             fill, fill_problem = "none", None
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
-            stroke = properties["color"] if stroke == "none" else stroke
+            if stroke == "none" and fill == "none":  # a shape stays a shape
+                stroke = properties["color"]
         if power is None and width_mm == 0:
             stroke = "none"
         if stroke == "none" and fill == "none":

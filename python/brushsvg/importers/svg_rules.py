@@ -109,6 +109,8 @@ class Rules:
                     self._add(tinycss2.parse_rule_list(rule.content, True, True))
             elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
                 self._note("@import names another file, which is not read")
+            elif rule.type == "at-rule" and rule.lower_at_keyword not in _NO_STROKES:
+                self._note(f"@{rule.at_keyword[:40]} is not read: what it says is missing")
             elif rule.type == "error":
                 self._note(f"line {rule.source_line} is not CSS: {rule.message[:80]}")
             elif rule.type == "qualified-rule":
@@ -140,6 +142,8 @@ def selected(root: ET.Element, text: str) -> set[ET.Element]:
     return found
 
 
+# At-rules that say nothing about strokes.
+_NO_STROKES = frozenset("media font-face charset namespace keyframes -webkit-keyframes page".split())
 # A declaration of one word, colour or number, as drawing programs write most: there is nothing to parse.
 _PLAIN = re.compile(
     r"[ \t\n]*+([a-z][a-z-]*+)[ \t\n]*+:[ \t\n]*+"
