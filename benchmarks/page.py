@@ -15,9 +15,9 @@ import numpy as np
 
 from brushsvg import _core
 from brushsvg.brushes import find_brush
-from brushsvg.cell import find_cell
-from brushsvg.convert import encode, problems
+from brushsvg.cell_file import find_cell
 from brushsvg.importers import read_drawing
+from brushsvg.machine import encode, problems
 from brushsvg.strokes import strokes as strokes_of
 
 STROKES = 1000
@@ -65,8 +65,8 @@ def main() -> None:
             lambda: _core.compensate(strokes, brush, design.sheet_mm),
         )
         marks = stage("simulate", lambda: _core.simulate(done.plan, brush))
-        stage("limits", lambda: problems(done.plan, brush, marks, find_cell()))
-        stage("G-code", lambda: encode(".ngc", done.plan, brush, "page"))
+        stage("limits", lambda: problems(done.plan, brush, marks, find_cell(), 0.05))
+        stage("G-code", lambda: "".join(encode(".ngc", done.plan, brush, "page")))
         begin = time.perf_counter()
         ran = subprocess.run(
             [Path(sys.executable).with_name("brushsvg"), "convert", drawing, program],

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 import brushsvg
-from brushsvg import convert, report
-from brushsvg.cell import find_cell
+from brushsvg import convert, machine, report
+from brushsvg.cell_file import find_cell
 from brushsvg.console import RefusedError, about, say, warn
 from brushsvg.describe import one_line
 from brushsvg.files import write_files
@@ -21,7 +21,7 @@ def main(drawing: Path, directory: Path) -> None:
     work = works["closed"]
     works["best"] = convert.best_constant(work)
     marks = {how: convert.predict(works[how]) for how in works}
-    problems = convert.problems(work.plan, work.brush, marks["closed"], cell)
+    problems = machine.problems(work.plan, work.brush, marks["closed"], cell, work.options.tolerance_mm)
     if problems:
         raise RefusedError([(str(drawing), *problem) for problem in problems])
     warn(str(drawing), [(notice.where, notice.sentence) for notice in work.notices])
@@ -37,8 +37,8 @@ def main(drawing: Path, directory: Path) -> None:
     }
     table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
     files = {
-        ".plan.json": convert.encode(".json", work.plan, work.brush, work.title),
-        ".ngc": convert.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
+        ".plan.json": machine.encode(".json", work.plan, work.brush, work.title),
+        ".ngc": machine.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
         ".marks.svg": convert.picture(".svg", work, marks["closed"]),
         ".report.txt": convert.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
         ".png": comparison(works, marks, totals),

@@ -5,18 +5,22 @@ void bind_simulate(py::module_& m) {
     using namespace brushsvg;
     m.def(
         "simulate",
-        [](const Plan& plan, const Brush& brush, double tolerance_mm, const py::object& progress) {
+        [](const Plan& plan, const Brush& brush, double tolerance_mm, bool for_outlines,
+           const py::object& progress) {
             Marks marks;
             marks.passes.resize(plan.passes.size());
-            in_chunks(plan.passes.size(), 64, progress,
-                      [&](std::size_t i) { marks.passes[i] = simulate(plan.passes[i], brush, tolerance_mm); });
+            in_chunks(plan.passes.size(), 64, progress, [&](std::size_t i) {
+                marks.passes[i] = simulate(plan.passes[i], brush, tolerance_mm, for_outlines);
+            });
             return marks;
         },
-        py::arg("plan"), py::arg("brush"), py::arg("tolerance_mm") = 0.02, py::arg("progress") = py::none(),
+        py::arg("plan"), py::arg("brush"), py::arg("tolerance_mm") = 0.02, py::arg("for_outlines") = true,
+        py::arg("progress") = py::none(),
         R"(What the brush does along a plan: Marks without outlines (see trace_outlines and coverage).
 
 tolerance_mm: how far the painted area between two rows may be off the hull of both; it has nothing to do with the
-tolerance that a plan was made with. progress: called with (passes done, passes).)");
+tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
+widest_points. progress: called with (passes done, passes).)");
     m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"),
           "Centre of the widest section at every row (n, 2) [mm].");
 }

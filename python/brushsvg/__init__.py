@@ -34,9 +34,11 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_plan,
     )
     from .brushes import brush_names, find_brush
-    from .convert import write_program
+    from .cell import Cell
+    from .cell_file import cell_names, find_cell, read_cell, write_cell
     from .errors import Error
     from .importers import ReadOptions, read_drawing
+    from .machine import write_program
     from .render import marks_png, marks_svg
     from .strokes import strokes
     from .text import text_svg
@@ -49,9 +51,14 @@ _HOME = {
     "read_drawing": "importers",
     "text_svg": "text",
     "strokes": "strokes",
+    "Cell": "cell",
     "brush_names": "brushes",
+    "cell_names": "cell_file",
+    "find_cell": "cell_file",
+    "read_cell": "cell_file",
+    "write_cell": "cell_file",
     "find_brush": "brushes",
-    "write_program": "convert",
+    "write_program": "machine",
     "marks_png": "render",
     "marks_svg": "render",
 } | dict.fromkeys(
@@ -81,6 +88,7 @@ _HOME = {
 
 __all__ = [
     "Brush",
+    "Cell",
     "Compensated",
     "Error",
     "Marks",
@@ -91,13 +99,16 @@ __all__ = [
     "__version__",
     "area",
     "brush_names",
+    "cell_names",
     "compensate",
     "coverage",
     "find_brush",
+    "find_cell",
     "flatten",
     "marks_png",
     "marks_svg",
     "overlap",
+    "read_cell",
     "read_drawing",
     "read_marks",
     "read_plan",
@@ -107,6 +118,7 @@ __all__ = [
     "trace_outlines",
     "unite",
     "wanted_outline",
+    "write_cell",
     "write_marks",
     "write_plan",
     "write_program",

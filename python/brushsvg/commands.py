@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
-from . import convert
+from . import convert, machine
 from ._core import remarks
 from .brushes import brush_names, find_brush
-from .cell import Cell, cell_names, find_cell
+from .cell import Cell
+from .cell_file import DEFAULT_CELL, cell_names, find_cell, read_cell, write_cell
 from .console import RefusedError, about, clear_stage, say, stage, tell, warn
 from .describe import cell_page, one_line, page
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
 from .importers import ReadOptions, read_drawing
+from .jobs import border, paper_height
 from .layout import Layout, arrange
 from .posts import POSTS
+from .program import Job
 from .strokes import strokes as strokes_of
 
 
@@ -23,11 +27,17 @@ def convert_file(args) -> None:
     _check_places(args.output, args.preview, args.report)
     cell = _cell(args)
     work = _prepare(args, cell)
+    cell = machine.as_exact_as(cell, work.options.tolerance_mm)
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
+    job = Job(args.z_offset, args.from_stroke)
+    if args.order == "nearest":
+        work = convert.nearest_first(work)
     with about(args.input):
+        if _suffix(args.output) != ".json":
+            machine.post_for(_suffix(args.output), cell)
         marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
-        problems = convert.problems(work.plan, work.brush, marks, cell)
+        problems = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
         problems += [(n.where, n.sentence) for n in damaged]
         if damaged:
             where, sentence = problems[-1]
@@ -35,13 +45,45 @@ def convert_file(args) -> None:
         if problems:
             raise RefusedError([(args.input, *problem) for problem in problems])
         notes = convert.notes(work)
-        program = convert.encode(_suffix(args.output), work.plan, work.brush, work.title, notes, cell)
+        program = machine.encode(_suffix(args.output), work.plan, work.brush, work.title, notes, cell, job)
         files = {args.output: program}
         if args.preview:
             files[args.preview] = convert.picture(_suffix(args.preview), work, marks)
         if args.report:
             files[args.report] = convert.report_text(_suffix(args.report), work, marks, cell)
+    _warn_of_example(args, cell)
     _write(files)
+
+
+def _warn_of_example(args, cell: Cell) -> None:
+    if cell.paper.example and _suffix(args.output) != ".json":
+        sentence = "the paper's place is an example: teach yours (brushsvg cell new --taught ...)"
+        say(cell.name, "paper", sentence)
+
+
+def border_file(args) -> None:
+    _check_places(args.output)
+    cell = _cell(args)
+    work, marks, _ = _look(args, cell, outlines=False)
+    with about(args.input):
+        post = machine.post_for(_suffix(args.output), cell)
+        made = border(machine.bounds_mm(marks, work.brush), work.brush, cell, args.z_offset)
+        header = (f"title: border of {work.title or 'untitled'}", *machine.about(made, Job(args.z_offset)))
+        text = machine.text_of(post, replace(made, header=header))
+    _warn_of_example(args, cell)
+    _write({args.output: text})
+
+
+def height_file(args) -> None:
+    _check_places(args.output)
+    cell, brush = _cell(args), _brush(args) or find_brush(convert.DEFAULT_BRUSH)
+    with about(cell.name):
+        post = machine.post_for(_suffix(args.output), cell)
+        made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
+        header = ("title: how high the paper lies", f"brush: {brush.name}", *machine.about(made))
+        text = machine.text_of(post, replace(made, header=header))
+    _warn_of_example(args, cell)
+    _write({args.output: text})
 
 
 def predict_file(args) -> None:
@@ -98,9 +140,10 @@ def _look(args, cell: Cell, outlines: bool):
     """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
     work = _prepare(args, cell)
     with about(args.input):
+        cell = machine.as_exact_as(cell, work.options.tolerance_mm)
         marks = convert.predict(work, outlines, stage)
         warnings = [(n.where, n.sentence) for n in work.notices]
-        warnings += convert.problems(work.plan, work.brush, marks, cell)
+        warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
     warn(args.input, warnings)
     return work, marks, warnings
 
@@ -110,22 +153,25 @@ def _prepare(args, cell: Cell) -> convert.Work:
         for flag in (*LAYOUT_FLAGS, "compensation", "lag", "tolerance"):
             if getattr(args, flag) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
-    with about(args.brush or ""):
-        brush = find_brush(args.brush) if args.brush is not None else None
     options = convert.Options(
-        brush=brush,
+        brush=_brush(args),
         reading=_reading(args),
         layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
         tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
-        speed_mm_s=min(convert.Options.speed_mm_s, cell.max_paint_mm_s),
+        speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
     with about(args.input):
         return convert.prepare(args.input, options, stage)
 
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin")
+
+
+def _brush(args):
+    with about(args.brush or ""):
+        return find_brush(args.brush) if args.brush is not None else None
 
 
 def _cell(args) -> Cell:
@@ -203,8 +249,35 @@ def cell_show(args) -> None:
 def cell_check(args) -> None:
     with about(args.input):
         cell = find_cell(args.input)
-        if cell.language not in POSTS:
-            raise Error(
-                f"language {cell.language!r} is not known; known: {', '.join(POSTS)}", where="language"
-            )
+    if cell.language not in POSTS:
+        known = ", ".join(POSTS)
+        say(
+            args.input,
+            "language",
+            f"no program can be written in {cell.language!r} yet, only plans; known: {known}",
+        )
     tell(f"{args.input}: cell {cell.name} can be used\n")
+
+
+def cell_new(args) -> None:
+    _check_places(args.output)
+    if os.path.exists(args.output):
+        raise RefusedError([(args.output, "", "the file is there already: it might be somebody's machine")])
+    with about(args.like or DEFAULT_CELL):
+        cell = find_cell(args.like or DEFAULT_CELL)
+    name = os.path.splitext(os.path.basename(args.output))[0]
+    with about(args.output):
+        paper = (
+            replace(
+                cell.paper,
+                taught_mm=tuple(args.taught),
+                origin_mm=(0.0, 0.0, 0.0),
+                rotation_deg=(0.0, 0.0, 0.0),
+                example=False,
+            )
+            if args.taught
+            else cell.paper
+        )
+        text = write_cell(replace(cell, name=name, paper=paper))
+        read_cell(text)
+    _write({args.output: text})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 from dataclasses import dataclass, replace
@@ -11,12 +12,11 @@ import numpy as np
 
 from . import _core, importers, layout, report
 from .brushes import find_brush
-from .cell import Cell, find_cell
+from .cell import Cell
 from .design import Notice
 from .errors import Error
-from .files import read_bytes, write_files
-from .posts import POSTS
-from .program import beyond_edges, broken_limits, duration_s, program
+from .files import read_bytes
+from .machine import DEFAULT_TOLERANCE_MM, time_s
 from .strokes import strokes as strokes_of
 
 DEFAULT_BRUSH = "round-6"
@@ -31,7 +31,7 @@ class Options:
     layout: layout.Layout = layout.AS_DRAWN
     compensation: str = "closed"
     lag_mm: float | None = None
-    tolerance_mm: float = 0.05
+    tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
 
 
@@ -125,6 +125,40 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
     return Work("", brush, plan, None, (), options, tuple(notices))
 
 
+def nearest_first(work: Work) -> Work:
+    """The work with its strokes in the order of the shortest way from the end of one to the start of the next.
+
+    Only strokes that follow each other in one layer change places; none is painted backwards.
+    """
+    passes = work.plan.passes
+    order = [int(k) for group in _groups(passes) for k in _nearest(passes, group)]
+    plan = work.plan
+    plan.passes = [passes[k] for k in order]
+    strokes = None if work.strokes is None else [work.strokes[k] for k in order]
+    misses = tuple(work.misses[k] for k in order) if work.misses else ()
+    return replace(work, plan=plan, strokes=strokes, misses=misses)
+
+
+def _groups(passes) -> list[list[int]]:
+    """Numbers of passes that follow each other in one layer with the same wish for an order."""
+    wishes = [(a_pass.layer, json.loads(a_pass.settings).get("order", 0)) for a_pass in passes]
+    numbers = range(len(passes))
+    return [list(group) for _, group in itertools.groupby(numbers, key=wishes.__getitem__)]
+
+
+def _nearest(passes, group: list[int]) -> list[int]:
+    starts = np.array([passes[k].poses_mm[0, :2] for k in group])
+    ends = np.array([passes[k].poses_mm[-1, :2] for k in group])
+    order, here = [0], ends[0]  # the first stays the first
+    left = np.arange(1, len(group))
+    while len(left):
+        next_ = int(np.linalg.norm(starts[left] - here, axis=1).argmin())
+        order.append(int(left[next_]))
+        here = ends[left[next_]]
+        left = np.delete(left, next_)
+    return [group[k] for k in order]
+
+
 def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     """A drawing's work with the one lag for all strokes whose marks overlap most with it, to compare with.
 
@@ -168,54 +202,6 @@ def predict(work: Work, outlines: bool = True, stage=lambda text: None):
     return marks
 
 
-def problems(plan, brush, marks, cell: Cell) -> list[tuple[str, str]]:
-    """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
-    return broken_limits(plan, brush, cell) + off_sheet(marks, brush, plan.sheet_mm)
-
-
-def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
-    """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
-    found = []
-    for trace in marks.passes:
-        bounds_mm = _core.painted_bounds(trace, brush)
-        if not np.isfinite(bounds_mm).all():
-            continue  # nothing touches the paper
-        found += [
-            (trace.stroke, f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet")
-            for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
-            if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
-        ]
-    return found
-
-
-def encode(suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None) -> bytes:
-    """The plan as the bytes of a plan.json or of a program in the cell's language, by the file's extension.
-
-    Error for any other extension, and for a program where a limit of brush or cell is broken.
-    """
-    if suffix == ".json":
-        return _core.write_plan(plan).encode()
-    cell = cell or find_cell()
-    post = POSTS.get(cell.language)
-    if post is None:
-        known = ", ".join(POSTS)
-        raise Error(
-            f"language {cell.language!r} of cell {cell.name} is not known; known: {known}", where="language"
-        )
-    if suffix != post.extension:
-        raise Error(
-            f"the extension {suffix!r} is neither .json, for a plan, nor {post.extension}, for {post.title}, "
-            f"which cell {cell.name} speaks"
-        )
-    header = (
-        f"title: {title or 'untitled'}",
-        f"brush: {plan.brush}, {len(plan.passes)} strokes",
-        *notes,
-        "frame: origin at the lower left corner of the sheet, mm; z 0: the brush just touches",
-    )
-    return post.write(program(plan, brush, cell, header)).encode("ascii")
-
-
 def notes(work: Work) -> tuple[str, ...]:
     """Lines for a program's header: how it was made, and how much there is to know about it."""
     options = work.options
@@ -223,17 +209,6 @@ def notes(work: Work) -> tuple[str, ...]:
     damaged = sum(notice.damaged for notice in work.notices)
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     return (made, count) if work.strokes is not None else (count,)
-
-
-def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
-    """Write a plan as plan.json or G-code, by the extension of path, after checking every limit.
-
-    Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
-    """
-    cell = cell or find_cell()
-    for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell):
-        raise Error(sentence, where=where)
-    write_files({path: encode(Path(path).suffix.lower(), plan, brush, title, cell=cell)})
 
 
 def picture(suffix: str, work: Work, marks) -> bytes:
@@ -260,7 +235,7 @@ def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None) -> st
         tolerance_mm=work.options.tolerance_mm if drawn else None,
         strokes=rows,
         total=total,
-        time_s=duration_s(work.plan, work.brush, cell),
+        time_s=time_s(work.plan, work.brush, cell),
         warnings=tuple(known),
     )
     return report.to_json(result) if suffix == ".json" else report.to_text(result)

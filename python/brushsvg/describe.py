@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import textwrap
@@ -98,21 +99,62 @@ def _table(brush, least: float, greatest: float) -> list[str]:
 
 def cell_page(cell) -> str:
     """All that a cell file says, one fact a line."""
-    low, high = cell.z_range_mm
+    heights, speeds, workspace, blending = cell.heights, cell.speeds, cell.workspace, cell.blending
     rows = [
         ("language", cell.language),
-        ("travels at", f"{cell.safe_height_mm:g} mm above the paper, {cell.travel_mm_s:g} mm/s"),
+        ("paper", _paper(cell.paper)),
+        ("travels at", f"{heights.safe_mm:g} mm above the paper, {speeds.travel_mm_s:g} mm/s"),
         (
             "comes down at",
-            f"{cell.approach_mm_s:g} mm/s, below {cell.clearance_mm:g} mm {cell.press_mm_s:g} mm/s",
+            f"{speeds.approach_mm_s:g} mm/s, below {heights.clearance_mm:g} mm {speeds.press_mm_s:g} mm/s",
         ),
-        ("paints at", f"{cell.max_paint_mm_s:g} mm/s at most"),
-        ("heights", f"from {low:g} to {high:g} mm"),
-        ("workspace", f"the sheet and {cell.workspace_margin_mm:g} mm around it"),
-        ("rounds joints by", f"{cell.path_tolerance_mm:g} mm at most"),
-        ("writes", f"{cell.decimals} decimals"),
+        ("paints at", f"{speeds.paint_mm_s:g} mm/s at most, never lower than {heights.lowest_mm:g} mm"),
+        ("accelerates by", f"{speeds.acceleration_mm_s2:g} mm/s2"),
+        ("workspace", f"the sheet and {workspace.margin_mm:g} mm around it"),
     ]
+    if workspace.box_mm:
+        low, high = workspace.box_mm
+        rows.append(
+            (
+                "",
+                "x {:g} to {:g}, y {:g} to {:g}, z {:g} to {:g} mm".format(
+                    *itertools.chain(*zip(low, high, strict=True))
+                ),
+            )
+        )
+    if workspace.reach_mm:
+        rows.append(("", "{:g} to {:g} mm from the robot's origin".format(*workspace.reach_mm)))
+    joints = f"cut by {blending.tolerance_mm:g} mm at most" if blending.tolerance_mm else "met exactly"
+    rows.append(("joints of moves", joints))
+    if cell.tool:
+        rows.append(("tool", f"tip at {_point(cell.tool.tcp_mm)} mm from the flange"))
+    if cell.servo:
+        ends = (cell.servo.table[0], cell.servo.table[-1])
+        rows.append(("servo", " to ".join(f"{value:g} at {height:g} mm" for height, value in ends)))
+    if cell.reload:
+        rows.append(("fetches paint", _reload(cell.reload)))
+    rows += [("station", f"{each.name} at {_point(each.place_mm)} mm") for each in cell.stations]
     width = max(len(name) for name, _ in rows)
-    return "\n".join(
-        [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
-    )
+    lines = [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    return "\n".join(lines)
+
+
+def _paper(paper) -> str:
+    if paper.taught_mm:
+        return f"taught by {len(paper.taught_mm)} points, the first at {_point(paper.taught_mm[0])} mm"
+    turned = f", turned by {_point(paper.rotation_deg)} degrees" if any(paper.rotation_deg) else ""
+    example = " (an example: teach yours)" if paper.example else ""
+    return f"lower left corner at {_point(paper.origin_mm)} mm of the robot's frame{turned}{example}"
+
+
+def _reload(reload) -> str:
+    when = {
+        "length": f"every {reload.every_mm:g} mm",
+        "stroke": "before every stroke",
+        "layer": "before every layer",
+    }
+    return when[reload.when]
+
+
+def _point(values) -> str:
+    return ", ".join(f"{value:g}" for value in values)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from .errors import Error
@@ -47,8 +47,9 @@ def names_in(folder: Path, suffix: str) -> list[str]:
     return sorted(path.stem for path in folder.glob(f"*{suffix}"))
 
 
-def write_files(files: Mapping[str | os.PathLike, bytes | str]) -> None:
-    """Put data (text as UTF-8) at each path, at all of them or at none: written beside them, then renamed.
+def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) -> None:
+    """Put data at each path, at all of them or at none: written beside them, then renamed. Text, whole or in
+    pieces, becomes UTF-8.
 
     Error, with the path in `file`, when a place cannot be written; every path is then as it was before. The
     one gap: a rename that fails after others were made, as where a file is a mount point of its own.
@@ -69,12 +70,13 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str]) -> None:
             folder, name = os.path.split(target)
             handle, beside[path] = tempfile.mkstemp(prefix=f".{name[:80]}.", suffix=".part", dir=folder)
             with os.fdopen(handle, "wb") as file:
-                file.write(_encoded(files[path]))
+                file.writelines(_pieces(files[path]))
                 file.flush()
                 os.fsync(file.fileno())
             os.chmod(beside[path], 0o666 & ~_umask() if mode is None else mode & 0o777)
         for path in through:  # must not be renamed over; a folder refuses
-            Path(targets[path]).write_bytes(_encoded(files[path]))
+            with open(targets[path], "wb") as file:
+                file.writelines(_pieces(files[path]))
         for path in list(beside):
             os.replace(beside[path], targets[path])
             del beside[path]
@@ -97,8 +99,9 @@ def _mode(path: str) -> int | None:
         return None
 
 
-def _encoded(data: bytes | str) -> bytes:
-    return data.encode("utf-8") if isinstance(data, str) else data
+def _pieces(data: bytes | str | Iterable[str]) -> Iterator[bytes]:
+    for piece in [data] if isinstance(data, bytes | str) else data:
+        yield piece.encode("utf-8") if isinstance(piece, str) else piece
 
 
 def _umask() -> int:

@@ -2,154 +2,129 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from .cell import Cell
+from .blends import SHARP_RAD, blend_radii, on_the_spot, turns_rad
+from .cell import Cell, Station, robot_from_paper
 from .errors import Error
+from .limits import broken_limits
+from .moves import Arc, Move, Program, Section, Wait
 
-SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
-
-ON_THE_SPOT_MM = 1e-6
+PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
 
 @dataclass(frozen=True)
-class Move:
-    """Straight lines through points_mm (n, 3), robot frame, at one speed.
+class Job:
+    """How a plan is run: the paper so much higher than the cell says, from which stroke on.
 
-    meaning: travel (at safe height, to above the start), approach (down to the clearance), land (down to the
-    first pose), paint (along the poses), lift (up to the clearance), retract (up to safe height).
+    visits: for each pass the stations to visit before it; () for a brush that is loaded once.
     """
 
-    meaning: str
-    points_mm: np.ndarray
-    speed_mm_s: float
+    z_offset_mm: float = 0.0
+    first_stroke: int = 1
+    visits: tuple[tuple[Station, ...], ...] = ()
 
 
-@dataclass(frozen=True)
-class Section:
-    """All moves that paint one stroke."""
-
-    stroke: str
-    moves: tuple[Move, ...]
+WHOLE_JOB = Job()
 
 
-@dataclass(frozen=True)
-class Program:
-    """header: lines for the reader of the program, each beginning with a word of ours."""
-
-    header: tuple[str, ...]
-    sections: tuple[Section, ...]
-    safe_height_mm: float
-    path_tolerance_mm: float
-    decimals: int
-
-
-def program(plan, brush, cell: Cell, header: tuple[str, ...] = ()) -> Program:
+def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
     """Moves for every pass of the plan, in order. Error, naming stroke and range, where a limit is broken.
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    for where, sentence in broken_limits(plan, brush, cell):
+    for where, sentence in broken_limits(plan, brush, cell, job.z_offset_mm):
         raise Error(sentence, where=where)
-    sections = tuple(Section(a_pass.stroke, _moves(a_pass, brush, cell)) for a_pass in plan.passes)
-    return Program(header, sections, cell.safe_height_mm, cell.path_tolerance_mm, cell.decimals)
+    if not 1 <= job.first_stroke <= len(plan.passes):
+        raise Error(f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job")
+    return unchecked_program(plan, brush, cell, header, job)
 
 
-def duration_s(plan, brush, cell: Cell) -> float:
-    """Time for the whole plan at the speeds asked for, acceleration left out; limits are not looked at."""
-    total_s = 0.0
-    above = None
-    for move in (move for a_pass in plan.passes for move in _moves(a_pass, brush, cell)):
-        path = move.points_mm if above is None else np.vstack([above, move.points_mm])
-        total_s += float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) / move.speed_mm_s
-        above = move.points_mm[-1]
-    return total_s
+def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
+    """The same for who only asks how long it takes or wants to see it: limits are not looked at."""
+
+    def sections() -> Iterator[Section]:
+        count = len(plan.passes)
+        for number, a_pass in enumerate(plan.passes, 1):
+            if number < job.first_stroke:
+                continue
+            visits = job.visits[number - 1] if job.visits else ()
+            yield from (visit(station, brush, cell) for station in visits)
+            yield Section(f"stroke {number} of {count}: {a_pass.stroke}", _moves(a_pass, brush, cell))
+
+    return Program(header, cell, robot_from_paper(cell, job.z_offset_mm), sections)
 
 
-def broken_limits(plan, brush, cell: Cell) -> list[tuple[str, str]]:
-    """(stroke, sentence) for each limit that the plan breaks; empty when the robot may run it."""
-    problems = [] if plan.passes else [("", "there is nothing to paint")]
-    limits = (brush.max_speed_mm_s, f"brush {brush.name}"), (cell.max_paint_mm_s, f"cell {cell.name}")
-    limit, whose = min(limits)
-    for a_pass in plan.passes:
-        poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
-        sentences = []
-        if len(poses) == 0:
-            sentences = ["the pass has no poses"]
-        elif not np.isfinite(poses).all():
-            sentences = ["a pose is not a finite number"]
-        else:
-            sentences = _heights(poses, cell) + _workspace(poses, plan.sheet_mm, cell)
-            if not (poses[:, 2] < 0).any():
-                sentences.append("the brush is never pressed to the paper: nothing would be painted")
-        speed = a_pass.speed_mm_s
-        if not 0 < speed <= limit:
-            sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
-        problems += [(a_pass.stroke, sentence) for sentence in sentences]
-    return problems
+def over(point, height_mm: float) -> np.ndarray:
+    """(1, 3) the place above a point."""
+    return np.array([[point[0], point[1], height_mm]], dtype=float)
 
 
-def _heights(poses: np.ndarray, cell: Cell) -> list[str]:
-    lowest, highest = poses[:, 2].min(), poses[:, 2].max()
-    if highest > 0:
-        return [f"height {highest:.3f} mm inside a pass is above the paper: a pass stays at z <= 0"]
-    if lowest < cell.z_range_mm[0]:
-        allowed = "[{:.1f}, {:.1f}]".format(*cell.z_range_mm)
-        return [f"height {lowest:.1f} mm is outside the range {allowed} mm of cell {cell.name}"]
-    return []
+def approach_mm_s(brush, cell: Cell) -> float:
+    """In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit."""
+    return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
 
 
-def _workspace(poses: np.ndarray, sheet_mm, cell: Cell) -> list[str]:
-    margin = cell.workspace_margin_mm
-    bounds_mm = (*poses[:, :2].min(axis=0), *poses[:, :2].max(axis=0))
-    return [
-        f"the TCP goes {beyond - margin:.2f} mm beyond the {side} edge of the workspace, "
-        f"which is the sheet and {margin:.1f} mm around it"
-        for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
-        if beyond - margin > 1e-6
+def visit(station: Station, brush, cell: Cell) -> Section:
+    """To the paint and back up to safe height; a person does the rest where the station is served by hand."""
+    safe, speeds = cell.heights.safe_mm, cell.speeds
+    steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
+    if station.by_hand:
+        return Section(f"paint: {station.name}", (*steps, Wait(None, f"dip the brush: {station.name}")))
+    rim = station.rim_mm + cell.heights.clearance_mm
+    press_mm_s = min(speeds.press_mm_s, brush.max_speed_mm_s)
+    steps += [
+        Move("approach", over(station.place_mm, rim), approach_mm_s(brush, cell)),
+        Move("dip", over(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),
     ]
-
-
-def beyond_edges(bounds_mm, sheet_mm) -> dict[str, float]:
-    """How far (left, bottom, right, top) reaches beyond each edge of the sheet [mm]; negative inside."""
-    left, bottom, right, top = bounds_mm
-    width, height = sheet_mm
-    return {"left": -left, "right": right - width, "lower": -bottom, "upper": top - height}
+    steps += [Wait(station.hold_s)] if station.hold_s else []
+    steps.append(Move("dip", over(station.place_mm, rim), press_mm_s))
+    steps += [Wait(station.drip_s)] if station.drip_s else []
+    last = station.place_mm
+    if station.wipe_mm:
+        steps.append(Move("wipe", np.array(station.wipe_mm, dtype=float), press_mm_s))
+        last = station.wipe_mm[-1]
+    steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
+    return Section(f"paint: {station.name}", tuple(steps))
 
 
 def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
     poses = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if len(poses) == 0:
         return ()
-
-    def over(pose, height_mm):
-        return np.array([[pose[0], pose[1], height_mm]])
-
     start, end = poses[0], poses[-1]
+    heights, speeds = cell.heights, cell.speeds
     # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
-    press_mm_s = min(cell.press_mm_s, a_pass.speed_mm_s)
-    # In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit.
-    approach_mm_s = min(cell.approach_mm_s, brush.max_speed_mm_s)
-    moves = (
-        Move("travel", over(start, cell.safe_height_mm), cell.travel_mm_s),
-        Move("approach", over(start, cell.clearance_mm), approach_mm_s),
+    press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
+    return (
+        Move("travel", over(start, heights.safe_mm), speeds.travel_mm_s),
+        Move("approach", over(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
-        *_painting(poses, a_pass.speed_mm_s, press_mm_s),
-        Move("lift", over(end, cell.clearance_mm), press_mm_s),
-        Move("retract", over(end, cell.safe_height_mm), cell.travel_mm_s),
+        *_painting(poses, getattr(a_pass, "arcs", ()), a_pass.speed_mm_s, press_mm_s, cell),
+        Move("lift", over(end, heights.clearance_mm), press_mm_s),
+        Move("retract", over(end, heights.safe_mm), speeds.travel_mm_s),
     )
-    return tuple(move for move in moves if len(move.points_mm))
 
 
-def _painting(poses: np.ndarray, paint_mm_s: float, press_mm_s: float) -> list[Move]:
-    """From the first pose on, straight up and down as slowly as a landing."""
+def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cell: Cell) -> Iterator[Move]:
+    """From the first pose on, straight up and down as slowly as a landing, along arcs where the plan has them."""
     steps = np.diff(poses, axis=0)
-    on_the_spot = (np.abs(steps[:, :2]).max(axis=1, initial=0.0) < ON_THE_SPOT_MM) & (steps[:, 2] != 0)
-    runs = np.split(np.arange(len(steps)), np.flatnonzero(np.diff(on_the_spot)) + 1)
-    return [
-        Move("paint", poses[run + 1], press_mm_s if on_the_spot[run[0]] else paint_mm_s)
-        for run in runs
-        if len(run)
-    ]
+    kinds = np.full(len(steps), PLAIN)
+    kinds[on_the_spot(steps)] = ON_THE_SPOT
+    for number, (first, last, *_) in enumerate(arcs):
+        kinds[int(first) : int(last)] = number
+    new_run = np.diff(kinds) != 0
+    radii = None
+    if cell.blending.radius_mm:
+        radii = blend_radii(poses, cell.blending)
+        new_run |= turns_rad(poses)[1:-1] > SHARP_RAD
+    for run in np.split(np.arange(len(steps)), np.flatnonzero(new_run) + 1):
+        if not len(run):
+            continue
+        kind = kinds[run[0]]
+        arc = Arc(tuple(map(float, arcs[kind][2:4])), int(arcs[kind][4])) if kind >= 0 else None
+        speed = press_mm_s if kind == ON_THE_SPOT else paint_mm_s
+        yield Move("paint", poses[run + 1], speed, arc, None if radii is None else radii[run + 1])

@@ -11,7 +11,7 @@ from .importers import READERS
 from .posts import POSTS
 
 DRAWINGS = (*READERS, ".json")
-PROGRAMS = (".json", *dict.fromkeys(post.extension for post in POSTS.values()))
+PROGRAMS = (".json", *dict.fromkeys(extension for post in POSTS.values() for extension in post.extensions))
 PREDICTIONS = (".png", ".svg", ".json")
 PREVIEWS = (".png", ".svg")
 REPORTS = (".txt", ".json")
@@ -54,9 +54,27 @@ def _parser() -> argparse.ArgumentParser:
     _add_input(convert)
     convert.add_argument("output", metavar="OUT", help=_programs())
     _add_choices(convert)
+    _add_job(convert)
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
     convert.set_defaults(run="convert_file", parser=convert)
+
+    border = commands.add_parser("border", help="make an air run round what will be painted, at safe height")
+    _add_input(border)
+    border.add_argument("output", metavar="OUT", help=_programs(plan=False))
+    _add_choices(border)
+    _add_z_offset(border)
+    border.set_defaults(run="border_file", parser=border)
+
+    height = commands.add_parser("height", help="make strokes that tell how high the paper lies")
+    height.add_argument("output", metavar="OUT", help=_programs(plan=False))
+    height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
+    height.add_argument("--sheet", metavar="WxH", type=_size, default=(200.0, 100.0), help="default: 200x100")
+    height.add_argument("--from", metavar="MM", dest="highest", type=_height, default=1.0, help="default: 1")
+    height.add_argument("--to", metavar="MM", dest="lowest", type=_height, default=-1.0, help="default: -1")
+    height.add_argument("--step", metavar="MM", type=_step, default=0.1, help="default: 0.1")
+    height.set_defaults(run="height_file", parser=height)
 
     predict = commands.add_parser("predict", help="show what the brush will paint")
     _add_input(predict)
@@ -103,11 +121,53 @@ def _parser() -> argparse.ArgumentParser:
         check = whats.add_parser("check", help=f"say whether a {kind} file can be used")
         check.add_argument("input", metavar="FILE", help=f"a {file}")
         check.set_defaults(run=f"{kind}_check")
+        if kind == "cell":
+            _add_cell_new(whats)
     return parser
 
 
-def _programs() -> str:
-    return " or ".join(["a plan (.json)", *(f"{post.title} ({post.extension})" for post in POSTS.values())])
+def _add_cell_new(whats) -> None:
+    new = whats.add_parser("new", help="write a cell file of your own, to be edited")
+    new.add_argument("output", metavar="FILE", help="a cell.toml")
+    new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
+    new.add_argument(
+        "--taught",
+        metavar="X,Y,Z",
+        action="append",
+        type=_point3,
+        help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
+        "left edge, and anywhere else on it, each just touching, in the robot's frame",
+    )
+    new.set_defaults(run="cell_new", parser=new)
+
+
+def _programs(plan: bool = True) -> str:
+    titles: dict[str, str] = {}
+    for post in POSTS.values():  # the shortest title of those that share an extension
+        name = " ".join(post.extensions)
+        titles[name] = min(titles.get(name, post.title), post.title, key=len)
+    return " or ".join(
+        [*(["a plan (.json)"] if plan else []), *(f"{t} ({name})" for name, t in titles.items())]
+    )
+
+
+def _add_job(command: argparse.ArgumentParser) -> None:
+    add = command.add_argument
+    _add_z_offset(command)
+    add("--from-stroke", metavar="N", type=_count, default=1, help="go on from this stroke of a program")
+    add(
+        "--order", choices=("drawn", "nearest"), default="drawn", help="of strokes in a layer; default: drawn"
+    )
+
+
+def _add_z_offset(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--z-offset",
+        metavar="MM",
+        type=_height,
+        default=0.0,
+        help="the paper lies so much higher than thought",
+    )
 
 
 def _add_input(command: argparse.ArgumentParser) -> None:
@@ -171,6 +231,20 @@ def _words(text: str) -> str:
     return text
 
 
+def _height(text: str) -> float:
+    return _length(text, -20.0, 20.0)
+
+
+def _step(text: str) -> float:
+    return _length(text, 0.01, 5.0)
+
+
+def _count(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) < 10**8):
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a number from 1 on")
+    return int(text)
+
+
 def _width(text: str) -> float:
     return _length(text, 0.001, 1000.0)
 
@@ -199,6 +273,18 @@ def _point(text: str) -> tuple[float, float]:
     return x, y
 
 
+def _point3(text: str) -> tuple[float, float, float]:
+    from .units import length_mm
+
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 120.5,-300,42")
+    x, y, z = (_read(length_mm, part) for part in parts)
+    if not max(abs(x), abs(y), abs(z)) <= 1e5:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e5 mm")
+    return x, y, z
+
+
 def _length(text: str, least: float, greatest: float) -> float:
     from .units import length_mm
 
@@ -217,7 +303,14 @@ def _read(reader, text: str):
 
 def _check_operands(args) -> None:
     """Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
+    if args.run == "cell_new" and os.path.splitext(args.output)[1].lower() != ".toml":
+        args.parser.error(f"{args.output} does not end in .toml")
+    if args.run == "cell_new" and len(args.taught or ()) not in (0, 3, 4):
+        args.parser.error(f"--taught is given {len(args.taught)} times, not three or four")
     if args.run.startswith(("brush_", "cell_")):
+        return
+    if args.run == "height_file":
+        _check_extension(args, args.output, PROGRAMS[1:])
         return
     if args.run == "text_file":
         if os.path.splitext(args.output)[1].lower() != ".svg":
@@ -234,6 +327,7 @@ def _check_operands(args) -> None:
         args.parser.error("--lag needs --compensation constant")
     outputs = {
         "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
+        "border_file": lambda: [(args.output, PROGRAMS[1:])],
         "predict_file": lambda: [(args.output, PREDICTIONS)],
         "import_file": lambda: [(args.output, PREVIEWS)],
         "report_file": lambda: [],
@@ -243,9 +337,13 @@ def _check_operands(args) -> None:
     for path, suffixes in [(args.input, inputs), *outputs]:
         if path is None:
             continue
-        if os.path.splitext(path)[1].lower() not in suffixes:
-            args.parser.error(f"{path} does not end in {' or '.join(suffixes)}")
+        _check_extension(args, path, suffixes)
         if path is not args.input:
             if os.path.realpath(path) in taken:
                 args.parser.error(f"{path} cannot be two files at once")
             taken.append(os.path.realpath(path))
+
+
+def _check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
+    if os.path.splitext(path)[1].lower() not in suffixes:
+        args.parser.error(f"{path} does not end in {' or '.join(suffixes)}")

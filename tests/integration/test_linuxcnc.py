@@ -199,8 +199,8 @@ def test_names_in_a_drawing_are_not_orders(tmp_path):
 
 
 FAULTS = {
-    "no feed rate": lambda text: re.sub(r" F[\d.]+", "", text),
-    "feed rate zero": lambda text: re.sub(r" F[\d.]+", " F0", text),
+    "no feed rate": lambda text: re.sub(r"(?m)^F[\d.]+$", "", text),
+    "feed rate zero": lambda text: re.sub(r"(?m)^F[\d.]+$", "F0", text),
     "a word that is none": lambda text: text.replace("G1 ", "J1 ", 1),
     "a word twice": lambda text: re.sub(r"(G1 X[\d.]+)", r"\1 X1", text, count=1),
     "an exponent": lambda text: re.sub(r"Z-(\d)", r"Z-2.77e-17 Z-\1", text, count=1),

@@ -418,7 +418,10 @@ def spawn(*words, **settings):
 def test_the_package_runs_as_a_module(desk):
     done = spawn("convert", "a.svg", "b.svg", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"brushsvg: b.svg does not end in .json or .ngc (see brushsvg convert --help)\n"
+    assert (
+        done.stderr
+        == b"brushsvg: b.svg does not end in .json or .ngc or .gcode or .nc or .script (see brushsvg convert --help)\n"
+    )
     done = spawn("--version", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")
     assert re.fullmatch(rb"brushsvg \d+\.\d+\.\d+\n", done.stdout)
@@ -507,10 +510,10 @@ def test_a_full_disk_under_stdout_is_said(desk):
 def test_help_is_quick_and_promises_only_what_there_is(capsys):
     status, out, _ = run(capsys, "convert", "--help")
     assert status == 0
-    flags = set(re.findall(r"--[a-z]+", out))
+    flags = set(re.findall(r"--[a-z-]+", out))
     choices = {"--brush", "--cell", "--compensation", "--lag", "--tolerance", "--lenient"}
     choices |= {"--sheet", "--units", "--layer", "--select", "--width", "--fit", "--scale", "--origin"}
-    assert flags == choices | {"--help", "--preview", "--report"}
+    assert flags == choices | {"--help", "--preview", "--report", "--z-offset", "--from-stroke", "--order"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.convert"} & set(done.stderr.split())
@@ -523,27 +526,28 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     assert {"linuxcnc-3axis", "grbl-3axis"} <= set(names)
     for name in names:
         assert run(capsys, "cell", "show", name)[0] == 0
-        assert run(capsys, "cell", "check", name) == (0, f"{name}: cell {name} can be used\n", [])
+        status, out, err = run(capsys, "cell", "check", name)
+        assert (status, out) == (0, f"{name}: cell {name} can be used\n")
+        assert bool(err) == (name == "jaka-zu3"), "its programs cannot be written yet"
     assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis") == (0, "", [])
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
     text = (Path(commands.__file__).parent / "data" / "cells" / "grbl-3axis.toml").read_text()
     for old, new, said in (
-        ('"grbl"', '"krl"', "language: language 'krl' is not known; known: linuxcnc, grbl"),
         (
             "press_mm_s = 6.0",
             "press_mm_s = 0",
-            "press_mm_s: press_mm_s 0.0 is outside the range [0.01, 10000]",
+            "speeds.press_mm_s: speeds.press_mm_s 0 is outside the range [0.01, 10000]",
         ),
-        ("name", "nom", "nom: a cell has no key nom"),
+        ("name =", "nom =", "nom: a cell has no key nom; known here: name, description, language, decimals"),
     ):
         (desk / "my.toml").write_text(text.replace(old, new))
         assert run(capsys, "cell", "check", "my.toml") == (1, "", [f"brushsvg: my.toml: {said}"])
-    (desk / "my.toml").write_text(text.replace("max_paint_mm_s = 40.0", "max_paint_mm_s = 9"))
+    (desk / "my.toml").write_text(text.replace("paint_mm_s = 40.0", "paint_mm_s = 9"))
     assert run(capsys, "convert", "a.svg", "slow.ngc", "--cell", "my.toml") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
-    (desk / "my.toml").write_text(text.replace("= 30.0", "= 0.0"))
+    (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
     status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
     assert status == 1 and any("beyond the right edge of the workspace" in line for line in err)
     for cell, said in (

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from brushsvg import convert, report
+from brushsvg import convert, machine, report
 from brushsvg.brushes import find_brush
-from brushsvg.cell import find_cell
+from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -61,16 +61,16 @@ def test_the_comparison_is_a_table(drawing):
 def test_a_program_is_in_the_language_of_its_cell(drawing):
     work = convert.prepare(drawing)
     parts = work.plan, work.brush, "two"
-    assert convert.encode(".ngc", *parts).startswith(b"(title: two)")
+    assert "".join(machine.encode(".ngc", *parts)).startswith("(title: two)")
     for suffix in (".txt", "", ".NGC"):
-        with pytest.raises(Error, match=r"neither \.json.* nor \.ngc, for G-code for LinuxCNC"):
-            convert.encode(suffix, *parts)
+        with pytest.raises(Error, match=r"neither \.json.* nor \.ngc or .*, for G-code for LinuxCNC"):
+            machine.encode(suffix, *parts)
     cell = replace(find_cell(), language="semaphore")
-    assert convert.encode(".json", *parts, cell=cell).startswith(b"{")
+    assert machine.encode(".json", *parts, cell=cell).startswith(b"{")
     with pytest.raises(
-        Error, match="'semaphore' of cell linuxcnc-3axis is not known; known: linuxcnc"
+        Error, match="'semaphore', the language of cell linuxcnc-3axis; known: linuxcnc"
     ) as refusal:
-        convert.encode(".ngc", *parts, cell=cell)
+        machine.encode(".ngc", *parts, cell=cell)
     assert refusal.value.where == "language"
 
 
@@ -78,5 +78,5 @@ def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
     work = convert.prepare(drawing)
     work.plan.passes[1].speed_mm_s = 25.5
     with pytest.raises(Error, match=r"speed 25\.5 mm/s .* \(0, 25\.0\] mm/s of brush round-6") as refusal:
-        convert.encode(".ngc", work.plan, work.brush, "two")
+        machine.encode(".ngc", work.plan, work.brush, "two")
     assert refusal.value.where == "bold"

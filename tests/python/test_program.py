@@ -1,17 +1,15 @@
-"""Cell and program: what the robot does with a plan, and what it refuses."""
+"""What the robot does with a plan, and what it refuses."""
 
-from importlib.resources import files
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from brushsvg.cell import find_cell, read_cell
+from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
-from brushsvg.posts import POSTS
-from brushsvg.program import SAFE_MEANINGS, broken_limits, duration_s, program
-
-CELLS = sorted(files("brushsvg").joinpath("data", "cells").iterdir(), key=lambda file: file.name)
+from brushsvg.limits import broken_limits
+from brushsvg.moves import SAFE_MEANINGS, duration_s
+from brushsvg.program import Job, program, unchecked_program
 
 
 def plan_of(*poses, speed=20.0, sheet=(100.0, 60.0)):
@@ -30,43 +28,11 @@ BRUSH = brush_of()
 STROKE = [(10, 10, 0), (12, 10, -3), (30, 20, -3), (28, 20, 0)]
 
 
-@pytest.mark.parametrize("file", CELLS, ids=lambda file: file.name)
-def test_every_shipped_cell_loads(file):
-    cell = read_cell(file.read_text())
-    assert f"{cell.name}.toml" == file.name
-    assert find_cell(cell.name) == cell
-    assert cell.language in POSTS
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "where"),
-    [
-        ("press_mm_s = 8.0", "", "press_mm_s"),
-        ("press_mm_s = 8.0", "press_mm_s = 8.0\npress_speed = 3", "press_speed"),
-        ("press_mm_s = 8.0", 'press_mm_s = "8"', "press_mm_s"),
-        ("press_mm_s = 8.0", "press_mm_s = nan", "press_mm_s"),
-        ("press_mm_s = 8.0", "press_mm_s = 0", "press_mm_s"),
-        ("decimals = 4", "decimals = 4.0", "decimals"),
-        ("decimals = 4", "decimals = 9", "decimals"),
-        ("safe_height_mm = 10.0", "safe_height_mm = 0.5", "safe_height_mm"),
-        ("z_range_mm = [-20.0, 60.0]", "z_range_mm = [60.0, -20.0]", "z_range_mm"),
-        ("z_range_mm = [-20.0, 60.0]", "z_range_mm = [60.0]", "z_range_mm"),
-        ("workspace_margin_mm = 30.0", "workspace_margin_mm = -1", "workspace_margin_mm"),
-        ("decimals = 4", "decimals = ", ""),
-    ],
-)
-def test_a_faulty_cell_is_refused_by_key(old, new, where):
-    text = next(file for file in CELLS if file.stem == "linuxcnc-3axis").read_text()
-    assert old in text
-    with pytest.raises(Error) as refusal:
-        read_cell(text.replace(old, new))
-    assert refusal.value.where == where
-
-
 def test_moves_in_order_with_their_meaning():
     made = program(plan_of(STROKE, [(50, 50, 0), (60, 50, -1)]), BRUSH, find_cell())
-    assert [section.stroke for section in made.sections] == ["s1", "s2"]
-    moves = made.sections[0].moves
+    sections = list(made.sections())
+    assert [section.title for section in sections] == ["stroke 1 of 2: s1", "stroke 2 of 2: s2"]
+    moves = sections[0].moves
     assert [move.meaning for move in moves] == ["travel", "approach", "land", "paint", "lift", "retract"]
     assert np.vstack([moves[2].points_mm, moves[3].points_mm]) == pytest.approx(np.array(STROKE, float))
 
@@ -74,31 +40,47 @@ def test_moves_in_order_with_their_meaning():
 def test_nothing_fast_or_sideways_near_the_paper():
     cell = find_cell()
     made = program(plan_of(STROKE, [(50, 50, -2), (60, 50, -2)], speed=5.0), BRUSH, cell)
-    at = np.array([0.0, 0.0, cell.safe_height_mm])
-    for move in (move for section in made.sections for move in section.moves):
+    at = np.array([0.0, 0.0, cell.heights.safe_mm])
+    for move in (move for section in made.sections() for move in section.moves):
         for point in move.points_mm:
-            if min(at[2], point[2]) < cell.safe_height_mm and move.meaning != "paint":
+            if min(at[2], point[2]) < cell.heights.safe_mm and move.meaning != "paint":
                 assert at[:2] == pytest.approx(point[:2]), f"{move.meaning} runs sideways"
-            if min(at[2], point[2]) < cell.clearance_mm:
+            if min(at[2], point[2]) < cell.heights.clearance_mm:
                 assert move.speed_mm_s <= 5.0
                 assert move.meaning not in SAFE_MEANINGS
             at = point
 
 
 def test_a_pass_of_one_pose_is_a_dab():
-    moves = program(plan_of([(10, 10, -2)]), BRUSH, find_cell()).sections[0].moves
+    moves = program(plan_of([(10, 10, -2)]), BRUSH, find_cell())
+    moves = next(moves.sections()).moves
     assert [move.meaning for move in moves] == ["travel", "approach", "land", "lift", "retract"]
 
 
-def test_duration_counts_every_way_at_its_speed():
-    cell = find_cell()
-    expected = (10 - 1) / 30 + 1 / 8 + 30 / 20 + 1 / 8 + (10 - 1) / 60
-    fast = brush_of(40.0)
-    assert duration_s(plan_of([(0, 0, 0), (30, 0, 0)]), fast, cell) == pytest.approx(expected)
-    twice = duration_s(plan_of([(0, 0, 0), (30, 0, 0)], [(0, 0, 0), (30, 0, 0)]), fast, cell)
-    assert twice == pytest.approx(2 * expected + 30 / 60)
-    slowed = expected + (10 - 1) / 25 - (10 - 1) / 30
-    assert duration_s(plan_of([(0, 0, 0), (30, 0, 0)]), BRUSH, cell) == pytest.approx(slowed)
+def moving_s(length, speed, acceleration=500.0):
+    ramp = speed / acceleration
+    assert length > speed * ramp
+    return length / speed + ramp
+
+
+def test_duration_counts_every_way_at_its_speed_from_rest_to_rest():
+    cell, fast = find_cell(), brush_of(40.0)
+    expected = moving_s(9, 30) + moving_s(1, 8) + moving_s(30, 20) + moving_s(1, 8) + moving_s(9, 60)
+    line = [(0, 0, 0), (30, 0, 0)]
+    assert duration_s(unchecked_program(plan_of(line), fast, cell)) == pytest.approx(expected)
+    twice = duration_s(unchecked_program(plan_of(line, line), fast, cell))
+    assert twice == pytest.approx(2 * expected + moving_s(30, 60))
+    slowed = expected + moving_s(9, 25) - moving_s(9, 30)
+    assert duration_s(unchecked_program(plan_of(line), BRUSH, cell)) == pytest.approx(slowed)
+
+
+def test_a_job_may_begin_later_and_the_paper_lie_higher():
+    plan = plan_of(STROKE, STROKE, STROKE)
+    made = program(plan, BRUSH, find_cell(), (), Job(z_offset_mm=0.25, first_stroke=2))
+    assert [section.title for section in made.sections()] == ["stroke 2 of 3: s2", "stroke 3 of 3: s3"]
+    assert made.robot_from_frame[2, 3] == 0.25
+    with pytest.raises(Error, match=r"stroke 4 is outside the range \[1, 3\]"):
+        program(plan, BRUSH, find_cell(), (), Job(first_stroke=4))
 
 
 @pytest.mark.parametrize(
@@ -108,7 +90,7 @@ def test_duration_counts_every_way_at_its_speed():
         ([(-31.25, 10, 0), (10, 10, -1)], "1.25 mm beyond the left edge"),
         ([(10, 95, 0), (10, 10, -1)], "5.00 mm beyond the upper edge"),
         ([(10, -32, 0), (10, 10, -1)], "2.00 mm beyond the lower edge"),
-        ([(10, 10, 0), (20, 10, -20.5)], "height -20.5 mm is outside the range [-20.0, 60.0] mm"),
+        ([(10, 10, 0), (20, 10, -20.5)], "height -20.5 mm is outside the range [-20.0, 0.0] mm"),
         ([(10, 10, -1), (20, 10, 0.25)], "height 0.250 mm inside a pass is above the paper"),
         ([(10, 10, 0), (np.nan, 10, -1)], "not a finite number"),
         (np.zeros((0, 3)), "no poses"),
@@ -139,8 +121,8 @@ def test_speed_limits_and_nothing_to_paint():
 def test_no_move_on_the_way_down_or_up_is_faster_than_the_brush_may_go(limit):
     cell = find_cell()
     made = program(plan_of(STROKE, speed=min(limit, 20.0)), brush_of(limit), cell)
-    speeds = {move.meaning: move.speed_mm_s for move in made.sections[0].moves}
-    assert speeds["approach"] == min(cell.approach_mm_s, limit)
+    speeds = {move.meaning: move.speed_mm_s for move in next(made.sections()).moves}
+    assert speeds["approach"] == min(cell.speeds.approach_mm_s, limit)
     assert all(speed <= limit for meaning, speed in speeds.items() if meaning not in SAFE_MEANINGS)
 
 

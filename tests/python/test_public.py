@@ -28,8 +28,8 @@ def test_every_public_name_is_there(name):
 
 def test_names_and_table_agree():
     assert set(brushsvg.__all__) == {*brushsvg._HOME, "__version__"}
-    with pytest.raises(AttributeError, match="paint"):
-        brushsvg.paint  # noqa: B018
+    with pytest.raises(AttributeError, match="varnish"):
+        brushsvg.varnish  # noqa: B018
 
 
 @pytest.mark.parametrize(

@@ -294,7 +294,7 @@ def test_a_planted_fault_is_named(path, text, named):
 
 def test_what_is_allowed_is_not_named():
     assert not complaints(CPP / "src" / "simulate.cpp", '#include <vector>\n#include "brushsvg/lag.hpp"')
-    assert not complaints(PACKAGE / "posts" / "new.py", "import math\nfrom ..program import Move\n")
+    assert not complaints(PACKAGE / "posts" / "new.py", "import math\nfrom ..moves import Move\n")
 
 
 def test_an_import_that_cannot_be_followed_is_refused():

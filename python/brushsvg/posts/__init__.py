@@ -2,34 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from ..program import Program
+    from ..moves import Program
 
 
 class Post(NamedTuple):
-    """title: for people; extension: of its files; write: the whole program as 7-bit text."""
+    """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
+
+    in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
+    """
 
     title: str
-    extension: str
-    write: Callable[[Program], str]
+    extensions: tuple[str, ...]
+    write: Callable[[Program], Iterator[str]]
+    in_robot_frame: bool = True
 
 
-def _linuxcnc(program: Program) -> str:
+def _linuxcnc(program: Program) -> Iterator[str]:
     from .gcode import linuxcnc  # loaded for who writes, not for who only asks what can be written
 
     return linuxcnc(program)
 
 
-def _grbl(program: Program) -> str:
+def _grbl(program: Program) -> Iterator[str]:
     from .gcode import grbl
 
     return grbl(program)
 
 
+def _grbl_servo(program: Program) -> Iterator[str]:
+    from .gcode_servo import grbl_servo
+
+    return grbl_servo(program)
+
+
+def _urscript(program: Program) -> Iterator[str]:
+    from .urscript import urscript
+
+    return urscript(program)
+
+
+GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
-    "linuxcnc": Post("G-code for LinuxCNC", ".ngc", _linuxcnc),
-    "grbl": Post("G-code for grbl", ".ngc", _grbl),
+    "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
+    "grbl": Post("G-code for grbl", GCODE, _grbl),
+    "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, in_robot_frame=False),
 }

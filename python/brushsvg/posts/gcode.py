@@ -2,70 +2,75 @@
 
 from __future__ import annotations
 
-import math
-import unicodedata
+from collections.abc import Iterator
 
 import numpy as np
 
-from ..program import SAFE_MEANINGS, Move, Program
+from ..moves import SAFE_MEANINGS, Move, Program, Wait
+from .text import feed_mm_min, number, plain, rows
 
 LINE_LIMIT = 120  # LinuxCNC reads 255 characters; this also fits a screen
 GRBL_LINE_LIMIT = 70  # grbl 1.1 keeps 80 characters of a line, builds with less memory 70
+MODES = "G21 G90 G94 G17 G40 G80"
 
 
-def linuxcnc(program: Program) -> str:
-    """The whole program as text: header, one commented section per stroke, M2."""
+def linuxcnc(program: Program) -> Iterator[str]:
+    """The whole program: header, one commented section per stroke, M2."""
     # G64 P, not G61: exact path stops the machine at the joint of any two moves, and a brush that stands
     # still bleeds. Rounding the joints by a fraction of the plan's tolerance keeps the speed even.
-    tolerance = _number(program.path_tolerance_mm, program.decimals)
-    return _text(program, ["G21 G90 G94 G17 G40 G80", f"G64 P{tolerance}"], LINE_LIMIT)
+    tolerance = number(program.cell.blending.tolerance_mm, program.cell.decimals)
+    path = f"G64 P{tolerance}" if float(tolerance) else "G61"
+    yield from _program(program, [f"{MODES} G91.1", path], LINE_LIMIT)
 
 
-def grbl(program: Program) -> str:
+def grbl(program: Program) -> Iterator[str]:
     """As for LinuxCNC, but for G64, which grbl does not know: its setting $11 says how joints are taken."""
-    return _text(program, ["G21 G90 G94 G17 G40 G80"], GRBL_LINE_LIMIT)
+    yield from _program(program, [MODES], GRBL_LINE_LIMIT)
 
 
-def _text(program: Program, modes: list[str], line_limit: int) -> str:
-    decimals = program.decimals
-    lines = [_comment(line, line_limit) for line in program.header]
-    lines += modes
-    lines.append(f"G0 Z{_number(program.safe_height_mm, decimals)}")
-    feed = ""
-    for number, section in enumerate(program.sections, 1):
-        lines += ["", _comment(f"stroke {number} of {len(program.sections)}: {section.stroke}", line_limit)]
-        for move in section.moves:
-            points = _lines(move, decimals)
-            if move.meaning not in SAFE_MEANINGS:
-                wanted = f" F{_feed_mm_min(move.speed_mm_s):.1f}"
-                points[0] += wanted if wanted != feed else ""
-                feed = wanted
-            lines += points
-    return "\n".join([*lines, "", "M2", ""])
-
-
-def _lines(move: Move, decimals: int) -> list[str]:
-    word = "G0" if move.meaning in SAFE_MEANINGS else "G1"
-    pattern = f"{word} X%.{decimals}f Y%.{decimals}f Z%.{decimals}f"
-    rounded = np.round(move.points_mm, decimals) + 0.0  # -0.0 + 0.0 is 0.0: no minus sign before a zero
-    return ("\n".join([pattern] * len(rounded)) % tuple(rounded.ravel().tolist())).split("\n")
-
-
-def _feed_mm_min(speed_mm_s: float) -> float:
-    """Rounded down, so that a limit is kept; but not to 0, at which the machine would stand still."""
-    return max(math.floor(600.0 * speed_mm_s + 1e-6), 1) / 10
-
-
-def _number(value: float, decimals: int) -> str:
-    return f"{round(value, decimals) + 0.0:.{decimals}f}"
-
-
-def _comment(text: str, line_limit: int) -> str:
+def comment(text: str, line_limit: int) -> str:
     """One line of comment. LinuxCNC acts on comments that start with MSG, DEBUG, LOG, PRINT and the like, so
-    callers begin with a word of their own; brackets, line ends and letters beyond ASCII cannot stay."""
-    plain = unicodedata.normalize("NFKD", text)
-    plain = "".join(letter for letter in plain if not unicodedata.combining(letter))
-    plain = plain.translate({ord("("): "[", ord(")"): "]", ord("\n"): " ", ord("\r"): " ", ord("\t"): " "})
-    plain = "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
-    room = line_limit - 2
-    return f"({plain if len(plain) <= room else plain[: room - 3] + '...'})"
+    callers begin with a word of their own; brackets cannot stay."""
+    return f"({plain(text.translate({ord('('): '[', ord(')'): ']'}), line_limit - 2)})\n"
+
+
+def wait(step: Wait, line_limit: int) -> str:
+    """A dwell, or a stop until a person presses start."""
+    if step.seconds is None:
+        return comment(f"stop: {step.message}", line_limit) + "M0\n"
+    return f"G4 P{number(step.seconds, 3)}\n"
+
+
+def _program(program: Program, modes: list[str], line_limit: int) -> Iterator[str]:
+    decimals = program.cell.decimals
+    yield "".join(comment(line, line_limit) for line in program.header)
+    yield "\n".join(modes) + "\n"
+    here, feed = None, ""
+    for section in program.sections():
+        if here is None:  # up before going anywhere
+            yield f"G0 Z{number(section.moves[0].points_mm[0, 2], decimals)}\n"
+        yield "\n" + comment(section.title, line_limit)
+        for step in section.steps:
+            if isinstance(step, Wait):
+                yield wait(step, line_limit)
+                continue
+            if step.meaning not in SAFE_MEANINGS:
+                wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
+                if wanted != feed:
+                    yield wanted
+                feed = wanted
+            yield from _lines(step, here, decimals)
+            here = step.points_mm[-1]
+    yield "\nM2\n"
+
+
+def _lines(move: Move, here: np.ndarray | None, decimals: int) -> Iterator[str]:
+    if move.arc is not None and here is not None:
+        # I and J are counted from the point as it was written, so that both ends lie on one circle
+        start = np.round(here[:2], decimals)
+        values = np.array([[*move.points_mm[-1], *(np.array(move.arc.centre_mm) - start)]])
+        word = "G3" if move.arc.turn > 0 else "G2"
+        yield from rows(" ".join([word, *(f"{axis}%.{decimals}f" for axis in "XYZIJ")]), values, decimals)
+        return
+    word = "G0" if move.meaning in SAFE_MEANINGS else "G1"
+    yield from rows(f"{word} X%.{decimals}f Y%.{decimals}f Z%.{decimals}f", move.points_mm, decimals)

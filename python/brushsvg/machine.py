@@ -1,0 +1,196 @@
+"""From a plan to the text that a machine runs: limits asked, paint fetched, blends tried, header written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from . import _core
+from .blends import blend_radii, blended
+from .cell import Cell
+from .cell_file import find_cell
+from .errors import Error
+from .files import write_files
+from .limits import beyond_edges, broken_limits
+from .moves import Program, duration_s, in_robot_frame
+from .paint import visits
+from .posts import POSTS, Post
+from .program import WHOLE_JOB, Job, program, unchecked_program
+
+
+def problems(
+    plan, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB
+) -> list[tuple[str, str]]:
+    """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
+    found = broken_limits(plan, brush, cell, job.z_offset_mm) + off_sheet(marks, brush, plan.sheet_mm)
+    return found or shifted_by_blends(plan, brush, marks, cell, tolerance_mm)
+
+
+def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
+    """The cell, cutting corners by at most a fifth of a plan's tolerance: they must not use it up."""
+    cut_mm = min(cell.blending.tolerance_mm, tolerance_mm / 5)
+    return replace(cell, blending=replace(cell.blending, tolerance_mm=cut_mm))
+
+
+def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
+    """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
+    found = []
+    for trace in marks.passes:
+        bounds_mm = _core.painted_bounds(trace, brush)
+        if not np.isfinite(bounds_mm).all():
+            continue  # nothing touches the paper
+        found += [
+            (trace.stroke, f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet")
+            for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
+            if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
+        ]
+    return found
+
+
+def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of all paint. Error when nothing touches the paper."""
+    bounds = np.array([_core.painted_bounds(trace, brush) for trace in marks.passes]).reshape(-1, 4)
+    bounds = bounds[np.isfinite(bounds).all(axis=1)]
+    if not len(bounds):
+        raise Error("nothing touches the paper: there is no border")
+    return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
+
+
+def shifted_by_blends(plan, brush, marks, cell: Cell, tolerance_mm: float) -> list[tuple[str, str]]:
+    """(stroke, sentence) where cutting corners as the cell does moves the mark by more than the tolerance.
+
+    The path as it is run is simulated, and where the brush is taut its widest section compared with the plan's.
+    """
+    if not cell.blending.tolerance_mm:
+        return []
+    paths = [np.asarray(a_pass.poses_mm) for a_pass in plan.passes]
+    paths = [blended(poses, blend_radii(poses, cell.blending)) for poses in paths]
+    cut = _core.Plan(
+        sheet_mm=plan.sheet_mm,
+        passes=[
+            _core.Pass(each.stroke, path, each.speed_mm_s)
+            for each, (path, _) in zip(plan.passes, paths, strict=True)
+        ],
+    )
+    run_marks = _core.simulate(cut, brush, for_outlines=False)
+    found = []
+    for meant, run, (_, at) in zip(marks.passes, run_marks.passes, paths, strict=True):
+        shift_mm = _largest_shift_mm(meant, run, at, brush)
+        if shift_mm > tolerance_mm:
+            found.append(
+                (
+                    meant.stroke,
+                    f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
+                    f"mark by {shift_mm:.2f} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance",
+                )
+            )
+    return found
+
+
+def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
+    """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
+    taut = np.asarray(run.taut, dtype=bool)
+    if not taut.any():
+        return 0.0
+    pose = np.interp(np.asarray(run.pose)[taut], np.arange(len(at)), at)
+    planned = _core.widest_points(meant, brush)
+    there = np.column_stack([np.interp(pose, meant.pose, planned[:, axis]) for axis in (0, 1)])
+    return float(np.linalg.norm(_core.widest_points(run, brush)[taut] - there, axis=1).max())
+
+
+def post_for(suffix: str, cell: Cell) -> Post:
+    """How the cell's language is written. Error when it cannot be, or not in a file of that extension."""
+    post = POSTS.get(cell.language)
+    if post is None:
+        raise Error(
+            f"no program can be written in {cell.language!r}, the language of cell {cell.name}; "
+            f"known: {', '.join(POSTS)}",
+            where="language",
+        )
+    if suffix not in post.extensions:
+        raise Error(
+            f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
+            f"{post.title}, which cell {cell.name} speaks"
+        )
+    return post
+
+
+def encode(
+    suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None, job: Job = WHOLE_JOB
+) -> bytes | Iterator[str]:
+    """The plan as the bytes of a plan.json or a program in the cell's language, in pieces, by the file's extension.
+
+    Error for any other extension, and for a program where a limit of brush or cell is broken.
+    """
+    if suffix == ".json":
+        return _core.write_plan(plan).encode()
+    cell = cell or find_cell()
+    post = post_for(suffix, cell)
+    job = replace(job, visits=visits(plan, cell, job.first_stroke))
+    made = program(plan, brush, cell, (), job)
+    count = len(plan.passes)
+    header = (
+        f"title: {title or 'untitled'}",
+        f"brush: {plan.brush}, {count} strokes",
+        *notes,
+        *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
+        *about(made, job),
+        f"length: {painted_mm(plan, job):.0f} mm on the paper",
+    )
+    return text_of(post, replace(made, header=header))
+
+
+def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
+    """Lines of a header that every program has: machine, frame, time."""
+    lines = [
+        f"cell: {made.cell.name}, {made.cell.language}",
+        "frame: origin at the lower left corner of the sheet, mm; z 0: the brush just touches",
+        f"time: about {clock(duration_s(made))}",
+    ]
+    if job.z_offset_mm:
+        lines.append(f"paper: {job.z_offset_mm:+.2f} mm against the cell's")
+    if made.cell.paper.example:
+        lines.append("caution: the paper's place is the example of the cell file; teach yours")
+    return lines
+
+
+def text_of(post: Post, made: Program) -> Iterator[str]:
+    """The program in a robot's language, in pieces."""
+    return post.write(in_robot_frame(made) if post.in_robot_frame else made)
+
+
+def clock(seconds: float) -> str:
+    """A time for people."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s" if minutes else f"{rest} s"
+
+
+def painted_mm(plan, job: Job = WHOLE_JOB) -> float:
+    """Length of the TCP's path on the paper [mm]."""
+    steps = (np.diff(np.asarray(a_pass.poses_mm), axis=0) for a_pass in plan.passes[job.first_stroke - 1 :])
+    return sum(float(np.linalg.norm(each, axis=1).sum()) for each in steps)
+
+
+def time_s(plan, brush, cell: Cell) -> float:
+    """Estimated time of the whole plan, paint included; limits are not looked at."""
+    return duration_s(unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell))))
+
+
+def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
+    """Write a plan as plan.json or a program in the cell's language, by the extension of path.
+
+    Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
+    """
+    cell = as_exact_as(cell or find_cell(), DEFAULT_TOLERANCE_MM)
+    suffix = Path(path).suffix.lower()
+    for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
+        raise Error(sentence, where=where)
+    write_files({path: encode(suffix, plan, brush, title, cell=cell)})
+
+
+DEFAULT_TOLERANCE_MM = 0.05

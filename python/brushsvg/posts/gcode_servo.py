@@ -1,0 +1,87 @@
+"""Moves -> G-code for grbl machines whose brush hangs on a servo: M3 S... sets a value instead of a height."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..cell import Servo
+from ..moves import SAFE_MEANINGS, Move, Program, Wait
+from .gcode import GRBL_LINE_LIMIT, MODES, comment, wait
+from .text import feed_mm_min, number, rows
+
+TOUCHING = (
+    "land",
+    "paint",
+    "lift",
+    "dip",
+    "wipe",
+)  # here the lift goes as slowly as it is told; in the air at once
+
+
+def grbl_servo(program: Program) -> Iterator[str]:
+    """Heights become values of the servo's table, held along each line; a line is split where the height
+    changes by more than the servo's step. The machine should run in grbl's laser mode ($32=1), in which a new S
+    takes effect with the move that it stands in and does not stop it."""
+    servo, decimals = program.cell.servo, program.cell.decimals
+    yield "".join(comment(line, GRBL_LINE_LIMIT) for line in program.header)
+    yield comment("note: set $32=1, so that S changes along with the moves", GRBL_LINE_LIMIT)
+    yield f"{MODES}\n"
+    here, feed = None, ""
+    for section in program.sections():
+        if here is None:  # up before going anywhere
+            here = section.moves[0].points_mm[0] * (0, 0, 1)
+            yield f"M3 S{value_at(servo, here[2])}\n"
+            yield f"G4 P{number(servo.settle_s, 3)}\n" if servo.settle_s else ""
+        yield "\n" + comment(section.title, GRBL_LINE_LIMIT)
+        for step in section.steps:
+            if isinstance(step, Wait):
+                yield wait(step, GRBL_LINE_LIMIT)
+                continue
+            wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
+            if step.meaning not in SAFE_MEANINGS and wanted != feed:
+                yield wanted
+                feed = wanted
+            yield from _lines(step, here, servo, decimals)
+            here = step.points_mm[-1]
+    yield "\nM5\nM2\n"
+
+
+def value_at(servo: Servo, height_mm: float) -> int:
+    """The servo's value for a height."""
+    table = np.array(sorted(servo.table))
+    return int(np.rint(np.interp(height_mm, table[:, 0], table[:, 1])))
+
+
+def _lines(move: Move, here: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
+    path = np.vstack([here, move.points_mm])
+    steps = np.diff(path, axis=0)
+    flat = np.abs(steps[:, :2]).max(axis=1) < 0.5 * 10.0**-decimals
+    for first, last, still in zip(path[:-1], path[1:], flat, strict=True):
+        if still:
+            step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
+            yield from _lift(first[2], last[2], move.speed_mm_s, step_mm, servo)
+        else:
+            yield from _line(first, last, "G0" if move.meaning in SAFE_MEANINGS else "G1", servo, decimals)
+
+
+def _lift(from_mm: float, to_mm: float, speed_mm_s: float, step_mm: float, servo: Servo) -> Iterator[str]:
+    """The lift alone: step by step, waiting as long as the way takes at the speed, then until the servo rests."""
+    if from_mm == to_mm:
+        return
+    count = max(1, int(np.ceil(abs(to_mm - from_mm) / step_mm - 1e-9)))
+    for k in range(1, count + 1):
+        yield f"M3 S{value_at(servo, from_mm + (to_mm - from_mm) * k / count)}\n"
+        yield f"G4 P{number(max(abs(to_mm - from_mm) / count / speed_mm_s, 0.001), 3)}\n"
+    if servo.settle_s:
+        yield f"G4 P{number(servo.settle_s, 3)}\n"
+
+
+def _line(first: np.ndarray, last: np.ndarray, word: str, servo: Servo, decimals: int) -> Iterator[str]:
+    """A straight line in parts on each of which the height is the one half way along it."""
+    count = max(1, int(np.ceil(abs(last[2] - first[2]) / servo.step_mm - 1e-9)))
+    ends = first + (last - first) * np.arange(1, count + 1)[:, None] / count
+    heights = first[2] + (last[2] - first[2]) * (np.arange(count) + 0.5) / count
+    values = np.column_stack([ends[:, :2], [value_at(servo, height) for height in heights]])
+    yield from rows(f"{word} X%.{decimals}f Y%.{decimals}f S%d", values, decimals)

@@ -1,0 +1,85 @@
+"""Before the first stroke: the air run round the job, and the strokes that find the paper."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from brushsvg.brushes import find_brush
+from brushsvg.cell_file import find_cell
+from brushsvg.errors import Error
+from brushsvg.jobs import border, paper_height
+
+BRUSH = find_brush("round-6")
+CELL = find_cell()
+
+
+def points(program):
+    return np.vstack([move.points_mm for section in program.sections() for move in section.moves])
+
+
+def test_the_border_is_driven_round_in_the_air():
+    path = points(border((10, 20, 60, 45), BRUSH, CELL))
+    assert (path[:, 2] == CELL.heights.safe_mm).all()
+    assert path[:, :2].tolist() == [[10, 20], [60, 20], [60, 45], [10, 45], [10, 20]]
+    (section,) = border((10, 20, 60, 45), BRUSH, CELL).sections()
+    assert max(move.speed_mm_s for move in section.moves[1:]) <= BRUSH.max_speed_mm_s
+
+
+def test_each_stroke_is_deeper_by_one_step_and_says_what_it_means():
+    sections = list(paper_height(BRUSH, CELL, (200, 100), 1.0, -1.0, 0.1).sections())
+    assert len(sections) == 21
+    painted = [next(move for move in section.moves if move.meaning == "paint") for section in sections]
+    heights = [move.points_mm[0, 2] for move in painted]
+    assert heights == pytest.approx(np.linspace(1, -1, 21))
+    for section, height in zip(sections, heights, strict=True):
+        assert section.title.endswith(f"first to paint means --z-offset {height + 0.0:.2f}")
+        low = [move for move in section.moves if move.meaning in ("land", "paint", "lift")]
+        assert max(move.speed_mm_s for move in low) <= 15
+    assert heights[10] == pytest.approx(0, abs=1e-12)
+
+
+def test_the_strokes_do_not_meet_and_stay_on_the_sheet():
+    sheet = (120, 60)
+    made = paper_height(BRUSH, CELL, sheet, 1.0, -1.0, 0.1)
+    rows = [
+        [move.points_mm for move in s.moves if move.meaning in ("land", "paint")] for s in made.sections()
+    ]
+    spans = [(land[0, 0], paint[0, 0], land[0, 1]) for land, paint in rows]
+    for number, (left, right, y) in enumerate(spans):
+        assert 0 < left < right < sheet[0] and 0 < y < sheet[1]
+        for other in spans[:number]:
+            assert abs(other[2] - y) >= 6 or other[1] + 5 < left or right + 5 < other[0]
+
+
+@pytest.mark.parametrize(
+    ("sheet", "heights", "words"),
+    [
+        ((30, 20), (1, -1, 0.1), "room for 2 strokes, not for 21"),
+        ((200, 100), (1, -12, 0.5), r"height -12 mm is outside the range \[-10, 1\]"),
+        ((200, 100), (12, -1, 0.5), "height 12 mm is outside the range"),
+        ((200, 100), (1, -1, 0.01), "are 201 strokes, not 2 to 100"),
+        ((200, 100), (-1, 1, 0.1), "not 2 to 100"),
+    ],
+)
+def test_what_does_not_fit_is_refused(sheet, heights, words):
+    with pytest.raises(Error, match=words):
+        paper_height(BRUSH, CELL, sheet, *heights)
+
+
+def test_both_stay_in_the_workspace():
+    small = replace(CELL, workspace=replace(CELL.workspace, box_mm=((0.0, 0.0, -20.0), (50.0, 50.0, 60.0))))
+    with pytest.raises(Error, match=r"the tool goes to x 60\.0 mm"):
+        border((10, 20, 60, 45), BRUSH, small)
+    with pytest.raises(Error, match="the tool goes to"):
+        paper_height(BRUSH, small, (200, 100), 1.0, -1.0, 0.1)
+    with pytest.raises(Error, match=r"height -1 mm is outside the range"):
+        paper_height(
+            SimpleNamespace(**{"depth_range_mm": (0, 0.5), "max_speed_mm_s": 9.0}),
+            CELL,
+            (200, 100),
+            1,
+            -1,
+            0.1,
+        )

@@ -1,0 +1,124 @@
+"""Fetching paint: when, where, in which order, and never below what is safe."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from brushsvg.cell import Reload, Station
+from brushsvg.cell_file import find_cell
+from brushsvg.errors import Error
+from brushsvg.limits import broken_limits
+from brushsvg.moves import Wait
+from brushsvg.paint import visits
+from brushsvg.program import visit
+
+BLACK = Station(
+    "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
+)
+ANY = Station("any", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-14.0, 40.0, 3.0), (-10.0, 40.0, 3.0)))
+WATER = Station("water", (-20.0, 70.0), depth_mm=12.0)
+BRUSH = SimpleNamespace(name="b", max_speed_mm_s=25.0)
+
+
+def cell_with(reload, *stations):
+    return replace(find_cell(), reload=reload, stations=stations or (BLACK, ANY, WATER))
+
+
+def plan_of(*strokes):
+    """Strokes as (length in mm, colour, layer)."""
+    passes = [
+        SimpleNamespace(
+            stroke=f"s{k}", poses_mm=np.array([(0, 0, 0), (length, 0, -1.0)]), colour=colour, layer=layer
+        )
+        for k, (length, colour, layer) in enumerate(strokes, 1)
+    ]
+    return SimpleNamespace(passes=passes, sheet_mm=(400.0, 100.0))
+
+
+def names(found):
+    return [[station.name for station in stations] for stations in found]
+
+
+def test_no_reload_no_visits():
+    assert visits(plan_of((10, "#000000", "")), find_cell()) == ()
+
+
+def test_paint_lasts_so_far():
+    plan = plan_of(*[(40, "#000000", "")] * 6)
+    assert names(visits(plan, cell_with(Reload("length", 100.0)))) == [
+        ["black"],
+        [],
+        ["black"],
+        [],
+        ["black"],
+        [],
+    ]
+    assert names(visits(plan, cell_with(Reload("length", 1000.0)))) == [["black"], [], [], [], [], []]
+
+
+def test_every_stroke_or_every_layer():
+    plan = plan_of((9, "#000000", "a"), (9, "#000000", "a"), (9, "#000000", "b"))
+    assert names(visits(plan, cell_with(Reload("stroke")))) == [["black"]] * 3
+    assert names(visits(plan, cell_with(Reload("layer")))) == [["black"], [], ["black"]]
+
+
+def test_another_colour_is_washed_for():
+    plan = plan_of((9, "#000000", ""), (9, "#FF0000", ""), (9, "#00ff00", ""), (9, "#000000", ""))
+    found = names(visits(plan, cell_with(Reload("length", wash="water"))))
+    assert found == [["black"], ["water", "any"], [], ["water", "black"]], (
+        "red and green come from one vessel"
+    )
+
+
+def test_a_resumed_job_begins_with_paint():
+    plan = plan_of(*[(40, "#000000", "")] * 4)
+    assert names(visits(plan, cell_with(Reload("length", 1000.0)), first_stroke=3)) == [[], [], ["black"], []]
+
+
+def test_a_colour_that_nobody_serves_is_refused():
+    cell = cell_with(Reload("stroke"), BLACK)
+    with pytest.raises(Error, match="has paint of colour #ff0000; there are #000000") as refusal:
+        visits(plan_of((9, "#000000", ""), (9, "#ff0000", "")), cell)
+    assert refusal.value.where == "s2"
+
+
+def test_a_visit_goes_down_into_the_paint_and_drips_off():
+    section = visit(BLACK, BRUSH, find_cell())
+    assert section.title == "paint: black"
+    told = [
+        ("wait", step.seconds) if isinstance(step, Wait) else (step.meaning, *step.points_mm[-1])
+        for step in section.steps
+    ]
+    assert told == [
+        ("travel", -20, 10, 10),
+        ("approach", -20, 10, 5),
+        ("dip", -20, 10, -9),
+        ("wait", 0.5),
+        ("dip", -20, 10, 5),
+        ("wait", 2.0),
+        ("retract", -20, 10, 10),
+    ]
+    assert all(step.speed_mm_s <= 25 for step in section.moves if step.meaning not in ("travel", "retract"))
+    wiped = visit(ANY, BRUSH, find_cell()).moves
+    assert wiped[-2].points_mm.tolist() == [[-14, 40, 3], [-10, 40, 3]]
+    assert wiped[-1].points_mm.tolist() == [[-10, 40, 10]]
+
+
+def test_a_person_dips_at_safe_height():
+    section = visit(Station("hand", (5.0, 6.0), by_hand=True), BRUSH, find_cell())
+    assert section.moves[0].points_mm.tolist() == [[5, 6, 10]]
+    assert section.steps[-1] == Wait(None, "dip the brush: hand")
+
+
+def test_a_station_out_of_the_box_is_refused():
+    cell = cell_with(Reload("stroke"))
+    boxed = replace(
+        cell, workspace=replace(cell.workspace, box_mm=((-15.0, -50.0, -30.0), (500.0, 200.0, 60.0)))
+    )
+    broken = broken_limits(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
+    assert (
+        "black",
+        "the tool goes to x -20.0 mm, outside the range [-15, 500] mm of the box of cell linuxcnc-3axis",
+    ) in broken

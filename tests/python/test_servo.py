@@ -1,0 +1,64 @@
+"""G-code for a brush on a servo: the values that come out paint at the heights that went in."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_gcode import TWO, text_of
+
+from brushsvg.cell_file import find_cell
+from brushsvg.posts.gcode_servo import value_at
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
+CELL = find_cell("grbl-servo")
+
+
+def run(text):
+    """(x, y, height) at the end of each line that moves, with its height held along it; and the waiting in s."""
+    table = np.array(sorted(CELL.servo.table))
+    x = y = value = None
+    rows, waited = [], 0.0
+    for line in text.splitlines():
+        words = dict(re.findall(r"([XYSP])(-?[\d.]+)", line.split("(")[0]))
+        waited += float(words.get("P", 0))
+        value = int(words["S"]) if "S" in words else value
+        if "X" in words:
+            x, y = float(words["X"]), float(words["Y"])
+        if x is not None and {"X", "S"} & set(words):
+            rows.append((x, y, float(np.interp(value, table[:, 1], table[:, 0]))))
+    return rows, waited
+
+
+def test_golden():
+    header = ("title: two strokes", "brush: round-6, 2 strokes")
+    assert text_of(*TWO, header=header, cell="grbl-servo") == GOLDEN.read_text(encoding="ascii")
+
+
+def test_heights_along_the_way_are_the_plans():
+    rows, _ = run(text_of(*TWO, cell="grbl-servo"))
+    for _, poses, _ in TWO:
+        for pose in poses:
+            near = [row for row in rows if np.hypot(row[0] - pose[0], row[1] - pose[1]) < 1e-3]
+            away = min(abs(row[2] - pose[2]) for row in near)
+            assert away <= CELL.servo.step_mm / 2 + 0.02, "half a step, and half a value"
+
+
+def test_the_lift_alone_takes_its_time():
+    _, waited = run(text_of(("dab", [(10, 10, 0), (10, 10, -2), (10, 10, 0)], 20.0), cell="grbl-servo"))
+    down_s = (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 20 + CELL.heights.clearance_mm / 6 + 2 / 6
+    up_s = 2 / 6 + CELL.heights.clearance_mm / 6 + (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 50
+    lifts = 7  # up before anything; approach, land, press, release, lift, retract
+    assert waited == pytest.approx(down_s + up_s + lifts * CELL.servo.settle_s, abs=0.06)
+
+
+def test_only_what_grbl_knows():
+    text = text_of(*TWO, cell="grbl-servo")
+    assert not re.search(r"Z-?\d", text)
+    assert max(map(len, text.splitlines())) <= 70
+    values = [int(value) for value in re.findall(r"S(\d+)", text)]
+    assert min(values) >= 200 and max(values) == 800
+
+
+def test_values_follow_the_table():
+    assert [value_at(CELL.servo, height) for height in (-10, -5, 0, 5, 9)] == [200, 400, 600, 800, 800]

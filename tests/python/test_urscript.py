@@ -1,0 +1,143 @@
+"""URScript: what a stub of the robot does with our programs, and that the stub refuses broken ones."""
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from urscript_stub import matrix, run
+
+from brushsvg.cell import Paper, Reload, Station, robot_from_paper
+from brushsvg.cell_file import find_cell
+from brushsvg.frame import moved
+from brushsvg.machine import text_of
+from brushsvg.posts import POSTS
+from brushsvg.program import Job, program
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.script"
+CELL = find_cell("ur5e")
+BRUSH = SimpleNamespace(name="b", max_speed_mm_s=25.0)
+ARC = [(20.0 - 8 * np.cos(a), 30 + 8 * np.sin(a), -2.0) for a in np.linspace(0, 2, 9)]
+STROKES = {
+    "n/1": [(10, 10, 0), (12.5, 10, -3), (30.123456, 20.98766, -3.25), (40, 24, -3.25), (38, 23.5, 0)],
+    "dot": [(40, 30, 0), (40, 30, -2), (43, 30, -2), (42, 30, 0)],
+    "turn": [(12, 10, 0), *ARC, (30, 45, -2), (30, 44, 0)],
+}
+ARCS = {"turn": [(1, 9, 20.0, 30.0, -1)]}
+
+
+def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), **job):
+    passes = [
+        SimpleNamespace(
+            stroke=name,
+            poses_mm=np.array(poses, float),
+            speed_mm_s=20.0,
+            arcs=ARCS.get(name, ()),
+            colour="",
+            layer="",
+        )
+        for name, poses in strokes.items()
+    ]
+    made = program(SimpleNamespace(sheet_mm=(100.0, 60.0), passes=passes), BRUSH, cell, header, Job(**job))
+    return "".join(text_of(POSTS["urscript"], made))
+
+
+def touched(robot, cell):
+    """Poses below the clearance in the paper's frame [mm], with name, speed [mm/s] and blend [mm] of each."""
+    paper_from_robot = np.linalg.inv(robot_from_paper(cell))
+    rows = []
+    for name, *rest in robot.events:
+        if name in ("sleep", "popup"):
+            continue
+        poses, speed, blend = rest
+        for pose in poses:
+            point = moved(paper_from_robot, 1e3 * np.array([pose[:3]]))[0]
+            rows.append((name, point, 1e3 * speed, 1e3 * blend))
+    return [row for row in rows if row[1][2] < cell.heights.clearance_mm - 1e-6]
+
+
+@pytest.mark.parametrize("paper", [CELL.paper, Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0))])
+def test_the_robot_goes_through_the_plans_poses(paper):
+    cell = replace(CELL, paper=paper)
+    rows = touched(run(text_for(cell)), cell)
+    wanted = [
+        *STROKES["n/1"],
+        *STROKES["dot"],
+        STROKES["turn"][0],
+        ARC[0],
+        ARC[4],
+        ARC[8],
+        *STROKES["turn"][10:],
+    ]
+    assert np.array([row[1] for row in rows]) == pytest.approx(np.array(wanted), abs=1e-3)
+    assert [row[0] for row in rows].count("movec") == 2
+    assert max(row[2] for row in rows) <= 20.0 + 1e-9
+
+
+def test_the_brush_stands_on_the_papers_normal():
+    cell = replace(
+        CELL, paper=Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0)), tool=replace(CELL.tool, spin_deg=30.0)
+    )
+    robot = run(text_for(cell))
+    normal = robot_from_paper(cell)[:3, 2]
+    for name, *rest in robot.events:
+        if name.startswith("move"):
+            assert matrix(rest[0][-1])[:3, 2] == pytest.approx(-normal, abs=1e-6)
+    assert robot.tcp[:3] == (0.0, 0.0, 0.15)
+
+
+def test_where_it_turns_back_it_stops_and_elsewhere_it_blends_within_reach():
+    rows = touched(run(text_for()), CELL)
+    for before, here, after in zip(rows, rows[1:], rows[2:], strict=False):
+        into, out = here[1] - before[1], after[1] - here[1]
+        if min(np.linalg.norm(into), np.linalg.norm(out)) < 1e-9:
+            continue
+        cosine = into @ out / np.linalg.norm(into) / np.linalg.norm(out)
+        if cosine < np.cos(np.radians(100)):
+            assert here[0] != "movep" and here[3] == 0, "movep cannot turn back"
+        assert here[3] <= 0.45 * min(np.linalg.norm(into), np.linalg.norm(out)) + 1e-9
+    assert any(row[3] > 0.1 for row in rows)
+
+
+def test_the_brush_is_raised_before_it_goes_anywhere():
+    low = run(text_for(), start=(-0.1, -0.5, 0.021, 3.14159265, 0, 0))
+    first, second = (event[1][0] for event in low.events[:2])
+    assert first[:2] == pytest.approx((-0.1, -0.5)) and first[2] == pytest.approx(0.04)
+    assert second[2] == pytest.approx(0.04)
+    high = run(text_for(), start=(-0.1, -0.5, 0.3, 3.14159265, 0, 0))
+    assert len(high.events) == len(low.events) - 1
+
+
+def test_paint_is_waited_for():
+    stations = (
+        Station("red", (150.0, 10.0), depth_mm=5.0, hold_s=0.5),
+        Station("hand", (150.0, 50.0), by_hand=True),
+    )
+    cell = replace(CELL, reload=Reload("stroke"), stations=stations)
+    robot = run(text_for(cell, visits=((stations[0],), (), (stations[1],))))
+    waits = [event for event in robot.events if event[0] in ("sleep", "popup")]
+    assert waits == [("sleep", 0.5), ("popup", "dip the brush: hand")]
+
+
+def test_golden():
+    assert text_for() == GOLDEN.read_text(encoding="ascii")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("movep(", "mover("),
+        (", v=", ", w="),
+        ("0.0100000", "1e-2"),
+        ("p[x, y, z, ", "p[x, y, "),
+        ("set_tcp", "#"),
+        ("v=0.02000", "v=20.0"),
+        ("))", ")"),
+    ],
+)
+def test_the_stub_refuses_broken_programs(old, new):
+    text = text_for()
+    assert old in text
+    with pytest.raises((AssertionError, NameError, TypeError, SyntaxError)):
+        run(text.replace(old, new))

@@ -1,0 +1,90 @@
+"""A small interpreter of URScript, by the manual's signatures: runs a program and records where the tool goes."""
+
+import re
+
+import numpy as np
+
+
+class Pose(tuple):
+    """p[x, y, z, rx, ry, rz] in metres and as a rotation vector."""
+
+
+class _PoseLiteral:
+    def __getitem__(self, values):
+        assert len(values) == 6 and all(isinstance(value, int | float) for value in values)
+        return Pose(values)
+
+
+def matrix(pose):
+    import cv2
+
+    frame = np.eye(4)
+    frame[:3, :3] = cv2.Rodrigues(np.array(pose[3:], dtype=float))[0]
+    frame[:3, 3] = pose[:3]
+    return frame
+
+
+def pose_of(frame):
+    import cv2
+
+    return Pose(
+        (*frame[:3, 3].tolist(), *cv2.Rodrigues(np.ascontiguousarray(frame[:3, :3]))[0].ravel().tolist())
+    )
+
+
+class Robot:
+    """events: (name, poses, speed m/s, blend radius m) of each move; ("sleep", s) and ("popup", text)."""
+
+    def __init__(self, start=(0.0, -0.4, 0.5, 3.14159265, 0.0, 0.0)):
+        self.here, self.tcp, self.events = Pose(start), None, []
+
+    def movel(self, pose, a=1.2, v=0.25, t=0, r=0):
+        self._move("movel", (pose,), a, v, r)
+
+    def movep(self, pose, a=1.2, v=0.25, r=0):
+        self._move("movep", (pose,), a, v, r)
+
+    def movec(self, pose_via, pose_to, a=1.2, v=0.25, r=0, mode=0):
+        assert mode in (0, 1)
+        self._move("movec", (pose_via, pose_to), a, v, r)
+
+    def _move(self, name, poses, a, v, r):
+        assert self.tcp is not None, "the tool is not set"
+        assert all(isinstance(pose, Pose) for pose in poses)
+        assert 0 < a <= 20 and 0 < v <= 3 and 0 <= r < 0.1
+        self.events.append((name, poses, v, r))
+        self.here = poses[-1]
+
+    def set_tcp(self, pose):
+        assert isinstance(pose, Pose)
+        self.tcp = pose
+
+    def sleep(self, t):
+        assert t >= 0
+        self.events.append(("sleep", t))
+
+    def popup(self, s, title="Popup", warning=False, error=False, blocking=False):
+        assert isinstance(s, str)
+        self.events.append(("popup", s))
+
+
+def run(text, **settings):
+    """What a program does. AssertionError or a Python error for what the language does not have."""
+    robot = Robot(**settings)
+    assert text.isascii()
+    lines = [line for line in text.splitlines() if line.strip() != "end"]
+    for line in lines:
+        code = line.split("#")[0]
+        assert not re.search(r"\d[eE]|-0\.0+\b(?!\d)", re.sub(r'"[^"]*"', "", code)), line
+    names = {
+        **{name: getattr(robot, name) for name in ("movel", "movep", "movec", "set_tcp", "sleep", "popup")},
+        "p": _PoseLiteral(),
+        "True": True,
+        "False": False,
+        "pose_trans": lambda a, b: pose_of(matrix(a) @ matrix(b)),
+        "pose_inv": lambda a: pose_of(np.linalg.inv(matrix(a))),
+        "get_actual_tcp_pose": lambda: robot.here,
+        "__builtins__": {},
+    }
+    exec("\n".join(lines), names)
+    return robot
