@@ -114,8 +114,8 @@ def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cel
     steps = np.diff(poses, axis=0)
     kinds = np.full(len(steps), PLAIN)
     kinds[on_the_spot(steps)] = ON_THE_SPOT
-    for number, (first, last, *_) in enumerate(arcs):
-        kinds[int(first) : int(last)] = number
+    for number, arc in enumerate(arcs):
+        kinds[arc.first : arc.last] = number
     new_run = np.diff(kinds) != 0
     radii = None
     if cell.blending.radius_mm:
@@ -125,6 +125,6 @@ def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cel
         if not len(run):
             continue
         kind = kinds[run[0]]
-        arc = Arc(tuple(map(float, arcs[kind][2:4])), int(arcs[kind][4])) if kind >= 0 else None
+        arc = Arc(tuple(arcs[kind].centre_mm), arcs[kind].direction) if kind >= 0 else None
         speed = press_mm_s if kind == ON_THE_SPOT else paint_mm_s
         yield Move("paint", poses[run + 1], speed, arc, None if radii is None else radii[run + 1])
