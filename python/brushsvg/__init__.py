@@ -56,6 +56,7 @@ _HOME = {
     "marks_svg": "render",
 } | dict.fromkeys(
     [
+        "Arc",
         "Brush",
         "Compensated",
         "Marks",
@@ -80,6 +81,7 @@ _HOME = {
 )
 
 __all__ = [
+    "Arc",
     "Brush",
     "Compensated",
     "Error",
