@@ -79,7 +79,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
                 problems.append((_name(section), "the brush never touches the paper"))
             for name, poses, radii, speed, arcs in found:
                 joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm))
-                meant.append(_core.Pass(name, poses, speed, **({"arcs": arcs} if arcs else {})))
+                meant.append(_core.Pass(name, poses, speed, arcs=arcs))
                 cut.append(_core.Pass(name, blended(poses, joint)[0], speed))
         here = track.points[-1] if len(track.points) else here
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)

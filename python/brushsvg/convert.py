@@ -81,10 +81,8 @@ def _with_speeds(plan, strokes):
     """The plan with the speeds that the drawing's settings ask for."""
     speeds = [json.loads(stroke.settings).get("speed_mm_s") for stroke in strokes]
     if any(speeds):
-        passes = plan.passes
-        for a_pass, speed in zip(passes, speeds, strict=True):
+        for a_pass, speed in zip(plan.passes, speeds, strict=True):
             a_pass.speed_mm_s = speed or a_pass.speed_mm_s
-        plan.passes = passes
     return plan
 
 

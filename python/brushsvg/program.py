@@ -92,7 +92,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
 
 
 def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if len(poses) == 0:
         return ()
     start, end = poses[0], poses[-1]
@@ -103,7 +103,7 @@ def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
         Move("travel", over(start, heights.safe_mm), speeds.travel_mm_s),
         Move("approach", over(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
-        *_painting(poses, getattr(a_pass, "arcs", ()), a_pass.speed_mm_s, press_mm_s, cell),
+        *_painting(poses, a_pass.arcs, a_pass.speed_mm_s, press_mm_s, cell),
         Move("lift", over(end, heights.clearance_mm), press_mm_s),
         Move("retract", over(end, heights.safe_mm), speeds.travel_mm_s),
     )
