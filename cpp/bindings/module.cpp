@@ -29,5 +29,6 @@ PYBIND11_MODULE(_core, m) {
     bind_region(m);
     bind_coverage(m);
     bind_compensate(m);
+    bind_interrupt(m);
     bind_io(m);
 }

@@ -8,6 +8,7 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "middle_line.hpp"
+#include "touch.hpp"
 
 namespace brushsvg {
 namespace {
@@ -15,49 +16,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// How far inside q = P + r u a lift stays: 0 slips on straight moves (0.25 mm from depth 10), much more lets the patch
-/// relax towards its pressed shape.
-constexpr double kLiftSlackMm = 0.05;
-
 Vector2d turned(const Vector2d& u, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * u.x() - s * u.y(), s * u.x() + c * u.y()};
 }
-
-/// An arc turns the heading by no less: smaller ones say no more than their chord.
-constexpr double kLeastArcRad = 1e-3;
-/// What counts as one circle: far more than rounding, far less than is written to a file.
-constexpr double kSameCircleMm = 1e-8;
-
-struct PoseList {
-    std::vector<std::array<double, 3>> poses;
-    std::vector<Arc> arcs;
-
-    void add(const Vector2d& q, double depth) {
-        const std::array<double, 3> pose{q.x(), q.y(), depth > 0.0 ? -depth : 0.0};
-        if (poses.empty() || poses.back() != pose) poses.push_back(pose);
-    }
-    std::int64_t last() const { return std::int64_t(poses.size()) - 1; }
-    /// The poses from `first` on go round a centre; one arc with the one before where that goes on.
-    void arc(std::int64_t first, const Vector2d& centre_mm, double angle) {
-        const auto radius_at = [&](std::int64_t i) { return (Vector2d(poses[i][0], poses[i][1]) - centre_mm).norm(); };
-        const double radius_mm = radius_at(first);
-        if (std::abs(angle) < kLeastArcRad || radius_mm < 2.0 * kArcRadiusMm[0]) return;
-        for (std::int64_t i = first + 1; i <= last(); ++i)
-            if (std::abs(radius_at(i) - radius_mm) > kSameCircleMm || poses[i][2] != poses[first][2]) return;
-        const Arc arc{first, last(), centre_mm, angle > 0.0 ? 1 : -1};
-        if (!arcs.empty() && arcs.back().last == first && arcs.back().direction == arc.direction &&
-            (arcs.back().centre_mm - centre_mm).norm() < kSameCircleMm)
-            arcs.back().last = arc.last;
-        else
-            arcs.push_back(arc);
-    }
-    void into(Pass& pass) const {
-        pass.poses_mm.resize(Index(poses.size()), 3);
-        for (Index i = 0; i < pass.poses_mm.rows(); ++i) pass.poses_mm.row(i) << poses[i][0], poses[i][1], poses[i][2];
-        pass.arcs = arcs;
-    }
-};
 
 /// Chords of the circle about the contact from one heading to the other. Inscribed chords leave the lever loose, so the
 /// patch rests; tangent ones would drag it. Noted as an arc too, of radius r and not a hair less: a radius too large by
@@ -69,46 +31,6 @@ void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, Pos
         const double c = double(k) / n, depth = from.depth + c * (to.depth - from.depth);
         out.add(from.contact + brush.lag(depth) * turned(from.heading, c * angle), depth);
     }
-}
-
-/// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
-bool may_press_while_running(const Brush& brush, double depth) {
-    const double reach = brush.lag(depth);
-    for (int i = 1; i < 64; ++i) {
-        const double t = i / 64.0;
-        if (t * reach > brush.lag(t * depth) + 1e-12) return false;
-    }
-    return true;
-}
-
-void land(const Sample& first, const Brush& brush, PoseList& out) {
-    out.add(first.contact, 0.0);
-    if (!may_press_while_running(brush, first.depth)) out.add(first.contact, first.depth);
-    out.add(first.contact + brush.lag(first.depth) * first.heading, first.depth);
-}
-
-/// Holds P and comes back along q = P + r(depth) u, a little inside: no tail.
-void lift(const Sample& last, const Brush& brush, PoseList& out) {
-    const auto back = [&](double depth) {
-        return Vector2d(last.contact + std::max(0.0, brush.lag(depth) - kLiftSlackMm) * last.heading);
-    };
-    if (!brush.is_rigid()) {
-        out.add(back(last.depth), last.depth);
-        // straight moves must not leave the curve by more than the slack: |r''| dd^2 / 8
-        const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
-        double curved = 0.0;
-        for (const auto& piece : law.pieces) curved = std::max(curved, piece.most_curved);
-        const double step = curved > 0.0 ? std::sqrt(8.0 * 0.6 * kLiftSlackMm / curved) : last.depth;
-        std::vector<double> depths;
-        const int n = std::max(1, int(std::ceil(last.depth / step)));
-        for (int k = n - 1; k >= 0; --k) depths.push_back(last.depth * k / n);
-        for (const auto& piece : law.pieces)
-            if (piece.hi < last.depth) depths.push_back(piece.hi);
-        std::sort(depths.rbegin(), depths.rend());
-        for (double depth : depths) out.add(back(depth), depth);
-        return;
-    }
-    out.add(last.tcp, 0.0);
 }
 
 /// q = m + (r - e) u with P dragged by m on the lever e (article's law read backwards).
@@ -267,7 +189,7 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
         refine_steps(line, samples, step_tolerance, inverse);
     }
     PoseList out;
-    land(samples.front(), brush, out);
+    land({samples.front().contact, samples.front().heading, samples.front().depth}, brush, out);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         turns = turns || !samples[i].taut;
         if (i > 0 && !brush.is_rigid()) {
@@ -282,7 +204,7 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
             out.add(samples[i].tcp, samples[i].depth);
         }
     }
-    lift(samples.back(), brush, out);
+    lift({samples.back().contact, samples.back().heading, samples.back().depth}, brush, out);
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/footprint.hpp"
+#include "brushsvg/interrupt.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/marks.hpp"

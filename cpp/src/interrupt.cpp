@@ -1,0 +1,112 @@
+#include "brushsvg/interrupt.hpp"
+
+#include <cmath>
+
+#include "brushsvg/error.hpp"
+#include "brushsvg/simulate.hpp"
+#include "touch.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// A brush that hardly touches has no patch to land in.
+constexpr double kLeastDepthMm = 0.05;
+
+/// Where the pass may be cut: poses that the brush passes taut and pressed, inside no arc.
+struct Place {
+    Index pose;
+    double along_mm;  ///< path of the TCP up to it
+    Stance stance;
+};
+
+std::vector<double> path_lengths(const Poses& poses) {
+    std::vector<double> along{0.0};
+    for (Index i = 1; i < poses.rows(); ++i) along.push_back(along.back() + (poses.row(i) - poses.row(i - 1)).norm());
+    return along;
+}
+
+bool inside_an_arc(const Pass& pass, Index pose) {
+    for (const Arc& arc : pass.arcs)
+        if (arc.first < pose && pose < arc.last) return true;
+    return false;
+}
+
+std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vector<double>& along) {
+    const PassMarks marks = simulate(pass, brush, 0.05, false);
+    std::vector<Place> out;
+    for (std::size_t row = 0; row < marks.pose.size(); ++row) {
+        const double pose = marks.pose[row];
+        const Index i = Index(std::lround(pose));
+        if (pose != double(i) || (!marks.taut[row] && !brush.is_rigid()) || marks.depth_mm[row] < kLeastDepthMm)
+            continue;
+        if (i == 0 || i + 1 >= pass.poses_mm.rows() || inside_an_arc(pass, i)) continue;
+        if (!out.empty() && out.back().pose == i) out.pop_back();  // the last row of a pose is what goes on
+        const double u = marks.heading_rad[row];
+        out.push_back(
+            {i,
+             along[i],
+             {marks.contact_mm.row(Index(row)).transpose(), {std::cos(u), std::sin(u)}, marks.depth_mm[row]}});
+    }
+    return out;
+}
+
+/// Poses of the pass from one to another with its arcs, between a landing and a lift.
+Pass part(const Pass& pass, const Brush& brush, const Place* from, const Place* to, int number) {
+    PoseList list;
+    if (from) land(from->stance, brush, list);
+    const Index first = from ? from->pose : 0, last = to ? to->pose : pass.poses_mm.rows() - 1;
+    std::vector<std::int64_t> at;
+    for (Index i = first; i <= last; ++i) {
+        list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
+        at.push_back(list.last());
+    }
+    if (to) lift(to->stance, brush, list);
+    Pass out = pass;
+    list.into(out);
+    out.arcs.clear();
+    for (const Arc& arc : pass.arcs)
+        if (arc.first >= first && arc.last <= last)
+            out.arcs.push_back({at[arc.first - first], at[arc.last - first], arc.centre_mm, arc.direction});
+    if (number > 1) out.stroke += "~" + std::to_string(number);
+    return out;
+}
+
+}  // namespace
+
+std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const InterruptOptions& options) {
+    if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
+        throw Error("paint must last for more than twice the backtrack", pass.stroke, options.every_mm);
+    const std::vector<double> along = path_lengths(pass.poses_mm);
+    if (along.back() <= options.first_mm) return {pass};
+    const std::vector<Place> all = places(pass, brush, along);
+    std::vector<Pass> parts;
+    const Place* from = nullptr;
+    double lasts_to = options.first_mm;
+    while (along.back() > lasts_to) {
+        // the last place that the paint reaches, else the first after it; in both cases one that gets on
+        const double least = from ? from->along_mm + options.backtrack_mm : 0.0;
+        const Place *cut = nullptr, *back = nullptr;
+        for (const Place& place : all) {
+            if (place.along_mm <= least || (cut && place.along_mm > lasts_to)) continue;
+            cut = &place;
+            if (place.along_mm > lasts_to) break;
+        }
+        if (!cut) break;
+        for (const Place& place : all) {
+            if (place.pose >= cut->pose || (from && place.pose <= from->pose)) continue;  // a part must get on
+            if (!back || place.along_mm <= cut->along_mm - options.backtrack_mm) back = &place;
+        }
+        if (!back) back = cut;
+        parts.push_back(part(pass, brush, from, cut, int(parts.size()) + 1));
+        from = back;
+        const double landing = brush.lag(back->stance.depth_mm);
+        lasts_to = back->along_mm + options.every_mm - landing;
+    }
+    parts.push_back(part(pass, brush, from, nullptr, int(parts.size()) + 1));
+    return parts;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,86 @@
+#include "touch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/lag.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// How far inside q = P + r u a lift stays: 0 slips on straight moves (0.25 mm from depth 10), much more lets the patch
+/// relax towards its pressed shape.
+constexpr double kLiftSlackMm = 0.05;
+/// An arc turns the heading by no less: smaller ones say no more than their chord.
+constexpr double kLeastArcRad = 1e-3;
+
+/// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
+bool may_press_while_running(const Brush& brush, double depth) {
+    const double reach = brush.lag(depth);
+    for (int i = 1; i < 64; ++i) {
+        const double t = i / 64.0;
+        if (t * reach > brush.lag(t * depth) + 1e-12) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void PoseList::add(const Vector2d& tcp_mm, double depth_mm) {
+    const std::array<double, 3> pose{tcp_mm.x(), tcp_mm.y(), depth_mm > 0.0 ? -depth_mm : 0.0};
+    if (poses_.empty() || poses_.back() != pose) poses_.push_back(pose);
+}
+
+void PoseList::arc(std::int64_t first, const Vector2d& centre_mm, double angle_rad) {
+    const auto radius_at = [&](std::int64_t i) { return (Vector2d(poses_[i][0], poses_[i][1]) - centre_mm).norm(); };
+    const double radius_mm = radius_at(first);
+    if (std::abs(angle_rad) < kLeastArcRad || radius_mm < 2.0 * kArcRadiusMm[0]) return;
+    for (std::int64_t i = first + 1; i <= last(); ++i)
+        if (std::abs(radius_at(i) - radius_mm) > kSameCircleMm || poses_[i][2] != poses_[first][2]) return;
+    const Arc arc{first, last(), centre_mm, angle_rad > 0.0 ? 1 : -1};
+    if (!arcs_.empty() && arcs_.back().last == first && arcs_.back().direction == arc.direction &&
+        (arcs_.back().centre_mm - centre_mm).norm() < kSameCircleMm)
+        arcs_.back().last = arc.last;
+    else
+        arcs_.push_back(arc);
+}
+
+void PoseList::into(Pass& pass) const {
+    pass.poses_mm.resize(Index(poses_.size()), 3);
+    for (Index i = 0; i < pass.poses_mm.rows(); ++i) pass.poses_mm.row(i) << poses_[i][0], poses_[i][1], poses_[i][2];
+    pass.arcs = arcs_;
+}
+
+void land(const Stance& first, const Brush& brush, PoseList& out) {
+    out.add(first.contact_mm, 0.0);
+    if (!may_press_while_running(brush, first.depth_mm)) out.add(first.contact_mm, first.depth_mm);
+    out.add(first.contact_mm + brush.lag(first.depth_mm) * first.heading, first.depth_mm);
+}
+
+void lift(const Stance& last, const Brush& brush, PoseList& out) {
+    const auto back = [&](double depth) {
+        return Vector2d(last.contact_mm + std::max(0.0, brush.lag(depth) - kLiftSlackMm) * last.heading);
+    };
+    if (brush.is_rigid()) {
+        out.add(last.contact_mm, 0.0);
+        return;
+    }
+    out.add(back(last.depth_mm), last.depth_mm);
+    // straight moves must not leave the curve by more than the slack: |r''| dd^2 / 8
+    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+    double curved = 0.0;
+    for (const auto& piece : law.pieces) curved = std::max(curved, piece.most_curved);
+    const double step = curved > 0.0 ? std::sqrt(8.0 * 0.6 * kLiftSlackMm / curved) : last.depth_mm;
+    std::vector<double> depths;
+    const int n = std::max(1, int(std::ceil(last.depth_mm / step)));
+    for (int k = n - 1; k >= 0; --k) depths.push_back(last.depth_mm * k / n);
+    for (const auto& piece : law.pieces)
+        if (piece.hi < last.depth_mm) depths.push_back(piece.hi);
+    std::sort(depths.rbegin(), depths.rend());
+    for (double depth : depths) out.add(back(depth), depth);
+}
+
+}  // namespace brushsvg
