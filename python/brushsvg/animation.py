@@ -10,15 +10,10 @@ import numpy as np
 from .timeline import Timeline
 
 PAGE = Path(__file__).parent / "data" / "page"
-FINE, COARSE = (
-    1000,
-    100,
-)  # whole numbers are written: ms, mrad and outlines in um; lengths in 0.01 mm, pull in %
+FINE, COARSE = 1000, 100  # whole numbers are written: ms, mrad, outlines in um; lengths in 0.01 mm, pull in %
 
 
-def animation(
-    moves: Timeline, plan, brush, marks, wanted: list[np.ndarray], title: str, speed: float
-) -> bytes:
+def animation(moves: Timeline, plan, brush, marks, wanted: list, stations, title: str, speed: float) -> bytes:
     """The page. marks: with outlines; wanted: rings [mm] of what was drawn, [] where that is not known; speed: how
     many times faster than the robot it plays at first."""
     data = {
@@ -26,7 +21,8 @@ def animation(
         "brush": plan.brush,
         "speed": speed,
         "sheet": list(plan.sheet_mm),
-        "wanted": _rings(wanted),
+        "wanted": [_rings(rings) for rings in wanted],
+        "stations": [[station.name, *station.place_mm] for station in stations],
         "passes": [
             {"name": a_pass.stroke, "colour": a_pass.colour, "rings": _rings(trace.outline_mm)}
             for a_pass, trace in zip(plan.passes, marks.passes, strict=True)

@@ -22,6 +22,7 @@ from .strokes import strokes as strokes_of
 from .timeline import timeline
 
 DEFAULT_BRUSH = "round-6"
+SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
 
 
 @dataclass(frozen=True)
@@ -228,8 +229,8 @@ def picture(suffix: str, work: Work, marks) -> bytes:
 def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
     """An HTML page that plays tool and paint over time, speed times as fast at first. marks: with outlines."""
     moves = timeline(whole_program(work.plan, work.brush, cell), marks)
-    wanted = report.wanted_rings(work.strokes) if work.strokes is not None else []
-    return animation(moves, work.plan, work.brush, marks, wanted, work.title, speed)
+    wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
 def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None) -> str:

@@ -2,7 +2,7 @@
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
-  const BLUE = "#3f8fd9", ORANGE = "#d9622b", GREY = "#e4e2db", EDGE = "#d3d1ca";
+  const BLUE = "#3f8fd9", ORANGE = "#d9622b", GREY = "#e4e2db", EDGE = "#d3d1ca", QUIET = "#6d717a";
   const CHUNK = 64; // rows that are filled at once: no seams within, and few enough to be filled at every frame
   const FLIPPED = 0.8; // cosine of a turn of the heading at once, in which nothing is swept
 
@@ -175,13 +175,15 @@
   let donePasses = 0, doneChapters = 0, startedPass = -1, startedRow = 0;
 
   const bounds = (() => {
-    const box = [0, 0, data.sheet[0], data.sheet[1]];
-    for (let i = 0; i < count; i++) {
-      box[0] = Math.min(box[0], X[i]);
-      box[1] = Math.min(box[1], Y[i]);
-      box[2] = Math.max(box[2], X[i]);
-      box[3] = Math.max(box[3], Y[i]);
-    }
+    const box = [0, 0, ...data.sheet];
+    const hold = (x, y, room) => {
+      box[0] = Math.min(box[0], x - room);
+      box[1] = Math.min(box[1], y - room);
+      box[2] = Math.max(box[2], x + room);
+      box[3] = Math.max(box[3], y + room);
+    };
+    for (let i = 0; i < count; i++) hold(X[i], Y[i], 0);
+    for (const [, x, y] of data.stations) hold(x, y, 10);
     const pad = 0.015 * Math.max(box[2] - box[0], box[3] - box[1]);
     return [box[0] - pad, box[1] - pad, box[2] + pad, box[3] + pad];
   })();
@@ -194,7 +196,7 @@
   };
   const px = (size) => size * view.ratio / view.scale; // mm of so many px of the page
 
-  const wantedPath = ringPath(data.wanted);
+  const wantedPaths = data.wanted.map(ringPath);
   const layOut = () => {
     const { clientWidth, clientHeight } = $("stage");
     view.ratio = Math.min(window.devicePixelRatio || 1, 2);
@@ -217,8 +219,23 @@
     sheet.strokeStyle = EDGE;
     sheet.lineWidth = px(1);
     sheet.strokeRect(-px(0.5), -px(0.5), w + px(1), h + px(1));
+    for (const [name, x, y] of data.stations) {
+      sheet.beginPath();
+      sheet.arc(x, y, px(13), 0, 2 * Math.PI);
+      sheet.fillStyle = "#ffffff";
+      sheet.fill();
+      sheet.stroke();
+      sheet.save();
+      sheet.translate(x, y - px(28));
+      sheet.scale(px(1), -px(1));
+      sheet.font = "13px system-ui, 'DejaVu Sans', sans-serif";
+      sheet.textAlign = "center";
+      sheet.fillStyle = QUIET;
+      sheet.fillText(name, 0, 0);
+      sheet.restore();
+    }
     wanted.fillStyle = GREY;
-    wanted.fill(wantedPath);
+    for (const path of wantedPaths) wanted.fill(path);
     donePasses = doneChapters = 0;
     startedPass = -1;
     show();
@@ -273,7 +290,7 @@
     if (tip) step(last + 1, tip.brush, tip.x, tip.y);
     layer.strokeStyle = BLUE;
     layer.lineWidth = px(1.3);
-    layer.globalAlpha = 0.9;
+    layer.globalAlpha = tip ? 1 : 0.65; // what is past steps back
     layer.stroke(paper);
     layer.globalAlpha = 0.35;
     layer.lineWidth = px(1);
@@ -341,7 +358,7 @@
     const height = Math.abs(now.z).toFixed(1);
     $("how").textContent = pause ? pause[2]
       : now.brush ? `pressed ${height} mm deep`
-      : now.z < 0 ? `${height} mm below the paper` : `${height} mm above the paper`;
+      : now.z < 0 ? `${height} mm lower than the paper` : `${height} mm above the paper`;
     const share = now.z > 0 ? 0.5 - 0.42 * now.z / heights.up : 0.5 - 0.42 * now.z / heights.down;
     $("needle").style.top = `${(100 * share).toFixed(1)}%`;
     $("needle").classList.toggle("on", Boolean(now.brush));
