@@ -415,18 +415,18 @@
   $("play").addEventListener("click", () => play(!playing));
   $("stage").addEventListener("click", () => play(!playing));
   $("slider").addEventListener("input", () => goTo(Number($("slider").value)));
+  let bare = false;
   const choose = () => {
-    layers.wanted.canvas.style.visibility = $("wanted").checked ? "" : "hidden";
-    layers.lines.canvas.style.visibility = $("path").checked ? "" : "hidden";
+    const shown = { wanted: !bare && $("wanted").checked, lines: !bare && $("path").checked, tool: !bare };
+    for (const name in shown) layers[name].canvas.style.visibility = shown[name] ? "" : "hidden";
     show();
   };
   $("wanted").addEventListener("change", choose);
   $("path").addEventListener("change", choose);
 
-  // #t=12.5&wanted=0&path=0: a moment to look at, and what to leave out
-  const readAddress = () => {
+  const readAddress = () => { // #t=12.5 a moment to look at, #t=12.5&bare the paint alone
     const asked = new URLSearchParams(location.hash.slice(1)), moment = Number(asked.get("t"));
-    for (const name of ["wanted", "path"]) if (asked.has(name)) $(name).checked = asked.get(name) !== "0";
+    bare = asked.has("bare");
     if (asked.has("t")) play(false);
     if (asked.has("t") && Number.isFinite(moment)) time = Math.min(Math.max(moment, 0), end);
     choose();
