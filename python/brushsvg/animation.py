@@ -10,6 +10,7 @@ import numpy as np
 from .timeline import Timeline
 
 PAGE = Path(__file__).parent / "data" / "page"
+SCRIPTS = ("rows.js", "footprint.js", "layers.js", "drawing.js", "controls.js")  # one script, in this order
 FINE, COARSE = 1000, 100  # whole numbers are written: ms, mrad, outlines in um; lengths in 0.01 mm, pull in %
 
 
@@ -35,10 +36,13 @@ def animation(moves: Timeline, plan, brush, marks, wanted: list, stations, title
     }
     # < is written as an escape: no title can end the element that the data stands in, or begin another
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
-    page = (PAGE / "page.html").read_text(encoding="utf-8")
-    for mark, name in (("/*STYLE*/", "page.css"), ("/*SCRIPT*/", "page.js")):
-        page = page.replace(mark, (PAGE / name).read_text(encoding="utf-8"))
+    page = _part("page.html").replace("/*STYLE*/", _part("page.css"))
+    page = page.replace("/*SCRIPT*/", "\n".join(map(_part, SCRIPTS)))
     return page.replace("/*DATA*/", text).encode()
+
+
+def _part(name: str) -> str:
+    return (PAGE / name).read_text(encoding="utf-8")
 
 
 def _rows(moves: Timeline, brush) -> dict[str, list[int]]:

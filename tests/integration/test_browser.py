@@ -181,6 +181,37 @@ def test_words_tell_the_stroke_and_the_time(page, browser):
     assert '<output id="clock">0:31.3 / 1:' in text
 
 
+# a browser without a window whose time is virtual shows one frame only
+FRAMES = "<script>requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);</script>"
+KEYS = """<script>
+const told = [];
+const text = (id) => document.getElementById(id).textContent;
+const press = (key) => {
+  const event = new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true });
+  document.getElementById("slider").dispatchEvent(event);
+  told.push(text("clock").split(" ")[0] + " " + text("what"));
+};
+["ArrowRight", "ArrowRight", "ArrowLeft", "ArrowDown", "ArrowUp", "End", "Home", " "].forEach(press);
+setTimeout(() => { press(" "); document.body.append("told " + JSON.stringify(told)); }, 1500);
+</script></body>"""
+
+
+def test_keys_move_and_play(page, browser, played):
+    _, _, rows = played
+    keyed = page.with_name("keyed.html")
+    keyed.write_text(page.read_text().replace("<head>", f"<head>{FRAMES}").replace("</body>", KEYS))
+    told = json.loads(re.search(r"told (\[.*\])", browser.text(keyed, ""))[1])
+    first, second, last = (f"stroke {number} of 13" for number in (1, 2, 13))
+    second_s = rows.time_s[rows.chapters[1].first_row]
+    clocks, words = zip(*(each.split(" ", 1) for each in told), strict=True)
+    assert clocks[:3] == ("0:01.0", "0:02.0", "0:01.0")
+    assert float(clocks[3][2:]) == pytest.approx(second_s, abs=0.1)
+    assert clocks[5] == f"1:{np.floor((rows.time_s[-1] - 60) * 10) / 10:04.1f}"
+    assert clocks[4] == clocks[6] == clocks[7] == "0:00.0"
+    assert 0.5 < float(clocks[8][2:]) < 2  # it has played meanwhile
+    assert [word.split(":")[0] for word in words] == [first] * 3 + [second, first, last] + [first] * 3
+
+
 def test_a_hostile_title_stays_a_title(tmp_path, browser):
     title = "</script><script>document.body.id='taken'</script>"
     escaped = title.replace("<", "&lt;")
