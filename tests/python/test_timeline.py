@@ -142,7 +142,10 @@ def test_where_the_marks_say_lifted_the_brush_is_in_the_air(works):
     work, marks = works()
     (line, _), plan = marks.passes, work.plan
     plan.passes = plan.passes[:1]
-    columns = {name: np.array(getattr(line, name)) for name in ("pose", "contact_mm", "heading_rad", "pull")}
+    columns = {
+        name: np.array(getattr(line, name))
+        for name in ("pose", "tcp_mm", "contact_mm", "heading_rad", "pull")
+    }
     depth_mm = np.where(columns["pose"] > 5, -1.0, line.depth_mm)
     lifted = SimpleNamespace(**columns, depth_mm=depth_mm)
     rows = timeline(whole_program(plan, work.brush, find_cell()), SimpleNamespace(passes=[lifted]))
