@@ -1,5 +1,5 @@
 #include "bindings.hpp"
-#include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
 
 void bind_lag(py::module_& m) {
     using namespace brushsvg;

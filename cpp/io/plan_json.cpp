@@ -1,5 +1,6 @@
 #include "plan_json.hpp"
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr const char* kFormat = "brushsvg/plan";
 const std::set<std::string> kPlanKeys{"format", "version", "brush", "brush_sha256", "sheet_mm", "passes"};
-const std::set<std::string> kPassKeys{"stroke", "poses_mm", "speed_mm_s", "layer", "colour", "settings"};
+const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s", "layer", "colour", "settings"};
 
 /// What holds for every pass, read or about to be written. `path`: of the pass; `slack_mm`: how far above the
 /// paper still counts as on it.
@@ -35,6 +36,7 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
         throw Error("speed_mm_s of stroke " + pass.stroke + " must be greater than 0, not " + in_words(pass.speed_mm_s),
                     path + ".speed_mm_s", pass.speed_mm_s);
     }
+    for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
 }
 
 void require_sound(const std::array<double, 2>& sheet_mm) {
@@ -45,12 +47,32 @@ void require_sound(const std::array<double, 2>& sheet_mm) {
     }
 }
 
+/// [first pose, last pose, x and y of the centre, 1 or -1]
+Arc read_arc(const Field& field) {
+    const std::vector<double> row = numbers(field);
+    if (row.size() != 5) {
+        field.refuse("an arc must be five numbers [first pose, last pose, centre x, centre y, 1 or -1], not " +
+                     std::to_string(row.size()));
+    }
+    for (const int k : {0, 1, 4}) {
+        if (row[k] == std::floor(row[k]) && std::abs(row[k]) <= 1e9) continue;
+        throw Error("pose numbers and the direction of an arc must be whole numbers, not " + in_words(row[k]),
+                    field.path + "[" + std::to_string(k) + "]", row[k]);
+    }
+    return {static_cast<std::int64_t>(row[0]),
+            static_cast<std::int64_t>(row[1]),
+            {row[2], row[3]},
+            static_cast<int>(row[4])};
+}
+
 Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
     const std::string path = field.path;
     Fields fields(std::move(field));
     Pass pass;
     pass.stroke = text(fields.take("stroke"));
     pass.poses_mm = rows.of_pass<Poses>(index, fields.take("poses_mm"), "three numbers [x, y, z]");
+    if (auto arcs = fields.find("arcs"))
+        for (const Field& arc : members(std::move(*arcs))) pass.arcs.push_back(read_arc(arc));
     if (const auto speed = fields.find("speed_mm_s")) pass.speed_mm_s = number(*speed);
     if (const auto layer = fields.find("layer")) pass.layer = text(*layer);
     if (const auto colour = fields.find("colour")) pass.colour = text(*colour);
@@ -71,6 +93,17 @@ void append_pass(std::string& out, const Pass& pass, const std::string& path) {
     out += ", \"colour\": ";
     append_string(out, pass.colour, path + ".colour");
     out += ", \"settings\": " + parse_object(pass.settings, path + ".settings").dump();
+    if (!pass.arcs.empty()) {
+        out += ",\n     \"arcs\": ";
+        append_array(out, pass.arcs.size(), 7, [&](std::size_t k) {
+            const Arc& arc = pass.arcs[k];
+            out += '[' + std::to_string(arc.first) + ", " + std::to_string(arc.last) + ", ";
+            append_rounded(out, arc.centre_mm.x(), "arcs");
+            out += ", ";
+            append_rounded(out, arc.centre_mm.y(), "arcs");
+            out += ", " + std::to_string(arc.direction) + ']';
+        });
+    }
     append_extra(out, parse_object(pass.extra, path + ".extra", kPassKeys), 5);
     out += ",\n     \"poses_mm\": ";
     append_rows(out, pass.poses_mm, 7, "poses_mm");

@@ -7,7 +7,7 @@
 namespace brushsvg::io {
 
 /// Reads a plan.json. A pose above the paper (z > 0) inside a pass is refused with stroke, pose (counted from 0)
-/// and value. Unknown keys, and `arcs`, go to Pass::extra and Plan::extra. Throws Error with `where` = key path.
+/// and value. Unknown keys go to Pass::extra and Plan::extra. Throws Error with `where` = key path.
 Plan read_plan(const std::string& text);
 
 /// The same plan as text, poses in plain decimals rounded to 1e-7 mm. Throws Error for what read_plan would refuse.

@@ -24,21 +24,44 @@ Vector2d turned(const Vector2d& u, double angle) {
     return {c * u.x() - s * u.y(), s * u.x() + c * u.y()};
 }
 
+/// An arc turns the heading by no less: smaller ones say no more than their chord.
+constexpr double kLeastArcRad = 1e-3;
+/// What counts as one circle: far more than rounding, far less than is written to a file.
+constexpr double kSameCircleMm = 1e-8;
+
 struct PoseList {
     std::vector<std::array<double, 3>> poses;
+    std::vector<Arc> arcs;
+
     void add(const Vector2d& q, double depth) {
         const std::array<double, 3> pose{q.x(), q.y(), depth > 0.0 ? -depth : 0.0};
         if (poses.empty() || poses.back() != pose) poses.push_back(pose);
     }
-    Poses matrix() const {
-        Poses out(Index(poses.size()), 3);
-        for (Index i = 0; i < out.rows(); ++i) out.row(i) << poses[i][0], poses[i][1], poses[i][2];
-        return out;
+    std::int64_t last() const { return std::int64_t(poses.size()) - 1; }
+    /// The poses from `first` on go round a centre; one arc with the one before where that goes on.
+    void arc(std::int64_t first, const Vector2d& centre_mm, double angle) {
+        const auto radius_at = [&](std::int64_t i) { return (Vector2d(poses[i][0], poses[i][1]) - centre_mm).norm(); };
+        const double radius_mm = radius_at(first);
+        if (std::abs(angle) < kLeastArcRad || radius_mm < 2.0 * kArcRadiusMm[0]) return;
+        for (std::int64_t i = first + 1; i <= last(); ++i)
+            if (std::abs(radius_at(i) - radius_mm) > kSameCircleMm || poses[i][2] != poses[first][2]) return;
+        const Arc arc{first, last(), centre_mm, angle > 0.0 ? 1 : -1};
+        if (!arcs.empty() && arcs.back().last == first && arcs.back().direction == arc.direction &&
+            (arcs.back().centre_mm - centre_mm).norm() < kSameCircleMm)
+            arcs.back().last = arc.last;
+        else
+            arcs.push_back(arc);
+    }
+    void into(Pass& pass) const {
+        pass.poses_mm.resize(Index(poses.size()), 3);
+        for (Index i = 0; i < pass.poses_mm.rows(); ++i) pass.poses_mm.row(i) << poses[i][0], poses[i][1], poses[i][2];
+        pass.arcs = arcs;
     }
 };
 
 /// Chords of the circle about the contact from one heading to the other. Inscribed chords leave the lever loose, so the
-/// patch rests; tangent ones would drag it.
+/// patch rests; tangent ones would drag it. Noted as an arc too, of radius r and not a hair less: a radius too large by
+/// some rounding lets the patch creep by (1 + turn^2 / 2) times that, 0.6 um for 1e-4 mm and half a turn.
 void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, PoseList& out) {
     const double angle = angle_between(from.heading, to.heading);
     const int n = int(std::ceil(std::abs(angle) / kTurnStepRad));
@@ -249,12 +272,15 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
         turns = turns || !samples[i].taut;
         if (i > 0 && !brush.is_rigid()) {
             const double moved = (samples[i].contact - samples[i - 1].contact).norm();
-            if (std::abs(angle_between(samples[i - 1].heading, samples[i].heading)) > kTurnStepRad &&
-                moved < 0.1 * brush.lag(samples[i].depth)) {
+            const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
+            const std::int64_t before = out.last();
+            if (std::abs(angle) > kTurnStepRad && moved < 0.1 * brush.lag(samples[i].depth))
                 turn_in_place(samples[i - 1], samples[i], brush, out);
-            }
+            out.add(samples[i].tcp, samples[i].depth);
+            if (moved < kSameCircleMm) out.arc(before, samples[i].contact, angle);
+        } else {
+            out.add(samples[i].tcp, samples[i].depth);
         }
-        out.add(samples[i].tcp, samples[i].depth);
     }
     lift(samples.back(), brush, out);
     return out;
@@ -286,10 +312,14 @@ PoseList offset(const Stroke& stroke, const Brush& brush, const Line& line, doub
             const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
             const double sagitta = std::max(1e-3, 1.0 - step_tolerance / r0);
             const int n = int(std::ceil(std::abs(angle) / std::min(kTurnStepRad, 2.0 * std::acos(sagitta))));
+            const std::int64_t before = out.last();
             for (int k = 1; k < n; ++k)
                 out.add(samples[i].middle + r0 * turned(samples[i - 1].heading, angle * k / n), samples[i].depth);
+            out.add(samples[i].tcp, samples[i].depth);
+            out.arc(before, samples[i].middle, angle);
+        } else {
+            out.add(samples[i].tcp, samples[i].depth);
         }
-        out.add(samples[i].tcp, samples[i].depth);
     }
     out.add(samples.back().tcp, 0.0);
     return out;
@@ -343,26 +373,25 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         double r0 = 0.0;
         if (options.method == Compensation::constant)
             r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
-        pass.poses_mm = offset(stroke, brush, line, r0, step_tolerance).matrix();
+        offset(stroke, brush, line, r0, step_tolerance).into(pass);
         result.miss = miss_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
     // the plan is simulated before it is handed over; finer steps as long as they help
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
-        const Poses poses = closed_form(stroke, brush, line, step_tolerance, turns).matrix();
         Pass trial = pass;
-        trial.poses_mm = poses;
+        closed_form(stroke, brush, line, step_tolerance, turns).into(trial);
         Miss miss = miss_of(trial, stroke, brush, options.tolerance_mm);
         miss.has_turn_in_place = turns;
         const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
         if (better) {
             result.miss = miss;
-            pass.poses_mm = poses;
+            pass = trial;
         }
         // rows of the check lie a tenth of the tolerance off the truth between them
         const bool sure = miss.largest_mm <= 0.9 * options.tolerance_mm;
-        if (sure || (turns && !better) || poses.rows() >= Index(kMostSamples)) break;
+        if (sure || (turns && !better) || trial.poses_mm.rows() >= Index(kMostSamples)) break;
     }
     return result;
 }

@@ -6,6 +6,7 @@
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
 
 namespace brushsvg {
 namespace {
@@ -70,7 +71,8 @@ class Tracer {
         away.taut = false;
         add(t, q, -z, away, 0.0);
     }
-    void move(const Move<double>& m) {
+    template <class Motion>
+    void move(const Motion& m) {
         advance(law_, m, state_, [&](const auto& piece, const auto& mv, const auto& start, double begin, double end) {
             sample(piece, mv, start, begin, end);
         });
@@ -90,13 +92,13 @@ class Tracer {
         Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
     };
 
-    template <class Piece>
-    Instant instant(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin,
-                    double t) const {
+    template <class Piece, class Motion>
+    Instant instant(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double t) const {
         Instant now;
         if (law_.rigid) {
             now.state = start;
             now.state.contact = m.tcp(t);
+            if (m.length > 0.0) now.state.heading = m.direction(t);
         } else {
             now.state = within_phase(piece, m, start, begin, t);
         }
@@ -112,12 +114,12 @@ class Tracer {
         return now.state.contact - brush_.tip_gap(now.depth) * now.state.heading;
     }
 
-    template <class Piece>
-    void sample(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin, double end) {
+    template <class Piece, class Motion>
+    void sample(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double end) {
         if (begin > 0.0) row(m.tcp(begin), m.depth(begin), start, begin);  // the event that begins this phase
         // straight out from the contact the heading is the direction of motion from the first instant
         LagState<double> from = start;
-        if (!from.taut && !from.heading_known && m.length > 0.0) from.heading = m.along;
+        if (!from.taut && !from.heading_known && m.length > 0.0) from.heading = m.direction(begin);
         // outlines are blended between measured depths and laws have kinks: between two rows there must be none
         std::vector<double> ends{end};
         for (double depth : kinks_) {
@@ -136,8 +138,8 @@ class Tracer {
         }
     }
 
-    template <class Piece>
-    void split(const Piece& piece, const Move<double>& m, const LagState<double>& start, double begin, double ta,
+    template <class Piece, class Motion>
+    void split(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double ta,
                const Instant& a, double tb, const Instant& b, int level) {
         if (level >= 40) return;
         const double tm = 0.5 * (ta + tb);
@@ -251,6 +253,7 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
 
 PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines) {
     refuse_bad_poses(pass, brush);
+    for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     PassMarks marks;
     marks.stroke = pass.stroke;
     Tracer tracer(brush, tolerance_mm, for_outlines, marks);
@@ -270,12 +273,17 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bo
         tracer.touch(q(0));
         if (z(0) < 0.0) tracer.move(Move<double>(q(0), q(0), 0.0, -z(0)));
     }
+    auto arc = pass.arcs.begin();
     for (Eigen::Index i = 0; i + 1 < n; ++i) {
+        while (arc != pass.arcs.end() && arc->last <= i) ++arc;
         const Vec2<double> a = q(i), b = q(i + 1);
         const double za = z(i), zb = z(i + 1);
         if (za <= 0.0 && zb <= 0.0) {
             tracer.place(double(i), 1.0);
-            tracer.move(Move<double>(a, b, -za, -zb));
+            if (arc != pass.arcs.end() && arc->first <= i)
+                tracer.move(arc_between<double>(a, b, turn_between(*arc, a, b), -za));
+            else
+                tracer.move(Move<double>(a, b, -za, -zb));
         } else if (za > 0.0 && zb > 0.0) {
             tracer.place(double(i), 1.0);
             tracer.lifted(b, zb, 1.0);

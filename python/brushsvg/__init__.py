@@ -63,6 +63,7 @@ _HOME = {
     "marks_svg": "render",
 } | dict.fromkeys(
     [
+        "Arc",
         "Brush",
         "Compensated",
         "Marks",
@@ -87,6 +88,7 @@ _HOME = {
 )
 
 __all__ = [
+    "Arc",
     "Brush",
     "Cell",
     "Compensated",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import convert, machine
+from . import checking, convert, machine
 from ._core import remarks
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -20,6 +20,7 @@ from .jobs import border, paper_height
 from .layout import Layout, arrange
 from .posts import POSTS
 from .program import Job
+from .readback import read_program
 from .strokes import strokes as strokes_of
 
 
@@ -84,6 +85,37 @@ def height_file(args) -> None:
         text = machine.text_of(post, replace(made, header=header))
     _warn_of_example(args, cell)
     _write({args.output: text})
+
+
+def check_file(args) -> None:
+    _check_places(args.preview)
+    with about(args.program):
+        text = read_bytes(args.program).decode("latin-1")
+        made = checking.made(text)
+        cell = find_cell(args.cell if args.cell is not None else made.cell)
+        brush = _brush(args) or find_brush(made.brush)
+        z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
+        read = read_program(text, _suffix(args.program), cell)
+    work = _prepare(args, cell, brush) if args.input else None
+    with about(args.program):
+        sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
+        if sheet_mm is None:
+            raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
+        ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
+        strokes, problems = None, ran.problems
+        if work:
+            strokes, unmatched = checking.matched(ran.plan, work.strokes, made.first_stroke > 1)
+            problems = problems + unmatched
+            strokes = None if len(strokes) != len(ran.plan.passes) else strokes
+        outlined = convert.outlined(ran.marks, brush, stage)
+        shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
+        if args.preview:
+            _write({args.preview: convert.picture(_suffix(args.preview), shown, outlined)})
+        tell(convert.report_text(".json" if args.json else ".txt", shown, outlined, cell))
+    if problems:
+        raise RefusedError([(args.program, *problem) for problem in problems])
+    if not args.json:
+        tell(f"{args.program}: nothing forbids to run it\n")
 
 
 def predict_file(args) -> None:
@@ -157,13 +189,13 @@ def _look(args, cell: Cell, outlines: bool):
     return work, marks, warnings
 
 
-def _prepare(args, cell: Cell) -> convert.Work:
+def _prepare(args, cell: Cell, brush=None) -> convert.Work:
     if _suffix(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "compensation", "lag", "tolerance"):
             if getattr(args, flag) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
     options = convert.Options(
-        brush=_brush(args),
+        brush=brush or _brush(args),
         reading=_reading(args),
         layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,

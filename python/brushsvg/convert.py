@@ -84,10 +84,8 @@ def _with_speeds(plan, strokes):
     """The plan with the speeds that the drawing's settings ask for."""
     speeds = [json.loads(stroke.settings).get("speed_mm_s") for stroke in strokes]
     if any(speeds):
-        passes = plan.passes
-        for a_pass, speed in zip(passes, speeds, strict=True):
+        for a_pass, speed in zip(plan.passes, speeds, strict=True):
             a_pass.speed_mm_s = speed or a_pass.speed_mm_s
-        plan.passes = passes
     return plan
 
 
@@ -196,13 +194,19 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
 def predict(work: Work, outlines: bool = True, stage=lambda text: None):
     """The marks of the plan; outlines: trace their rings too."""
 
-    def progress(doing: str):
-        return lambda now, all_: stage(f"{doing} {now} of {all_} strokes")
+    progress = _counted(stage, "simulated")
+    marks = _core.simulate(work.plan, work.brush, progress=progress)
+    return outlined(marks, work.brush, stage) if outlines else marks
 
-    marks = _core.simulate(work.plan, work.brush, progress=progress("simulated"))
-    if outlines:
-        _core.trace_outlines(marks, work.brush, progress=progress("outlined"))
+
+def outlined(marks, brush, stage=lambda text: None):
+    """The marks with their rings traced."""
+    _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
     return marks
+
+
+def _counted(stage, doing: str):
+    return lambda now, all_: stage(f"{doing} {now} of {all_} strokes")
 
 
 def notes(work: Work) -> tuple[str, ...]:

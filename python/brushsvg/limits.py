@@ -20,6 +20,7 @@ def broken_limits(plan, brush, cell: Cell, z_offset_mm: float = 0.0) -> list[tup
     problems = [] if plan.passes else [("", "there is nothing to paint")]
     limits = (brush.max_speed_mm_s, f"brush {brush.name}"), (cell.speeds.paint_mm_s, f"cell {cell.name}")
     limit, whose = min(limits)
+    frame = robot_from_paper(cell, z_offset_mm)
     for a_pass in plan.passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         if len(poses) == 0:
@@ -28,9 +29,9 @@ def broken_limits(plan, brush, cell: Cell, z_offset_mm: float = 0.0) -> list[tup
             sentences = ["a pose is not a finite number"]
         else:
             sentences = [*_heights(poses, cell), *_sheet(poses, plan.sheet_mm, cell)]
-            ends = poses[[0, -1]].copy()
+            ends = poses[[0, -1]]
             ends[:, 2] = cell.heights.safe_mm
-            sentences += workspace_problems(np.vstack([poses, ends]), cell, z_offset_mm)
+            sentences += _workspace(moved(frame, np.vstack([poses, ends])), cell)
             if not (poses[:, 2] < 0).any():
                 sentences.append("the brush is never pressed to the paper: nothing would be painted")
         speed = a_pass.speed_mm_s

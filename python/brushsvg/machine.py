@@ -136,6 +136,7 @@ def encode(
     header = (
         f"title: {title or 'untitled'}",
         f"brush: {plan.brush}, {count} strokes",
+        "sheet: {:g} x {:g} mm".format(*plan.sheet_mm),
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
         *about(made, job),

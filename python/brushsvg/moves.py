@@ -97,10 +97,19 @@ def duration_s(program: Program) -> float:
         if isinstance(step, Wait):
             total_s += step.seconds or 0.0
             continue
-        along_mm = distances(step, here)
-        total_s += float(times_s(along_mm[-1:], along_mm[-1], step.speed_mm_s, program.cell)[0])
+        total_s += time_of_way_s(float(distances(step, here)[-1]), step.speed_mm_s, program.cell)
         here = step.points_mm[-1]
     return total_s
+
+
+def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
+    """From rest to rest: v rises at the acceleration, stays, falls; a short way never reaches the speed."""
+    a = cell.speeds.acceleration_mm_s2
+    return (
+        length_mm / speed_mm_s + speed_mm_s / a
+        if length_mm > speed_mm_s**2 / a
+        else 2 * (length_mm / a) ** 0.5
+    )
 
 
 def distances(move: Move, here: np.ndarray | None) -> np.ndarray:

@@ -92,7 +92,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
 
 
 def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if len(poses) == 0:
         return ()
     start, end = poses[0], poses[-1]
@@ -103,7 +103,7 @@ def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
         Move("travel", over(start, heights.safe_mm), speeds.travel_mm_s),
         Move("approach", over(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
-        *_painting(poses, getattr(a_pass, "arcs", ()), a_pass.speed_mm_s, press_mm_s, cell),
+        *_painting(poses, a_pass.arcs, a_pass.speed_mm_s, press_mm_s, cell),
         Move("lift", over(end, heights.clearance_mm), press_mm_s),
         Move("retract", over(end, heights.safe_mm), speeds.travel_mm_s),
     )
@@ -114,8 +114,8 @@ def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cel
     steps = np.diff(poses, axis=0)
     kinds = np.full(len(steps), PLAIN)
     kinds[on_the_spot(steps)] = ON_THE_SPOT
-    for number, (first, last, *_) in enumerate(arcs):
-        kinds[int(first) : int(last)] = number
+    for number, arc in enumerate(arcs):
+        kinds[arc.first : arc.last] = number
     new_run = np.diff(kinds) != 0
     radii = None
     if cell.blending.radius_mm:
@@ -125,6 +125,6 @@ def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cel
         if not len(run):
             continue
         kind = kinds[run[0]]
-        arc = Arc(tuple(map(float, arcs[kind][2:4])), int(arcs[kind][4])) if kind >= 0 else None
+        arc = Arc(tuple(arcs[kind].centre_mm), arcs[kind].direction) if kind >= 0 else None
         speed = press_mm_s if kind == ON_THE_SPOT else paint_mm_s
         yield Move("paint", poses[run + 1], speed, arc, None if radii is None else radii[run + 1])

@@ -229,7 +229,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
         "of the widest point from the middle line. Painted: path of the TCP on the paper.",
-        f"Time at the speeds asked for, without acceleration: {_clock(report.time_s)}",
+        f"Time, with the acceleration of the machine: {_clock(report.time_s)}",
     ]
     if report.warnings:
         lines += ["", f"Warnings: {len(report.warnings)}"]

@@ -116,6 +116,22 @@ def _parser() -> argparse.ArgumentParser:
     )
     text.set_defaults(run="text_file", parser=text)
 
+    check = commands.add_parser(
+        "check", help="read a program back, simulate it and hold it against a drawing"
+    )
+    check.add_argument("program", metavar="PROGRAM", help=_programs(plan=False))
+    check.add_argument("input", metavar="IN", nargs="?", help="the drawing that it should paint")
+    check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
+    check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
+    _add_layout(check)
+    check.add_argument(
+        "--z-offset", metavar="MM", type=_height, help="default: the one that the program names"
+    )
+    check.add_argument("--lenient", action="store_true", help="take what is sound of damaged geometry")
+    check.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
+    check.add_argument("--json", action="store_true", help="figures as JSON")
+    check.set_defaults(run="check_file", parser=check, lag=None, compensation=None, tolerance=None)
+
     report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
     _add_input(report)
     _add_choices(report)
@@ -335,6 +351,12 @@ def _check_operands(args) -> None:
     if args.run == "height_file":
         _check_extension(args, args.output, PROGRAMS[1:])
         return
+    if args.run == "check_file":
+        _check_extension(args, args.program, PROGRAMS[1:])
+        if args.input is None:
+            if args.preview:
+                _check_extension(args, args.preview, PREVIEWS)
+            return
     if args.run == "text_file":
         if os.path.splitext(args.output)[1].lower() != ".svg":
             args.parser.error(f"{args.output} does not end in .svg")
@@ -352,12 +374,14 @@ def _check_operands(args) -> None:
         "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
         "border_file": lambda: [(args.output, PROGRAMS[1:])],
         "animate_file": lambda: [(args.output, (".html",))],
+        "check_file": lambda: [(args.preview, PREVIEWS)],
         "predict_file": lambda: [(args.output, PREDICTIONS)],
         "import_file": lambda: [(args.output, PREVIEWS)],
         "report_file": lambda: [],
     }[args.run]()
-    inputs = tuple(READERS) if args.run == "import_file" else DRAWINGS
-    taken = [os.path.realpath(path) for path in (args.input, args.brush) if path]
+    inputs = tuple(READERS) if args.run in ("import_file", "check_file") else DRAWINGS
+    read = (args.input, args.brush, getattr(args, "program", None))
+    taken = [os.path.realpath(path) for path in read if path]
     for path, suffixes in [(args.input, inputs), *outputs]:
         if path is None:
             continue

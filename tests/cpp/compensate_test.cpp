@@ -26,6 +26,14 @@ Stroke stroke_of(const Cubics& middle, std::vector<WidthKnot> half_width) {
     return s;
 }
 
+/// The contact at every pose, where first there.
+Ring at_poses(const PassMarks& marks) {
+    Ring out = Ring::Zero(Eigen::Index(marks.pose.back()) + 1, 2);
+    for (std::size_t i = marks.pose.size(); i-- > 0;)
+        if (marks.pose[i] == std::floor(marks.pose[i])) out.row(Eigen::Index(marks.pose[i])) = marks.contact_mm.row(i);
+    return out;
+}
+
 double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
     return overlap(outline(simulate(pass, brush, 0.01), brush), wanted_outline(stroke));
 }
@@ -47,6 +55,47 @@ TEST_CASE("turns up to 90 degrees are exact, beyond them what remains is what ge
             CHECK(c.miss.has_turn_in_place == (degrees > 90.0));
         }
     }
+}
+
+TEST_CASE("a turn in place is one arc about the resting contact, with the same mark as its chords") {
+    const Brush brush = shipped("round-6");
+    for (double degrees : {120.0, 179.0, -150.0})
+        for (double depth : {4.0, 1.0}) {  // the widest section ahead of the contact, and behind it
+            const double a = degrees * kPi / 180;
+            const Stroke s =
+                stroke_of(polyline({V(20, 20), V(60, 20), V(60 + 40 * std::cos(a), 20 + 40 * std::sin(a))}),
+                          {{0.0, brush.half_width(depth)}});
+            Pass pass = compensate(s, brush).pass;
+            REQUIRE(pass.arcs.size() == 1);
+            const Arc arc = pass.arcs[0];
+            CHECK(arc.direction == (degrees > 0 ? 1 : -1));
+            const V from = pass.poses_mm.row(arc.first).head<2>().transpose(),
+                    to = pass.poses_mm.row(arc.last).head<2>().transpose();
+            CHECK((from - arc.centre_mm).norm() == doctest::Approx(brush.lag(depth)));
+            CHECK(std::abs(std::remainder(turn_between(arc, from, to) - a, 2 * kPi)) < 1.7);
+            const Miss exact = miss_of(pass, s, brush, 0.05);
+            const Ring with = at_poses(simulate(pass, brush, 1e-3));
+            // rounded to 1e-4 mm, as a program's text has it
+            Pass rounded = pass;
+            rounded.poses_mm = (pass.poses_mm.array() * 1e4).round() / 1e4;
+            rounded.arcs[0].centre_mm = (arc.centre_mm.array() * 1e4).round() / 1e4;
+            pass.arcs.clear();
+            CHECK((at_poses(simulate(pass, brush, 1e-3)) - with).rowwise().norm().maxCoeff() < 1e-3);
+            CHECK((at_poses(simulate(rounded, brush, 1e-3)) - with).rowwise().norm().maxCoeff() < 1e-3);
+            CHECK(std::abs(miss_of(pass, s, brush, 0.05).largest_mm - exact.largest_mm) < 1e-3);
+        }
+    const Stroke bend = stroke_of(polyline({V(20, 20), V(60, 20), V(60, 60)}), {{0.0, brush.half_width(4.0)}});
+    CHECK(compensate(bend, brush).pass.arcs.empty());
+    // a corner at changing depth is none: the circle would not close
+    const Stroke taper = stroke_of(polyline({V(20, 20), V(60, 20), V(30, 40)}), {{0.0, 0.8}, {1.0, 2.0}});
+    const Pass tapered = compensate(taper, brush).pass;
+    for (std::size_t k = 0; k < tapered.arcs.size(); ++k) CHECK_NOTHROW(check_arc(tapered, k, ""));
+    const Pass constant = compensate(bend, brush, {Compensation::constant, 0.05, 7.0}).pass;
+    REQUIRE(constant.arcs.size() == 1);
+    CHECK(constant.arcs[0].centre_mm == V(60, 20));
+    CHECK((V(constant.poses_mm.row(constant.arcs[0].first).head<2>().transpose()) - V(67, 20)).norm() < 1e-9);
+    CHECK((V(constant.poses_mm.row(constant.arcs[0].last).head<2>().transpose()) - V(60, 27)).norm() < 1e-9);
+    CHECK(compensate(bend, brush, {Compensation::none}).pass.arcs.empty());
 }
 
 TEST_CASE("tapers across the depth where the lever changes its sign, and a 0.5 mm line") {

@@ -49,8 +49,12 @@ const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name":
 const std::string kPlan = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50.5],
   "author": "me", "passes": [
     {"stroke": "a", "poses_mm": [[1, 2, 0], [3.5, 2, -1]], "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456",
-     "settings": {"dry": true}, "arcs": [[0, 1, 5, 5, -1]], "mood": "calm"},
+     "settings": {"dry": true}, "tilt": [[0, 1, 5, 5, -1]], "mood": "calm"},
     {"stroke": "b", "poses_mm": [[7, 8, -2]]}]})";
+
+const std::string kArcs = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50],
+  "passes": [{"stroke": "a", "arcs": [[1, 3, 15, 10, 1], [3, 4, 12, 11, -1]],
+              "poses_mm": [[13, 5, 0], [15, 5, -2], [20, 10, -2], [15, 15, -2], [16, 14, -2], [16, 12, 0]]}]})";
 
 const std::string kMarks = R"({"format": "brushsvg/marks", "version": 1, "outline_mm": [[[0, 0], [1, 0], [0, 1]]],
   "passes": [{"stroke": "a", "pose": [0, 0.5, 1], "contact_mm": [[1, 2], [1.5, 2], [3, 2]],
@@ -217,7 +221,7 @@ TEST_CASE("plan.json: every key arrives and is written back") {
     CHECK(pass.layer == "ink");
     CHECK(pass.colour == "#123456");
     CHECK(pass.settings == R"({"dry":true})");
-    CHECK(pass.extra == R"({"arcs":[[0,1,5,5,-1]],"mood":"calm"})");
+    CHECK(pass.extra == R"({"tilt":[[0,1,5,5,-1]],"mood":"calm"})");
     CHECK(plan.passes[1].speed_mm_s == 20.0);
     CHECK(plan.passes[1].settings == "{}");
     CHECK(plan.passes[1].poses_mm(0, 2) == -2.0);
@@ -230,7 +234,7 @@ TEST_CASE("plan.json: every key arrives and is written back") {
   "author": "me",
   "passes": [
     {"stroke": "a", "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456", "settings": {"dry":true},
-     "arcs": [[0,1,5,5,-1]],
+     "tilt": [[0,1,5,5,-1]],
      "mood": "calm",
      "poses_mm": [[1, 2, 0], [3.5, 2, -1]]},
     {"stroke": "b", "speed_mm_s": 20, "layer": "", "colour": "", "settings": {},
@@ -274,6 +278,62 @@ TEST_CASE("plan.json: each fault is named with its key") {
     const Error high = refusal_of([&] { io::read_plan(replaced(kPlan, "[3.5, 2, -1]", "[3.5, 2, 1.5]")); });
     CHECK(*high.value() == 1.5);
     CHECK((*high.range())[1] == 0.0);
+}
+
+TEST_CASE("plan.json: arcs arrive and are written back, after what else stands in the pass") {
+    const Plan plan = io::read_plan(kArcs);
+    const std::vector<Arc>& arcs = plan.passes[0].arcs;
+    REQUIRE(arcs.size() == 2);
+    CHECK(arcs[0].first == 1);
+    CHECK(arcs[0].last == 3);
+    CHECK(arcs[0].centre_mm == Eigen::Vector2d(15.0, 10.0));
+    CHECK(arcs[0].direction == 1);
+    CHECK(arcs[1].first == 3);
+    CHECK(arcs[1].direction == -1);
+    const std::string written = io::write_plan(plan);
+    CHECK(written.find("\"settings\": {},\n     \"arcs\": [[1, 3, 15, 10, 1], [3, 4, 12, 11, -1]],\n"
+                       "     \"poses_mm\"") != std::string::npos);
+    CHECK(io::write_plan(io::read_plan(written)) == written);
+    const std::string none = replaced(kArcs, "[[1, 3, 15, 10, 1], [3, 4, 12, 11, -1]]", "[]");
+    CHECK(io::write_plan(io::read_plan(none)).find("arcs") == std::string::npos);
+}
+
+TEST_CASE("plan.json: an arc that is none is refused with its number") {
+    const char *first = "[1, 3, 15, 10, 1]", *second = "[3, 4, 12, 11, -1]", *one = "passes[0].arcs[0]",
+               *two = "passes[0].arcs[1]";
+    const Fault faults[] = {
+        {"[[1, 3, 15, 10, 1], [3, 4, 12, 11, -1]]", "{}", "passes[0].arcs", "must be an array, not an object"},
+        {first, "7", one, "must be an array of numbers, not 7"},
+        {first, "[1, 3, 15, 10]", one, "must be five numbers [first pose, last pose, centre x, centre y, 1 or -1]"},
+        {first, "[1, 3, 15, \"10\", 1]", "passes[0].arcs[0][3]", "must be a number, not a string"},
+        {first, "[1, 2.5, 15, 10, 1]", "passes[0].arcs[0][1]", "must be whole numbers, not 2.5"},
+        {first, "[1, 1e300, 15, 10, 1]", "passes[0].arcs[0][1]", "must be whole numbers, not 1000000000"},
+        {first, "[1, 3, 15, 10, 0.5]", "passes[0].arcs[0][4]", "must be whole numbers, not 0.5"},
+        {first, "[1, 3, 15, 10, 2]", one, "arc 0 of stroke a has the direction 2, not 1 (counter-clockwise) or -1"},
+        {first, "[1, 3, 15, 10, -1]", one, "does not go clockwise from pose 1 to pose 2 by less than 180 degrees"},
+        {first, "[-1, 3, 15, 10, 1]", one, "arc 0 of stroke a names poses -1 to 3, where the stroke has 0 to 5"},
+        {second, "[3, 6, 12, 11, -1]", two, "arc 1 of stroke a names poses 3 to 6, where the stroke has 0 to 5"},
+        {first, "[3, 3, 15, 10, 1]", one, "runs from pose 3 to pose 3, not to a later one"},
+        {second, "[2, 4, 12, 11, -1]", two, "begins at pose 2, before the arc ahead of it ends at pose 3"},
+        {first, "[1, 3, 15, 10.01, 1]", one, "has pose 2 -0.00999 mm off its circle of radius 5.01 mm"},
+        {first, "[0, 3, 15, 10, 1]", one, "has pose 1 -0.385165 mm off its circle of radius 5.38516 mm"},
+        {first, "[1, 3, 15, 5, 1]", one, "has a radius of 0 mm, outside the range [0.1, 1e+06] mm"},
+        {first, "[1, 3, 15, 2e6, 1]", one, "has a radius of 2e+06 mm, outside"},
+        {"[20, 10, -2]", "[20, 10, -2.1]", one, "has z = -2 mm at pose 1 and -2.1 mm at pose 2; an arc has one depth"},
+        {"[20, 10, -2]", "[15, 5, -2]", one, "does not go counter-clockwise from pose 1 to pose 2"},
+        {"[20, 10, -2]", "[15, 15, -2]", one, "does not go counter-clockwise from pose 1 to pose 2 by less than 180"},
+    };
+    for (const Fault& fault : faults) {
+        CAPTURE(fault.by);
+        const Error error = refusal_of([&] { io::read_plan(replaced(kArcs, fault.what, fault.by)); });
+        CHECK(error.where() == fault.where);
+        const std::string sentence = error.what();
+        CAPTURE(sentence);
+        CHECK(sentence.find(fault.said) != std::string::npos);
+    }
+    Plan plan = io::read_plan(kArcs);
+    plan.passes[0].arcs[1].direction = 1;
+    CHECK(refusal_of([&] { io::write_plan(plan); }).where() == "passes[0].arcs[1]");
 }
 
 TEST_CASE("plan.json: a z of 0 or below is fine anywhere, at the ends too") {

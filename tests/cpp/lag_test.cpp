@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "dual.hpp"
+
 using namespace brushsvg;
 using V = Eigen::Vector2d;
 
@@ -24,48 +26,7 @@ LagState<double> taut(const V& tcp, double lag, double theta) {
     return s;
 }
 
-/// A number with one derivative, as a solver uses it.
-struct Dual {
-    double a = 0.0, v = 0.0;
-    Dual() = default;
-    Dual(double x) : a(x) {}  // NOLINT: a constant is a dual number
-    Dual(double x, double dx) : a(x), v(dx) {}
-    Dual& operator+=(const Dual& o) { return *this = {a + o.a, v + o.v}; }
-    Dual& operator-=(const Dual& o) { return *this = {a - o.a, v - o.v}; }
-    Dual& operator*=(const Dual& o) { return *this = {a * o.a, v * o.a + a * o.v}; }
-    Dual& operator/=(const Dual& o) { return *this = {a / o.a, (v - a / o.a * o.v) / o.a}; }
-    friend Dual operator+(Dual x, const Dual& y) { return x += y; }
-    friend Dual operator-(Dual x, const Dual& y) { return x -= y; }
-    friend Dual operator*(Dual x, const Dual& y) { return x *= y; }
-    friend Dual operator/(Dual x, const Dual& y) { return x /= y; }
-    friend Dual operator-(const Dual& x) { return {-x.a, -x.v}; }
-    friend bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
-    friend bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
-    friend bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }
-    friend bool operator>=(const Dual& x, const Dual& y) { return x.a >= y.a; }
-    friend Dual exp(const Dual& x) { return {std::exp(x.a), std::exp(x.a) * x.v}; }
-    friend Dual sqrt(const Dual& x) { return {std::sqrt(x.a), 0.5 / std::sqrt(x.a) * x.v}; }
-};
-
 }  // namespace
-
-namespace Eigen {
-template <>
-struct NumTraits<Dual> : NumTraits<double> {
-    using Real = Dual;
-    using NonInteger = Dual;
-    using Nested = Dual;
-    enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 1,
-        RequireInitialization = 1,
-        ReadCost = 2,
-        AddCost = 2,
-        MulCost = 3
-    };
-};
-}  // namespace Eigen
 
 TEST_CASE("figure 3: r = 3, b = 1, alpha0 = 90 degrees") {
     const auto law = law_of({3.0});
@@ -114,15 +75,6 @@ TEST_CASE("the quadrature's nodes are chosen by the nearest root: fine against m
                 CHECK(x >= 50.0);  // e^-50: nothing left of the old heading
         }
     }
-}
-
-TEST_CASE("an arc of the TCP: the printed value, straight ahead, and where it settles") {
-    CHECK(std::abs(drag_arc(0.7, 1.0 / 40, 8.0, 60.0) - -0.200791034) < 1e-9);
-    CHECK(std::abs(drag_arc(1.2, 0.0, 3.0, 2.0) - 2 * std::atan(std::tan(0.6) * std::exp(-2.0 / 3))) < 1e-14);
-    CHECK(std::abs(std::sin(drag_arc(0.3, 0.1, 4.0, 500.0)) + 0.4) < 1e-12);
-    // |k| r = 1 is the limit of both sides
-    CHECK(std::abs(drag_arc(0.2, 0.25, 4.0, 3.0) - drag_arc(0.2, 0.25 + 1e-9, 4.0, 3.0)) < 1e-7);
-    CHECK(std::abs(drag_arc(0.2, 0.25, 4.0, 3.0) - drag_arc(0.2, 0.25 - 1e-9, 4.0, 3.0)) < 1e-7);
 }
 
 TEST_CASE("figure 12: the patch's distance from the TCP's second line") {

@@ -85,6 +85,58 @@ TEST_CASE("too deep or not finite is refused with the pose, the depth and the ra
     CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);
 }
 
+TEST_CASE("an arc is followed on its circle: rows at its poses and between, fractional within each") {
+    const Brush brush = shipped("round-6");
+    const double R = 30.0, a = 0.9;
+    Pass pass = pass_of({{0, 0, 0}, {10, 0, -4}, {40, 0, -4}});
+    pass.poses_mm.conservativeResize(7, 3);
+    for (int k = 1; k <= 3; ++k) pass.poses_mm.row(2 + k) << 40 + R * std::sin(k * a), R * (1 - std::cos(k * a)), -4;
+    pass.poses_mm.row(6) << 40, 2 * R, 0;
+    const PassMarks chords = simulate(pass, brush, 0.01);
+    pass.arcs = {{2, 5, {40, R}, 1}};
+    const PassMarks m = simulate(pass, brush, 0.01);
+    int within = 0;
+    for (std::size_t i = 0; i < m.pose.size(); ++i) {
+        if (m.pose[i] < 2 || m.pose[i] > 5) continue;
+        ++within;
+        const double angle = (m.pose[i] - 2) * a;
+        CHECK((m.tcp_mm.row(i) - Eigen::RowVector2d(40 + R * std::sin(angle), R * (1 - std::cos(angle)))).norm() <
+              1e-12);
+        CHECK(m.depth_mm[i] == 4.0);
+        const Eigen::RowVector2d u(std::cos(m.heading_rad[i]), std::sin(m.heading_rad[i]));
+        CHECK((m.tcp_mm.row(i) - brush.lag(4.0) * u - m.contact_mm.row(i)).norm() < 1e-12);
+    }
+    CHECK(within > 20);
+    for (int k = 0; k < 7; ++k) CHECK(std::count(m.pose.begin(), m.pose.end(), double(k)) >= 1);
+    // up to where the arc begins nothing differs
+    for (std::size_t i = 0; chords.pose[i] <= 2; ++i) CHECK(m.contact_mm.row(i) == chords.contact_mm.row(i));
+    // half way between rows the contact is where their straight line says
+    const PassMarks fine = simulate(pass, brush, 1e-5);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < fine.pose.size(); ++i) {
+        while (k + 2 < m.pose.size() && m.pose[k + 1] < fine.pose[i]) ++k;
+        const Eigen::Vector2d p = m.contact_mm.row(k), d = m.contact_mm.row(k + 1).transpose() - p,
+                              q = fine.contact_mm.row(i);
+        const double t = d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, (q - p).dot(d) / d.squaredNorm())) : 0.0;
+        CHECK((q - p - t * d).norm() < 0.015);
+    }
+    pass.arcs[0].direction = -1;
+    CHECK_THROWS_AS(simulate(pass, brush), Error);
+}
+
+TEST_CASE("a rigid pen on an arc heads along it") {
+    const Brush brush = shipped("rigid");
+    Pass pass = pass_of({{0, 0, 0}, {0, 0, -0.2}, {20, 20, -0.2}, {20, 20, 0}});
+    pass.arcs = {{1, 2, {0, 20}, 1}};
+    const PassMarks m = simulate(pass, brush, 1e-3);
+    CHECK(m.pose.size() > 10);
+    for (std::size_t i = 0; i < m.pose.size(); ++i) {
+        CHECK((m.contact_mm.row(i) - m.tcp_mm.row(i)).norm() < 1e-12);
+        if (m.pose[i] >= 1 && m.pose[i] <= 2)
+            CHECK(m.heading_rad[i] == doctest::Approx((m.pose[i] - 1) * 1.5707963267948966).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("an empty pass and a pass of one pose") {
     const Brush brush = shipped("round-6");
     CHECK(simulate(pass_of({}), brush).pose.empty());

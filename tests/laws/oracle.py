@@ -222,6 +222,69 @@ class Reference:
         return [b[0] for a, b in zip(self.phases[:-1], self.phases[1:], strict=True) if a[2] != b[2]]
 
 
+def follow(tcp, velocity, lag, contact, heading, is_taut):
+    """Carries (contact, heading, taut) along any smooth motion at constant lag: tcp(t), velocity(t), t from 0 to 1.
+
+    The taut law is integrated as it stands, events are bracketed. Returns the state at the end and [t] of events.
+    """
+    at, events = 0.0, []
+
+    def pull(t, theta):
+        return velocity(t) @ unit(theta)
+
+    def rate(t, y):
+        v = velocity(t)
+        return [(np.cos(y[0]) * v[1] - np.sin(y[0]) * v[0]) / lag]
+
+    def loosens(t, y):
+        return pull(t, y[0])
+
+    loosens.terminal, loosens.direction = True, -1
+    for _ in range(50):
+        if at >= 1.0:
+            break
+        if is_taut and pull(at, heading) < -1e-9:
+            is_taut = False
+            events.append(at)
+        elif is_taut:
+            path = solve_ivp(
+                rate,
+                (at, 1),
+                [heading],
+                method="DOP853",
+                rtol=1e-12,
+                atol=1e-13,
+                max_step=0.02,
+                events=loosens,
+            )
+            stopped = len(path.t_events[0]) > 0 and path.t[-1] > at and path.t[-1] < 1
+            at, heading = path.t[-1], path.y[0, -1]
+            contact = tcp(at) - lag * unit(heading)
+            if stopped:
+                is_taut = False
+                events.append(at)
+        else:
+            times = at + (1 - at) * np.concatenate([np.geomspace(1e-6, 4e-4, 20), np.arange(1, 2001) / 2000])
+            slack = np.array([np.hypot(*(tcp(t) - contact)) - lag for t in times])
+            above = np.flatnonzero(slack > 1e-12)
+            if len(above) == 0:
+                at = 1.0
+            elif above[0] == 0:
+                is_taut = True
+            else:
+                k = above[0]
+                at = brentq(
+                    lambda t, p=contact: np.hypot(*(tcp(t) - p)) - lag, times[k - 1], times[k], xtol=1e-15
+                )
+                is_taut = True
+                events.append(at)
+            reach = tcp(at) - contact
+            if np.hypot(*reach) > 1e-12:
+                heading = np.arctan2(reach[1], reach[0])
+    assert at >= 1.0, "no end of events"
+    return contact, heading, is_taut, events
+
+
 def step_all(plans, laws, steps, method="article", epsilon=1e-9):
     """Slow stepping of many passes at once: plans (m, n, 3) x y z, m laws; contacts (m, n, 2), nan if lifted.
 

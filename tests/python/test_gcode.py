@@ -18,7 +18,7 @@ GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
 def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0, cell="linuxcnc-3axis"):
     passes = [
-        SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed)
+        SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed, arcs=())
         for stroke, poses, speed in passes
     ]
     brush = SimpleNamespace(name="b", max_speed_mm_s=limit)

@@ -21,7 +21,6 @@ UNTESTED = {
     "error": "two value types; what is said with them is tested where it is said",
     "lag_impl": "the bodies of lag.hpp, tested with it",
     "marks": "value types; simulate, coverage and io fill and carry them",
-    "plan": "value types; compensate and io fill and carry them",
 }
 
 

@@ -24,7 +24,7 @@ STROKES = {
     "dot": [(40, 30, 0), (40, 30, -2), (43, 30, -2), (42, 30, 0)],
     "turn": [(12, 10, 0), *ARC, (30, 45, -2), (30, 44, 0)],
 }
-ARCS = {"turn": [(1, 9, 20.0, 30.0, -1)]}
+ARCS = {"turn": [SimpleNamespace(first=1, last=9, centre_mm=(20.0, 30.0), direction=-1)]}
 
 
 def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), **job):

@@ -7,6 +7,7 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/footprint.hpp"
 #include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
 #include "brushsvg/marks.hpp"
 #include "brushsvg/miss.hpp"
 #include "brushsvg/plan.hpp"

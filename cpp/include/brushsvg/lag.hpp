@@ -98,12 +98,6 @@ Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& deca
     return Vec2<T>(c * along.x() - s * along.y(), c * along.y() + s * along.x());
 }
 
-/// psi after an arc of the TCP of signed curvature k [1/mm] and length s [mm] at constant lag r [mm]:
-/// d(psi)/ds = -sin(psi)/r - k, solved on the half-angle vector by exp(s A), A = [[1/(2r), k/2], [-k/2, -1/(2r)]].
-/// Taut only: valid while |psi| <= 90 degrees.
-template <class T>
-T drag_arc(const T& psi0, const T& curvature_per_mm, const T& lag_mm, const T& length_mm);
-
 /// beta, article (11) and (12): direction of the tip's displacement against the direction of motion, for constant lag,
 /// after psi went from alpha0 to alpha1 over s [mm]. In (0, pi) for alpha0 > 0.
 template <class T>
@@ -138,6 +132,7 @@ struct Move {
         along = length > T(0.0) ? Vec2<T>(by / length) : Vec2<T>(T(1.0), T(0.0));
     }
     Vec2<T> tcp(const T& t) const { return from + by * t; }
+    const Vec2<T>& direction(const T&) const { return along; }
     T depth(const T& t) const { return depth_from + depth_by * t; }
 };
 

@@ -82,6 +82,18 @@ void drag(const LawPiece<T>& law, const Move<T>& move, const T& begin, const T& 
     state.contact = move.tcp(t) - law.at(depth) * state.heading;  // article (5), (6)
 }
 
+/// Loose bristles point from the contact to the TCP; over it they keep their heading.
+template <class T>
+void point_at(const Vec2<T>& tcp, LagState<T>& state) {
+    using std::sqrt;
+    const Vec2<T> reach = tcp - state.contact;
+    const T squared = reach.squaredNorm();
+    if (squared > T(0.0)) {
+        state.heading = reach / sqrt(squared);
+        state.heading_known = true;
+    }
+}
+
 /// psi shrinks while taut, so g >= cos(psi0) - max|dr/ds|: most moves need no search for events.
 template <class T>
 bool stays_taut(const LawPiece<T>& law, const Move<T>& move, double cosine0) {
@@ -162,50 +174,14 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
 }
 
 template <class T>
-T drag_arc(const T& psi0, const T& k, const T& r, const T& s) {
-    using std::atan2;
-    using std::cos;
-    using std::cosh;
-    using std::sin;
-    using std::sinh;
-    using std::sqrt;
-    // exp(sA) = C I + S A with C = cosh(ws/2), S = sinh(ws/2) / (w/2), w^2 = 1/r^2 - k^2
-    const T w2 = T(1.0) / (r * r) - k * k;
-    T c(1.0), S = s;
-    if (w2 > T(0.0)) {
-        const T w = sqrt(w2);
-        c = cosh(0.5 * w * s);
-        S = sinh(0.5 * w * s) / (0.5 * w);
-    } else if (w2 < T(0.0)) {
-        const T w = sqrt(-w2);
-        c = cos(0.5 * w * s);
-        S = sin(0.5 * w * s) / (0.5 * w);
-    }
-    const T x = cos(0.5 * psi0), y = sin(0.5 * psi0);
-    const T x1 = c * x + S * (x / (2.0 * r) + 0.5 * k * y);
-    const T y1 = c * y + S * (-0.5 * k * x - y / (2.0 * r));
-    const T psi = 2.0 * atan2(y1, x1);
-    constexpr double pi = 3.14159265358979323846;
-    if (psi > T(pi)) return psi - T(2.0 * pi);
-    if (psi <= T(-pi)) return psi + T(2.0 * pi);
-    return psi;
-}
-
-template <class T>
 LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
                          const T& t) {
-    using std::sqrt;
     LagState<T> state = start;
     if (start.taut) {
         detail::drag(law, move, begin, t, state);
         return state;
     }
-    const Vec2<T> reach = move.tcp(t) - start.contact;
-    const T squared = reach.squaredNorm();
-    if (squared > T(0.0)) {
-        state.heading = reach / sqrt(squared);
-        state.heading_known = true;
-    }
+    detail::point_at(move.tcp(t), state);
     return state;
 }
 

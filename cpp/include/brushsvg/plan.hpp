@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,26 @@ using Poses = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// No table is larger: a coordinate beyond it is damage, and squares of it still add up.
 inline constexpr double kLargestMm = 1e6;
 
+/// Poses `first` to `last` lie on a circle about a centre, at constant depth, and are passed in this direction.
+struct Arc {
+    std::int64_t first = 0, last = 0;  ///< indexes of poses
+    Eigen::Vector2d centre_mm{0.0, 0.0};
+    int direction = 1;  ///< 1 counter-clockwise, -1 clockwise
+};
+
+/// A radius outside this range is refused: below, the arc vanishes in the brush's smallest mark and the rounding of
+/// its poses; above, centre and poses together hold too few digits.
+inline constexpr std::array<double, 2> kArcRadiusMm{0.1, kLargestMm};
+
+/// How far the poses of an arc may be from one circle: poses and centre rounded to three decimals add up to 0.0028 mm.
+/// The arc between two poses runs through both, so nothing jumps; much more would hide a wrong centre.
+inline constexpr double kOnCircleMm = 3e-3;
+
 /// One stroke's motion: straight moves between poses, depth linear along each.
 struct Pass {
     std::string stroke;  ///< id of the stroke it paints
     Poses poses_mm;
+    std::vector<Arc> arcs;  ///< ascending; poses of one are followed on its circle in place of its chords
     double speed_mm_s = 20.0;
     std::string layer;
     std::string colour;
@@ -31,5 +48,13 @@ struct Plan {
     std::vector<Pass> passes;
     std::string extra = "{}";
 };
+
+/// By how much the TCP turns about an arc's centre from one pose on it to the next [rad], signed, in (-pi, pi].
+double turn_between(const Arc& arc, const Eigen::Vector2d& from_mm, const Eigen::Vector2d& to_mm);
+
+/// Throws Error, with this `where`, when arc k of the pass names poses that do not exist, comes before its
+/// predecessor's end, or when its poses are not on one circle, not at one depth, or do not go round it in the direction
+/// said, each by less than half a turn.
+void check_arc(const Pass& pass, std::size_t k, const std::string& where);
 
 }  // namespace brushsvg

@@ -9,7 +9,7 @@ import numpy as np
 from ..cell import Servo
 from ..moves import SAFE_MEANINGS, Move, Program, Wait
 from .gcode import GRBL_LINE_LIMIT, MODES, comment, wait
-from .text import feed_mm_min, number, rows
+from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
 
 TOUCHING = (
     "land",
@@ -48,22 +48,23 @@ def grbl_servo(program: Program) -> Iterator[str]:
     yield "\nM5\nM2\n"
 
 
-def value_at(servo: Servo, height_mm: float) -> int:
-    """The servo's value for a height."""
-    table = np.array(sorted(servo.table))
-    return int(np.rint(np.interp(height_mm, table[:, 0], table[:, 1])))
+def value_at(servo: Servo, height_mm):
+    """The servo's value for a height, or for each of an array."""
+    heights, values = zip(*sorted(servo.table), strict=True)
+    return np.rint(np.interp(height_mm, heights, values)).astype(int)
 
 
 def _lines(move: Move, here: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
     path = np.vstack([here, move.points_mm])
-    steps = np.diff(path, axis=0)
-    flat = np.abs(steps[:, :2]).max(axis=1) < 0.5 * 10.0**-decimals
-    for first, last, still in zip(path[:-1], path[1:], flat, strict=True):
-        if still:
-            step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
-            yield from _lift(first[2], last[2], move.speed_mm_s, step_mm, servo)
-        else:
-            yield from _line(first, last, "G0" if move.meaning in SAFE_MEANINGS else "G1", servo, decimals)
+    still = np.abs(np.diff(path[:, :2], axis=0)).max(axis=1) < 0.5 * 10.0**-decimals
+    word = "G0" if move.meaning in SAFE_MEANINGS else "G1"
+    for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
+        if not still[run[0]]:
+            yield from _ways(path[run[0] : run[-1] + 2], word, servo, decimals)
+            continue
+        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
+        for k in run:
+            yield from _lift(path[k, 2], path[k + 1, 2], move.speed_mm_s, step_mm, servo)
 
 
 def _lift(from_mm: float, to_mm: float, speed_mm_s: float, step_mm: float, servo: Servo) -> Iterator[str]:
@@ -78,10 +79,15 @@ def _lift(from_mm: float, to_mm: float, speed_mm_s: float, step_mm: float, servo
         yield f"G4 P{number(servo.settle_s, 3)}\n"
 
 
-def _line(first: np.ndarray, last: np.ndarray, word: str, servo: Servo, decimals: int) -> Iterator[str]:
-    """A straight line in parts on each of which the height is the one half way along it."""
-    count = max(1, int(np.ceil(abs(last[2] - first[2]) / servo.step_mm - 1e-9)))
-    ends = first + (last - first) * np.arange(1, count + 1)[:, None] / count
-    heights = first[2] + (last[2] - first[2]) * (np.arange(count) + 0.5) / count
-    values = np.column_stack([ends[:, :2], [value_at(servo, height) for height in heights]])
-    yield from rows(f"{word} X%.{decimals}f Y%.{decimals}f S%d", values, decimals)
+def _ways(path: np.ndarray, word: str, servo: Servo, decimals: int) -> Iterator[str]:
+    """Straight lines, each in parts on which the height is the one half way along the part."""
+    pattern = f"{word} X%.{decimals}f Y%.{decimals}f S%d"
+    for first in range(0, len(path) - 1, ROWS_AT_ONCE):
+        part = path[first : first + ROWS_AT_ONCE + 1]
+        way = np.diff(part, axis=0)
+        counts = np.maximum(1, np.ceil(np.abs(way[:, 2]) / servo.step_mm - 1e-9)).astype(int)
+        which = np.repeat(np.arange(len(way)), counts)
+        number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+        ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
+        heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
+        yield from rows(pattern, np.column_stack([ends, value_at(servo, heights)]), decimals)

@@ -1,0 +1,91 @@
+"""Programs of a page of 1,000 strokes in every language; and what 10 million poses cost in memory.
+
+python benchmarks/posts.py
+"""
+
+import json
+import resource
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from brushsvg import _core, machine
+from brushsvg.brushes import find_brush
+from brushsvg.cell import Workspace
+from brushsvg.cell_file import cell_names, find_cell
+from brushsvg.posts import POSTS
+
+STROKES = 1000
+POSES = 150
+
+
+def plan_of(strokes: int, poses: int, sheet_mm=(400.0, 400.0)):
+    """Waves side by side, pressed and lifted at their ends."""
+    t = np.linspace(0, 1, poses)
+    passes = []
+    for number in range(strokes):
+        x, y = 20 + 36 * (number % 10), 20 + 360 * (number // 10) / (strokes / 10)
+        depth = -3 * np.minimum(1, 10 * np.minimum(t, 1 - t))
+        wave = np.column_stack([x + 30 * t, y + np.sin(20 * t), depth])
+        passes.append(_core.Pass(f"s{number}", wave, 20.0))
+    return _core.Plan("round-6", "", sheet_mm, passes)
+
+
+def roomy(name: str):
+    """The cell with room for the page, wherever its example paper lies."""
+    cell = find_cell(name)
+    return replace(cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg))
+
+
+def write(name: str, plan, brush) -> int:
+    """Bytes of the program, which is thrown away piece by piece."""
+    suffix = POSTS[find_cell(name).language].extensions[0]
+    return sum(len(piece) for piece in machine.encode(suffix, plan, brush, "page", (), roomy(name)))
+
+
+def peak_mb() -> float:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def child(name: str, strokes: int) -> None:
+    """Memory beyond the plan's arrays, in a process of its own."""
+    brush = find_brush("round-6")
+    write(name, plan_of(10, POSES), brush)  # what is loaded for any program
+    plan = plan_of(strokes, 10_000)
+    before = peak_mb()
+    begin = time.perf_counter()
+    size = write(name, plan, brush)
+    print(json.dumps([peak_mb() - before, time.perf_counter() - begin, size / 1e6]))
+
+
+def main() -> None:
+    brush, plan = find_brush("round-6"), plan_of(STROKES, POSES)
+    names = [name for name in cell_names() if find_cell(name).language in POSTS]
+    print(f"a page of {STROKES} strokes, {STROKES * POSES} poses")
+    begin = time.perf_counter()
+    points = np.vstack([a_pass.poses_mm for a_pass in plan.passes])
+    text = "\n".join(["X%.4f Y%.4f Z%.4f"] * len(points)) % tuple(points.ravel().tolist())
+    print(
+        f"  {'floor: three numbers a pose as text':<48} {time.perf_counter() - begin:7.3f} s {len(text) / 1e6:7.1f} MB"
+    )
+    for name in names:
+        begin = time.perf_counter()
+        size = write(name, plan, brush)
+        print(f"  {name:<48} {time.perf_counter() - begin:7.3f} s {size / 1e6:7.1f} MB")
+    print("10 million poses: memory beyond the plan's arrays (aim: 50 MB)")
+    for name in names:
+        ran = subprocess.run(
+            [sys.executable, __file__, name, "1000"], capture_output=True, text=True, check=True
+        )
+        memory, seconds, size = json.loads(ran.stdout)
+        print(f"  {name:<48} {memory:7.1f} MB {seconds:7.1f} s {size:7.0f} MB")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 3:
+        child(sys.argv[1], int(sys.argv[2]))
+    else:
+        main()

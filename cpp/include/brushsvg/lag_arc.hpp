@@ -1,0 +1,227 @@
+#pragma once
+
+#include "brushsvg/lag.hpp"
+
+// How the contact patch trails the handle on a circular arc at constant depth: the two rules of lag.hpp, each in closed
+// form. With k = 1/R, signed, r the lag and psi the angle from the direction of motion to the heading.
+namespace brushsvg {
+
+template <class T>
+Vec2<T> turned_by(const Vec2<T>& v, const T& angle) {
+    using std::cos;
+    using std::sin;
+    const T c = cos(angle), s = sin(angle);
+    return Vec2<T>(c * v.x() - s * v.y(), s * v.x() + c * v.y());
+}
+
+/// A move of the TCP along a circular arc, position in t from 0 to 1; depth constant, >= 0. `turn` is the signed angle
+/// by which its direction turns [rad], counter-clockwise > 0, not 0.
+template <class T>
+struct ArcMove {
+    Vec2<T> from, along;  ///< start and direction there
+    T radius, turn, length, depth_from;
+    T depth_by = T(0.0);  ///< as in Move
+    double side;          ///< 1 when the centre lies to the left, else -1
+
+    ArcMove(const Vec2<T>& start, const Vec2<T>& direction, const T& radius_mm, const T& turn_rad, const T& depth)
+        : from(start), along(direction), radius(radius_mm), turn(turn_rad), depth_from(depth) {
+        side = value_of(turn) > 0.0 ? 1.0 : -1.0;
+        length = radius * (side * turn);
+    }
+    Vec2<T> direction(const T& t) const { return turned_by(along, T(turn * t)); }
+    Vec2<T> tcp(const T& t) const {  // by the chord, so that a large radius costs no digits
+        using std::sin;
+        const T half = 0.5 * turn * t;
+        return from + turned_by(along, half) * (2.0 * radius * sin(half) * side);
+    }
+    T depth(const T&) const { return depth_from; }
+};
+
+/// The arc that begins and ends at these two points and turns by less than half a turn: its radius follows from them,
+/// so that positions rounded in a file join without a jump.
+template <class T>
+ArcMove<T> arc_between(const Vec2<T>& from, const Vec2<T>& to, const T& turn, const T& depth) {
+    using std::sin;
+    using std::sqrt;
+    const Vec2<T> by = to - from;
+    const T chord = sqrt(by.squaredNorm()), half = 0.5 * turn, sine = sin(half);
+    return ArcMove<T>(from, turned_by(Vec2<T>(by / chord), T(-half)),
+                      T(chord / (value_of(turn) > 0.0 ? 2.0 * sine : -2.0 * sine)), turn, depth);
+}
+
+namespace detail {
+
+/// d(psi)/ds = -sin(psi)/r - k on the half-angle vector (x, y) = (cos, sin)(psi/2), up to a factor: it goes by
+///     exp(s A) = C I + S 2r A,   A = [[1/(2r), k/2], [-k/2, -1/(2r)]],   w^2 = 1 - (k r)^2,
+/// with C = cosh(w s/(2r)), S = sinh(w s/(2r)) / w; cos and sin where |k| r > 1; 1 and s/(2r) where |k| r = 1.
+/// Divided by the cosh, which overflows on long arcs; kr = k r and s_r = s / r carry no unit.
+template <class T>
+void carry_half_angle(const T& kr, const T& s_r, T& x, T& y) {
+    using std::cos;
+    using std::sin;
+    using std::sqrt;
+    using std::tanh;
+    const T w2 = (T(1.0) - kr) * (T(1.0) + kr);
+    T c(1.0), s = 0.5 * s_r;
+    if (w2 > T(0.0)) {
+        const T w = sqrt(w2);
+        s = tanh(T(0.5 * w * s_r)) / w;
+    } else if (w2 < T(0.0)) {
+        const T w = sqrt(T(-w2));
+        c = cos(T(0.5 * w * s_r));
+        s = sin(T(0.5 * w * s_r)) / w;
+    }
+    const T x0 = x, y0 = y;
+    x = c * x0 + s * (x0 + kr * y0);
+    y = c * y0 - s * (kr * x0 + y0);
+}
+
+/// Component of a vector to the left of a direction.
+template <class T>
+T across(const Vec2<T>& along, const Vec2<T>& v) {
+    return along.x() * v.y() - along.y() * v.x();
+}
+
+/// Carries a taut state from t = begin to t.
+template <class T>
+void drag(const LawPiece<T>& law, const ArcMove<T>& arc, const T& begin, const T& t, LagState<T>& state) {
+    const T r = law.at(arc.depth_from);
+    const Vec2<T> before = arc.direction(begin), now = arc.direction(t);
+    const T a = state.heading.dot(before), b = across(before, state.heading);
+    const bool ahead = a >= T(0.0);  // the form of the half-angle vector without cancellation on either side
+    T x = ahead ? T(T(1.0) + a) : b, y = ahead ? b : T(T(1.0) - a);
+    if (r > T(0.0))
+        carry_half_angle(T(arc.side * r / arc.radius), T(arc.length * (t - begin) / r), x, y);
+    else
+        y = T(0.0);
+    const T norm = x * x + y * y;
+    state.heading = now;
+    if (norm > T(std::numeric_limits<double>::min())) {
+        const T c = (x * x - y * y) / norm, s = T(2.0) * x * y / norm;
+        state.heading = Vec2<T>(c * now.x() - s * now.y(), c * now.y() + s * now.x());
+    }
+    state.contact = arc.tcp(t) - r * state.heading;
+}
+
+/// cos(psi) below this is a brush being pushed, above it rounding of psi = 90 degrees: a turn in place about the
+/// contact runs along that edge.
+constexpr double kPushedCosine = -1e-13;
+
+/// t where a taut brush goes loose, above 1 when it does not. That is where psi passes 90 degrees on the outer side of
+/// the arc, so only where |k| r > 1. From the zero of x + y (of x - y where k < 0) of the half-angle vector:
+///     tan(w s/(2r)) = w cos(psi) / ((1 - sin(psi)) (k r - 1)),   w^2 = (k r)^2 - 1,   signs of k > 0.
+template <class T>
+T loosening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const T& begin) {
+    using std::atan2;
+    using std::sqrt;
+    const T kr = r / arc.radius;
+    if (!(kr > T(1.0))) return T(2.0);
+    const Vec2<T> direction = arc.direction(begin);
+    const T a = state.heading.dot(direction), b = arc.side * across(direction, state.heading);
+    const T w = sqrt(T((kr - 1.0) * (kr + 1.0)));
+    const T angle =
+        b > T(0.0) ? atan2(T(w * (1.0 + b)), T(a * (kr - 1.0))) : atan2(T(w * a), T((1.0 - b) * (kr - 1.0)));
+    return angle > T(0.0) ? T(begin + 2.0 * angle / w * r / arc.length) : begin;
+}
+
+/// t where a loose brush pulls tight, above 1 when it does not: the resting contact lies at D from the arc's centre, q
+/// at R, and beta is the angle from the one to the other, so
+///     |q - p|^2 = R^2 + D^2 - 2 R D cos(beta) = r^2
+/// is reached at sin^2(beta/2) = sin^2(beta0/2) + (r^2 - |q0 - p|^2) / (4 R D). `pushed`: loose only now, from taut.
+template <class T>
+T tightening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const T& begin, bool pushed) {
+    using std::atan2;
+    using std::sin;
+    using std::sqrt;
+    const Vec2<T> direction = arc.direction(begin);
+    const Vec2<T> reach = pushed ? Vec2<T>(r * state.heading) : Vec2<T>(arc.tcp(begin) - state.contact);
+    const T ahead = reach.dot(direction), outward = arc.radius + arc.side * across(direction, reach);
+    const T beta0 = atan2(ahead, outward), whole = arc.side * arc.turn;
+    if (pushed) return begin - 2.0 * beta0 / whole;
+    const T slack = r * r - reach.squaredNorm();
+    if (slack < T(0.0)) return begin;
+    T sine2 = sin(T(0.5 * beta0));
+    sine2 = sine2 * sine2 + slack / (4.0 * arc.radius * sqrt(T(ahead * ahead + outward * outward)));
+    if (!(sine2 <= T(1.0))) return T(2.0);
+    const T beta = 2.0 * atan2(T(sqrt(sine2)), T(sqrt(T(1.0 - sine2))));
+    return begin + (beta - beta0) / whole;
+}
+
+}  // namespace detail
+
+/// psi after an arc of the TCP of signed curvature k [1/mm] and length s [mm] at constant lag r [mm], in (-pi, pi].
+/// Taut only: valid while |psi| <= 90 degrees.
+template <class T>
+T drag_arc(const T& psi0, const T& curvature_per_mm, const T& lag_mm, const T& length_mm) {
+    using std::atan2;
+    using std::cos;
+    using std::sin;
+    T x = cos(T(0.5 * psi0)), y = sin(T(0.5 * psi0));
+    detail::carry_half_angle(T(curvature_per_mm * lag_mm), T(length_mm / lag_mm), x, y);
+    const T psi = 2.0 * atan2(y, x);
+    constexpr double pi = 3.14159265358979323846;
+    if (psi > T(pi)) return psi - T(2.0 * pi);
+    if (psi <= T(-pi)) return psi + T(2.0 * pi);
+    return psi;
+}
+
+/// State at t of an event-free phase that began in state `start` at t = begin.
+template <class T>
+LagState<T> within_phase(const LawPiece<T>& law, const ArcMove<T>& arc, const LagState<T>& start, const T& begin,
+                         const T& t) {
+    LagState<T> state = start;
+    if (start.taut)
+        detail::drag(law, arc, begin, t, state);
+    else
+        detail::point_at(arc.tcp(t), state);
+    return state;
+}
+
+/// Carries the state over one arc, phase by phase, as advance() does over a straight move.
+///
+/// Once the brush has loosened because psi passed 90 degrees, the contact rests r - R from the centre and q comes no
+/// farther than r from it: it stays loose to the arc's end, and the whole circle round.
+template <class T, class PhaseSink>
+void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state, PhaseSink&& phase) {
+    const LawPiece<T>& piece = law.piece(value_of(arc.depth_from));
+    const auto run = [&](const T& begin, const T& end) {
+        if (!(begin < end)) return;
+        phase(piece, arc, state, begin, end);
+        state = within_phase(piece, arc, state, begin, end);
+    };
+    if (law.rigid) {  // a pen: p = q, the heading is the direction of motion
+        state.taut = state.heading_known = true;
+        state.heading = arc.along;
+        state.contact = arc.from;
+        return run(T(0.0), T(1.0));
+    }
+    const T r = piece.at(arc.depth_from), end(1.0);
+    T begin(0.0);
+    for (int round = 0; round < 2; ++round) {
+        const bool pushed = state.taut && state.heading.dot(arc.direction(begin)) < T(detail::kPushedCosine);
+        if (pushed) state.taut = false;
+        if (!state.taut) {
+            const T t = detail::tightening(r, arc, state, begin, pushed);
+            const bool tightens = t <= end;
+            run(begin, tightens ? t : end);
+            if (!tightens) return;
+            begin = t;
+            state.taut = true;
+            state.contact = arc.tcp(begin) - r * state.heading;
+            continue;  // beyond the edge already, by rounding: look once more
+        }
+        break;
+    }
+    const T t = detail::loosening(r, arc, state, begin);
+    run(begin, t < end ? t : end);
+    if (!(t < end)) return;
+    state.taut = false;
+    run(t, end);
+}
+
+template <class T>
+void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state) {
+    advance(law, arc, state, [](const auto&, const auto&, const auto&, const T&, const T&) {});
+}
+
+}  // namespace brushsvg

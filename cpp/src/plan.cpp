@@ -1,0 +1,70 @@
+#include "brushsvg/plan.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "brushsvg/error.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Files are rounded to 1e-7 mm; a depth that differs by more is a depth that changes.
+constexpr double kSameDepthMm = 1e-6;
+/// Nearer to half a turn than this the direction of a chord no longer tells on which side the arc lies.
+constexpr double kAlmostHalfTurnRad = 1e-6;
+
+template <class... Numbers>
+std::string text_of(const char* format, Numbers... numbers) {
+    char text[200];
+    std::snprintf(text, sizeof text, format, numbers...);
+    return text;
+}
+
+}  // namespace
+
+double turn_between(const Arc& arc, const Vector2d& from_mm, const Vector2d& to_mm) {
+    const Vector2d a = from_mm - arc.centre_mm, b = to_mm - arc.centre_mm;
+    return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+}
+
+void check_arc(const Pass& pass, std::size_t k, const std::string& where) {
+    const Arc& arc = pass.arcs[k];
+    const auto refuse = [&](const std::string& fault, auto... value_and_range) {
+        throw Error("arc " + std::to_string(k) + " of stroke " + pass.stroke + " " + fault, where, value_and_range...);
+    };
+    const long long first = arc.first, last = arc.last, poses = pass.poses_mm.rows();
+    if (first < 0 || last >= poses)
+        refuse(text_of("names poses %lld to %lld, where the stroke has 0 to %lld", first, last, poses - 1));
+    if (first >= last) refuse(text_of("runs from pose %lld to pose %lld, not to a later one", first, last));
+    if (k > 0 && first < pass.arcs[k - 1].last)
+        refuse(text_of("begins at pose %lld, before the arc ahead of it ends at pose %lld", first,
+                       static_cast<long long>(pass.arcs[k - 1].last)));
+    if (arc.direction != 1 && arc.direction != -1)
+        refuse(text_of("has the direction %d, not 1 (counter-clockwise) or -1", arc.direction));
+    const auto pose = [&](Eigen::Index i) -> Vector2d { return pass.poses_mm.row(i).head<2>().transpose(); };
+    const double radius_mm = (pose(first) - arc.centre_mm).norm();
+    if (!(radius_mm >= kArcRadiusMm[0] && radius_mm <= kArcRadiusMm[1]))
+        refuse(text_of("has a radius of %.6g mm, outside the range [%g, %g] mm", radius_mm, kArcRadiusMm[0],
+                       kArcRadiusMm[1]),
+               radius_mm, kArcRadiusMm);
+    for (Eigen::Index i = first + 1; i <= last; ++i) {
+        const long long at = i;
+        const double off_mm = (pose(i) - arc.centre_mm).norm() - radius_mm;
+        if (!(std::abs(off_mm) <= kOnCircleMm))
+            refuse(text_of("has pose %lld %.6g mm off its circle of radius %.6g mm", at, off_mm, radius_mm), off_mm,
+                   std::array<double, 2>{-kOnCircleMm, kOnCircleMm});
+        const double rise_mm = pass.poses_mm(i, 2) - pass.poses_mm(first, 2);
+        if (!(std::abs(rise_mm) <= kSameDepthMm))
+            refuse(text_of("has z = %.6g mm at pose %lld and %.6g mm at pose %lld; an arc has one depth",
+                           pass.poses_mm(first, 2), first, pass.poses_mm(i, 2), at),
+                   rise_mm);
+        const double turn_rad = arc.direction * turn_between(arc, pose(i - 1), pose(i));
+        if (!(turn_rad > 0.0) || turn_rad > std::acos(-1.0) - kAlmostHalfTurnRad)
+            refuse(text_of("does not go %s from pose %lld to pose %lld by less than 180 degrees",
+                           arc.direction > 0 ? "counter-clockwise" : "clockwise", at - 1, at));
+    }
+}
+
+}  // namespace brushsvg

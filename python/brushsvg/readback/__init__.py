@@ -1,0 +1,103 @@
+"""Programs read back, as we write them and no further: what a machine would do, step by step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..errors import Error
+
+if TYPE_CHECKING:
+    from ..cell import Cell
+
+
+class Step(NamedTuple):
+    """One move to a point [mm], in the frame of the program; NaN is a coordinate that was never named.
+
+    line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
+    blend_mm: how far before the point the next move may begin.
+    """
+
+    line: int
+    rapid: bool
+    x: float
+    y: float
+    z: float
+    speed_mm_s: float
+    blend_mm: float = 0.0
+    centre: tuple[float, float, int] | None = None
+
+
+@dataclass
+class ReadSection:
+    """What stands under one of our comments."""
+
+    title: str
+    steps: list[Step] = field(default_factory=list)
+
+
+@dataclass
+class Readback:
+    """joint_mm: how far every corner may be cut. wait_s: in all.
+
+    in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
+    """
+
+    sections: list[ReadSection] = field(default_factory=list)
+    joint_mm: float = 0.0
+    wait_s: float = 0.0
+    in_paper_frame: bool = False
+    paper: tuple[float, ...] = ()
+
+    def section(self) -> ReadSection:
+        """The one being read."""
+        if not self.sections:
+            self.sections.append(ReadSection(""))
+        return self.sections[-1]
+
+    def comment(self, text: str) -> None:
+        """Perhaps the title of a section."""
+        if text.startswith(("stroke ", "paint: ", "border ")):
+            self.sections.append(ReadSection(text))
+
+
+def header_of(text: str) -> dict[str, str]:
+    """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
+    lines = (re.fullmatch(r"\((\w+): (.*)\)|  # (\w+): (.*)", line) for line in text.splitlines()[:100])
+    header = {found[1] or found[3]: found[2] or found[4] for found in lines if found}
+    return {word: rest for word, rest in header.items() if rest is not None}
+
+
+def read_program(text: str, suffix: str, cell: Cell) -> Readback:
+    """What a program of the cell's language does. Error with the line for what brushsvg would not have written."""
+    from ..posts import POSTS
+
+    post = POSTS.get(cell.language)
+    if post is None or suffix not in post.extensions:
+        speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
+        raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}")
+    if not text.isascii():
+        raise Error("the program is not 7-bit text: brushsvg did not write it so")
+    return _READERS[cell.language](text, cell)
+
+
+def _gcode(text: str, cell: Cell) -> Readback:
+    from .gcode import read_gcode
+
+    return read_gcode(text, cell)
+
+
+def _urscript(text: str, cell: Cell) -> Readback:
+    from .urscript import read_urscript
+
+    return read_urscript(text)
+
+
+_READERS: dict[str, Callable[[str, Cell], Readback]] = {
+    "linuxcnc": _gcode,
+    "grbl": _gcode,
+    "grbl-servo": _gcode,
+    "urscript": _urscript,
+}

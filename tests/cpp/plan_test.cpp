@@ -1,0 +1,60 @@
+#include "brushsvg/plan.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "brushsvg/error.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Poses at these angles about (100, 50), the arc over all of them.
+Pass on_circle(double radius, const std::vector<double>& angles, int direction, double digits_mm = 0.0) {
+    Pass pass;
+    pass.stroke = "s";
+    pass.poses_mm.resize(Eigen::Index(angles.size()), 3);
+    const auto rounded = [&](double x) { return digits_mm > 0.0 ? std::round(x / digits_mm) * digits_mm : x; };
+    for (std::size_t i = 0; i < angles.size(); ++i)
+        pass.poses_mm.row(Eigen::Index(i)) << rounded(100.0 + radius * std::cos(angles[i])),
+            rounded(50.0 + radius * std::sin(angles[i])), -2.0;
+    pass.arcs = {{0, std::int64_t(angles.size()) - 1, {100.0, 50.0}, direction}};
+    return pass;
+}
+
+}  // namespace
+
+TEST_CASE("an arc of any radius in the range, several times round if need be, passes; rounded to three decimals too") {
+    for (double radius : {0.11, 1.0, 9.0, 1000.0, 9e5})
+        for (int direction : {1, -1}) {
+            std::vector<double> angles;
+            for (int i = 0; i < 60; ++i) angles.push_back(direction * 0.3 * i);
+            CHECK_NOTHROW(check_arc(on_circle(radius, angles, direction), 0, ""));
+            CHECK_NOTHROW(check_arc(on_circle(radius, angles, direction, 1e-3), 0, ""));
+            CHECK_THROWS_AS(check_arc(on_circle(radius, angles, -direction), 0, ""), Error);
+        }
+}
+
+TEST_CASE("up to half a turn between neighbours, not more, and never back") {
+    CHECK_NOTHROW(check_arc(on_circle(9.0, {0.0, 0.999 * kPi}, 1), 0, ""));
+    CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, kPi}, 1), 0, ""), Error);
+    CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, 1.001 * kPi}, 1), 0, ""), Error);
+    CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, 1.0, 0.999}, 1), 0, ""), Error);
+    CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, 1.0, 1.0}, 1), 0, ""), Error);
+}
+
+TEST_CASE("not finite is refused like anything off the circle") {
+    for (double bad : {double(NAN), double(INFINITY)}) {
+        Pass pass = on_circle(9.0, {0.0, 1.0, 2.0}, 1);
+        pass.arcs[0].centre_mm.x() = bad;
+        CHECK_THROWS_AS(check_arc(pass, 0, ""), Error);
+        for (int k = 0; k < 3; ++k) {
+            pass = on_circle(9.0, {0.0, 1.0, 2.0}, 1);
+            pass.poses_mm(1, k) = bad;
+            CHECK_THROWS_AS(check_arc(pass, 0, ""), Error);
+        }
+    }
+}

@@ -1,0 +1,65 @@
+"""Plans as Python sees them: poses without copies, views that outlive what they show, arcs."""
+
+import gc
+
+import numpy as np
+import pytest
+
+from brushsvg import Error, _core
+
+
+def plan_of(*passes):
+    return _core.Plan(brush="round-6", sheet_mm=(100, 100), passes=list(passes))
+
+
+def test_poses_are_read_without_a_copy_and_cannot_be_written_to():
+    a_pass = plan_of(_core.Pass("a", [[1, 2, 0], [3, 4, -1]])).passes[0]
+    poses = a_pass.poses_mm
+    assert poses.tolist() == [[1, 2, 0], [3, 4, -1]]
+    assert np.shares_memory(poses, a_pass.poses_mm)
+    with pytest.raises(ValueError, match="read-only"):
+        poses[0, 0] = 5
+
+
+def test_a_view_outlives_its_pass_and_its_plan():
+    poses = plan_of(_core.Pass("a", np.full((1000, 3), -2.0))).passes[0].poses_mm
+    gc.collect()
+    plan_of(*(_core.Pass("b", np.zeros((1000, 3))) for _ in range(20)))
+    assert np.all(poses == -2.0)
+
+
+def test_what_is_replaced_stays_as_it_was_for_who_holds_it():
+    plan = plan_of(_core.Pass("a", np.full((1000, 3), -2.0)), _core.Pass("b", np.full((1000, 3), -3.0)))
+    first, poses = plan.passes[0], plan.passes[1].poses_mm
+    plan.passes = [plan.passes[1]]
+    plan.passes[0].poses_mm = np.zeros((1000, 3))
+    assert [p.stroke for p in plan.passes] == ["b"]
+    assert plan.passes[0].poses_mm.max() == 0
+    assert (first.stroke, first.poses_mm.max(), poses.max()) == ("a", -2.0, -3.0)
+
+
+def test_changes_to_a_pass_of_a_plan_are_changes_to_the_plan():
+    plan = plan_of(_core.Pass("a", [[0, 0, 0], [5, 0, -1]]))
+    plan.passes[0].speed_mm_s = 7.0
+    assert '"speed_mm_s": 7' in _core.write_plan(plan)
+
+
+def test_arcs():
+    poses = [[0, 0, -1], [10, 0, -1], [20, 10, -1], [10, 20, -1], [0, 20, -1]]
+    a_pass = _core.Pass("a", poses, arcs=[_core.Arc(first=1, last=3, centre_mm=(10, 10), direction=1)])
+    plan = _core.read_plan(_core.write_plan(plan_of(a_pass)))
+    (arc,) = plan.passes[0].arcs
+    assert (arc.first, arc.last, arc.centre_mm, arc.direction) == (1, 3, (10.0, 10.0), 1)
+    assert repr(arc) == "Arc(1, 3, (10.000000, 10.000000), 1)"
+    a_pass.arcs = []
+    assert a_pass.arcs == ()
+    assert "arcs" not in _core.write_plan(plan_of(a_pass))
+
+
+def test_an_arc_that_is_none_is_refused_by_the_simulator_too():
+    from brushsvg.brushes import find_brush
+
+    a_pass = _core.Pass("V", [[0, 0, -1], [10, 0, -1], [20, 10, -1]], arcs=[_core.Arc(1, 2, (10, 11), 1)])
+    with pytest.raises(Error, match=r"arc 0 of stroke V has pose 2 -0\.95\d* mm off its circle") as refusal:
+        _core.simulate(plan_of(a_pass), find_brush("round-6"))
+    assert refusal.value.where == "V"
