@@ -17,7 +17,7 @@ CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
-	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, real lettering (installs them)"
+	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, Chromium, real lettering (installs them)"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"

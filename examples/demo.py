@@ -41,6 +41,7 @@ def main(drawing: Path, directory: Path) -> None:
         ".ngc": machine.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
         ".marks.svg": convert.picture(".svg", work, marks["closed"]),
         ".report.txt": convert.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
+        ".html": convert.played(work, marks["closed"], cell),
         ".png": comparison(works, marks, totals),
     }
     directory.mkdir(parents=True, exist_ok=True)

@@ -126,6 +126,15 @@ def predict_file(args) -> None:
     _write({args.output: picture})
 
 
+def animate_file(args) -> None:
+    _check_places(args.output)
+    cell = _cell(args)
+    work, marks, _ = _look(args, cell, outlines=True)
+    with about(args.input):
+        page = convert.played(work, marks, cell, args.speed)
+    _write({args.output: page})
+
+
 def import_file(args) -> None:
     _check_places(args.output)
     with about(args.input):

@@ -11,15 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from . import _core, importers, layout, report
+from .animation import animation
 from .brushes import find_brush
 from .cell import Cell
 from .design import Notice
 from .errors import Error
 from .files import read_bytes
-from .machine import DEFAULT_TOLERANCE_MM, time_s
+from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
 from .strokes import strokes as strokes_of
+from .timeline import timeline
 
 DEFAULT_BRUSH = "round-6"
+SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
 
 
 @dataclass(frozen=True)
@@ -225,6 +228,13 @@ def picture(suffix: str, work: Work, marks) -> bytes:
     if suffix == ".svg":
         return render.marks_svg(marks, work.plan.sheet_mm, colours, work.title).encode()
     return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
+
+
+def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
+    """An HTML page that plays tool and paint over time, speed times as fast at first. marks: with outlines."""
+    moves = timeline(whole_program(work.plan, work.brush, cell), marks)
+    wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
 def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None) -> str:

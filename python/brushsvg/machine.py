@@ -177,9 +177,14 @@ def painted_mm(plan, job: Job = WHOLE_JOB) -> float:
     return sum(float(np.linalg.norm(each, axis=1).sum()) for each in steps)
 
 
+def whole_program(plan, brush, cell: Cell) -> Program:
+    """All that the machine does, paint included, for who only looks: limits are not looked at."""
+    return unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell)))
+
+
 def time_s(plan, brush, cell: Cell) -> float:
     """Estimated time of the whole plan, paint included; limits are not looked at."""
-    return duration_s(unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell))))
+    return duration_s(whole_program(plan, brush, cell))
 
 
 def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:

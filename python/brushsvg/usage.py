@@ -82,6 +82,19 @@ def _parser() -> argparse.ArgumentParser:
     _add_choices(predict)
     predict.set_defaults(run="predict_file", parser=predict)
 
+    animate = commands.add_parser("animate", help="make a page that plays tool and paint over time")
+    _add_input(animate)
+    animate.add_argument("output", metavar="OUT", help="a page for any browser, without network (.html)")
+    _add_choices(animate)
+    animate.add_argument(
+        "--speed",
+        metavar="FACTOR",
+        type=_speed,
+        default=1.0,
+        help="how much faster than the robot; default: 1",
+    )
+    animate.set_defaults(run="animate_file", parser=animate)
+
     look = commands.add_parser("import", help="show what was understood of a drawing")
     look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
     look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
@@ -277,6 +290,16 @@ def _scale(text: str) -> float:
     return value
 
 
+def _speed(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a factor; write for example 5") from None
+    if not 0.1 <= value <= 1000:
+        raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.1, 1000]")
+    return value
+
+
 def _point(text: str) -> tuple[float, float]:
     from .units import length_mm
 
@@ -350,6 +373,7 @@ def _check_operands(args) -> None:
     outputs = {
         "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
         "border_file": lambda: [(args.output, PROGRAMS[1:])],
+        "animate_file": lambda: [(args.output, (".html",))],
         "check_file": lambda: [(args.preview, PREVIEWS)],
         "predict_file": lambda: [(args.output, PREDICTIONS)],
         "import_file": lambda: [(args.output, PREVIEWS)],

@@ -19,6 +19,7 @@ def everything(folder, name="sound.svg", env=None, command=None):
         ("predict", name, "o.png"),
         ("predict", name, "o.svg"),
         ("predict", name, "o-marks.json"),
+        ("animate", name, "o.html"),
         ("convert", name, "o2.ngc", "--report", "o.txt", "--preview", "o2.svg"),
     ):
         run(*words, status=0)
@@ -27,7 +28,7 @@ def everything(folder, name="sound.svg", env=None, command=None):
             made[each.name] = each.read_bytes()
             each.unlink()
     made["report"] = run("report", name, "--json", status=0).out
-    assert len(made) == 9
+    assert len(made) == 10
     return made
 
 

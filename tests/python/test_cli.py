@@ -74,6 +74,17 @@ def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
 
 
 @pytest.mark.parametrize("source", ["a.svg", "plan.json"])
+def test_animate_writes_one_page(desk, capsys, source):
+    before = set(listing(desk))
+    assert run(capsys, "animate", source, "out.html", "--speed", "5") == (0, "", [])
+    assert set(listing(desk)) == before | {"out.html"}
+    page = (desk / "out.html").read_text()
+    assert page.startswith("<!DOCTYPE html>")
+    assert "stroke 2 of 2: dab" in page
+    assert '"speed":5.0' in page
+
+
+@pytest.mark.parametrize("source", ["a.svg", "plan.json"])
 def test_predict_draws_and_report_prints(desk, capsys, source):
     for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<svg"), (".json", b"{")):
         assert run(capsys, "predict", source, f"out{suffix}") == (0, "", [])
@@ -294,6 +305,9 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.ngc --json",
         "predict a.svg out.ngc",
         "predict a.svg out.png --preview p.png",
+        "animate a.svg out.svg",
+        "animate a.svg out.html --speed 0",
+        "animate a.svg out.html --speed fast",
         "report a.svg extra",
         "report a.txt",
         "brush",
@@ -315,6 +329,7 @@ def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
         (["convert", "a.svg", "out.ngc", "--preview", "folder.png"], "it is a directory"),
         (["convert", "a.svg", "out.ngc", "--report", "no/where/out.txt"], "its directory does not exist"),
         (["predict", "a.svg", "folder.png"], "it is a directory"),
+        (["animate", "a.svg", "no/where/out.html"], "its directory does not exist"),
     ):
         before = listing(desk)
         status, _, err = run(capsys, *words)

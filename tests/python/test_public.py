@@ -72,7 +72,9 @@ def test_the_short_example_refuses_in_a_sentence(tmp_path):
 def test_the_demo_leaves_everything(tmp_path):
     out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
     names = {path.name for path in (tmp_path / "demo").iterdir()}
-    assert names == {f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".png")}
+    assert names == {
+        f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".html", ".png")
+    }
     table = out[: out.index(str(tmp_path))]
     assert (tmp_path / "demo" / "vincent.report.txt").read_text().endswith("\n\n" + table.removesuffix("\n"))
     rows = [re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed", line)]

@@ -1,0 +1,223 @@
+"""The page that `animate` writes, opened in Chromium: what it paints is what `predict` paints."""
+
+import json
+import re
+import subprocess
+
+import cv2
+import numpy as np
+import pytest
+from command import OPEN, SOUND, brush_file, brushsvg
+
+import brushsvg as package
+from brushsvg import convert
+from brushsvg.cell_file import find_cell
+from brushsvg.machine import whole_program
+from brushsvg.timeline import timeline
+
+SIZE = (1300, 860)
+COLOUR = "1b1b3a"  # of all strokes of the demo's drawing
+
+
+class Browser:
+    """Chromium without a window, a profile of its own and no network; only messages of the page are kept."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def shown(self, page, moment: str, size=SIZE) -> tuple[np.ndarray, list[str]]:
+        """The picture (h, w, 3) at an address after #, and what the page said to the console."""
+        picture = self.folder / "shown.png"
+        picture.unlink(missing_ok=True)
+        said = self._run(page, moment, f"--screenshot={picture}", "--window-size={},{}".format(*size)).stderr
+        image = cv2.imread(str(picture))
+        assert image is not None, said
+        return image, re.findall(r"CONSOLE.*", said)
+
+    def text(self, page, moment: str) -> str:
+        """The document as it is after its script has run."""
+        return self._run(page, moment, "--dump-dom").stdout
+
+    def _run(self, page, moment: str, *words):
+        return subprocess.run(
+            [
+                *("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"),
+                *("--force-device-scale-factor=1", "--virtual-time-budget=2000", "--enable-logging=stderr"),
+                *("--host-resolver-rules=MAP * ~NOTFOUND", f"--user-data-dir={self.folder / 'profile'}"),
+                *(*words, f"{page.as_uri()}#{moment}"),
+            ],
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=120,
+            check=True,
+        )
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    return Browser(tmp_path_factory.mktemp("browser"))
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory, drawing):
+    folder = tmp_path_factory.mktemp("animation")
+    brushsvg("animate", drawing("vincent"), "page.html", cwd=folder, status=0)
+    return folder / "page.html"
+
+
+@pytest.fixture(scope="module")
+def played(drawing):
+    """Work, marks and timeline of the demo's drawing."""
+    work = convert.prepare(drawing("vincent"))
+    marks = convert.predict(work, outlines=False)
+    return work, marks, timeline(whole_program(work.plan, work.brush, find_cell()), marks)
+
+
+def painted(image: np.ndarray) -> np.ndarray:
+    """(h, w) share of the strokes' colour in the pixels of the sheet, the largest white thing there is."""
+    white = (image == 255).all(axis=2)
+    rows, columns = (np.flatnonzero(white.mean(axis=1 - axis) > 0.3) for axis in (0, 1))
+    sheet = image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].astype(float)
+    colour = np.array([int(COLOUR[k : k + 2], 16) for k in (4, 2, 0)])
+    # the share that explains a mixture of white and the colour best
+    return np.clip((255 - sheet) @ (255 - colour) / ((255 - colour) ** 2).sum(), 0, 1)
+
+
+def overlap(image: np.ndarray, marks, work) -> float:
+    seen = painted(image)
+    width, height = work.plan.sheet_mm
+    px_per_mm = seen.shape[1] / width
+    assert seen.shape[0] == pytest.approx(height * px_per_mm, abs=1.5)
+    wanted = package.coverage(marks, work.brush, (0.0, 0.0, width, height), px_per_mm)
+    h, w = (min(a, b) for a, b in zip(seen.shape, wanted.shape, strict=True))
+    seen, wanted = seen[:h, :w], wanted[:h, :w]
+    return float(np.minimum(seen, wanted).sum() / np.maximum(seen, wanted).sum())
+
+
+def until(marks, number: int, pose: float):
+    """What was painted when the tool came to a pose of a pass."""
+    cut = json.loads(package.write_marks(marks))
+    cut["passes"] = cut["passes"][: number + 1]
+    last = cut["passes"][number]
+    rows = sum(at <= pose for at in last["pose"])
+    last |= {name: values[:rows] for name, values in last.items() if name not in ("stroke", "outline_mm")}
+    return package.read_marks(json.dumps(cut))
+
+
+def test_at_the_start_there_is_no_paint(page, browser):
+    image, said = browser.shown(page, "t=0&bare")
+    assert said == []
+    assert painted(image).max() < 0.02
+
+
+def test_at_the_end_the_paint_is_the_prediction(page, browser, played):
+    work, marks, rows = played
+    image, said = browser.shown(page, f"t={rows.time_s[-1]:.3f}&bare")
+    assert said == []
+    assert overlap(image, marks, work) > 0.98
+
+
+@pytest.mark.parametrize("number, share", [(0, 0.5), (3, 0.9), (6, 0.7)])
+def test_in_between_there_is_what_has_been_painted_so_far(page, browser, played, number, share):
+    work, marks, rows = played
+    poses_mm = work.plan.passes[number].poses_mm
+    pose = int(share * len(poses_mm))
+    chapter = next(chapter for chapter in rows.chapters if chapter.trace == number)
+    near = np.linalg.norm(rows.tcp_mm[chapter.first_row :] - poses_mm[pose], axis=1)
+    moment = rows.time_s[chapter.first_row + int(np.argmax(near < 1e-6))]
+    image, said = browser.shown(page, f"t={moment:.3f}&bare")
+    assert said == []
+    assert overlap(image, until(marks, number, pose), work) > 0.98
+
+
+@pytest.mark.parametrize("notch", [0.0, 0.4], ids=["convex", "notched"])
+def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch):
+    """Along a straight line there are few rows. A notched footprint is not the hull of what it sweeps."""
+    brush = brush_file("round-6")
+    for footprint in brush["footprints"]["dragged"]:
+        outline = np.array(footprint["outline_mm"])
+        front = np.clip(1 - np.abs(outline[:, 1]) / outline[:, 1].max(), 0, 1) * (outline[:, 0] > 0)
+        outline[:, 0] -= notch * outline[:, 1].max() * front
+        footprint["outline_mm"] = outline.tolist()
+    (tmp_path / "brush.json").write_text(json.dumps(brush))
+    (tmp_path / "a.svg").write_text(
+        f'{OPEN}<path id="p" d="M15 30H105" stroke="#{COLOUR}" stroke-width="6"/></svg>'
+    )
+    work = convert.prepare(
+        tmp_path / "a.svg", convert.Options(brush=package.find_brush(tmp_path / "brush.json"))
+    )
+    marks = convert.predict(work)
+    step_mm = np.linalg.norm(np.diff(marks.passes[0].contact_mm, axis=0), axis=1)
+    row = int(step_mm.argmax()) + 1
+    assert step_mm.max() > 30
+    rows = timeline(whole_program(work.plan, work.brush, find_cell()), marks)
+    moment = rows.time_s[np.flatnonzero(~np.isnan(rows.depth_mm))[row]]
+    (tmp_path / "a.html").write_bytes(convert.played(work, marks, find_cell()))
+    image, said = browser.shown(tmp_path / "a.html", f"t={moment:.3f}&bare")
+    assert said == []
+    assert overlap(image, until(marks, 0, marks.passes[0].pose[row]), work) > 0.98
+    half, _ = browser.shown(tmp_path / "a.html", f"t={(moment + rows.time_s[0]) / 2:.3f}&bare")
+    assert 0.2 < painted(half).sum() / painted(image).sum() < 0.8
+
+
+def test_wanted_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
+    with_all, said = browser.shown(page, "t=31.3", (500, 800))
+    bare, _ = browser.shown(page, "t=31.3&bare", (500, 800))
+    assert said == []
+    assert with_all.shape == bare.shape
+    blue, grey = np.array([0xD9, 0x8F, 0x3F]), np.array([0xDB, 0xE2, 0xE4])
+    for colour, tolerance, least in ((blue, 60, 50), (grey, 2, 500)):
+        counts = [
+            (np.abs(each.astype(int) - colour).max(axis=2) < tolerance).sum() for each in (with_all, bare)
+        ]
+        assert counts[0] > counts[1] + least
+
+
+def test_words_tell_the_stroke_and_the_time(page, browser):
+    text = browser.text(page, "t=31.3")
+    assert '<h1 id="title">Vincent</h1>' in text
+    assert re.search(r'<b id="what">stroke \d+ of 13: ', text)
+    assert '<output id="clock">0:31.3 / 1:' in text
+
+
+# a browser without a window whose time is virtual shows one frame only
+FRAMES = "<script>requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);</script>"
+KEYS = """<script>
+const told = [];
+const text = (id) => document.getElementById(id).textContent;
+const press = (key) => {
+  const event = new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true });
+  document.getElementById("slider").dispatchEvent(event);
+  told.push(text("clock").split(" ")[0] + " " + text("what"));
+};
+["ArrowRight", "ArrowRight", "ArrowLeft", "ArrowDown", "ArrowUp", "End", "Home", " "].forEach(press);
+setTimeout(() => { press(" "); document.body.append("told " + JSON.stringify(told)); }, 1500);
+</script></body>"""
+
+
+def test_keys_move_and_play(page, browser, played):
+    _, _, rows = played
+    keyed = page.with_name("keyed.html")
+    keyed.write_text(page.read_text().replace("<head>", f"<head>{FRAMES}").replace("</body>", KEYS))
+    told = json.loads(re.search(r"told (\[.*\])", browser.text(keyed, ""))[1])
+    first, second, last = (f"stroke {number} of 13" for number in (1, 2, 13))
+    second_s = rows.time_s[rows.chapters[1].first_row]
+    clocks, words = zip(*(each.split(" ", 1) for each in told), strict=True)
+    assert clocks[:3] == ("0:01.0", "0:02.0", "0:01.0")
+    assert float(clocks[3][2:]) == pytest.approx(second_s, abs=0.1)
+    assert clocks[5] == f"1:{np.floor((rows.time_s[-1] - 60) * 10) / 10:04.1f}"
+    assert clocks[4] == clocks[6] == clocks[7] == "0:00.0"
+    assert 0.5 < float(clocks[8][2:]) < 2  # it has played meanwhile
+    assert [word.split(":")[0] for word in words] == [first] * 3 + [second, first, last] + [first] * 3
+
+
+def test_a_hostile_title_stays_a_title(tmp_path, browser):
+    title = "</script><script>document.body.id='taken'</script>"
+    escaped = title.replace("<", "&lt;")
+    (tmp_path / "a.svg").write_text(SOUND.replace("A line", escaped))
+    brushsvg("animate", "a.svg", "a.html", cwd=tmp_path, status=0)
+    text = browser.text(tmp_path / "a.html", "t=1")
+    assert 'id="taken"' not in text
+    assert f'<h1 id="title">{escaped.replace(">", "&gt;")}</h1>' in text
+    assert json.dumps(title).replace("<", "\\u003c") in (tmp_path / "a.html").read_text()
