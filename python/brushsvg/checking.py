@@ -189,24 +189,34 @@ def _careless(section: ReadSection, track: _Track, brush, cell: Cell, here: np.n
 def matched(plan, strokes, resumed: bool = False) -> tuple[list, Problems]:
     """For each pass the stroke of the drawing that has its name (as programs write it), and what has no partner.
 
-    resumed: strokes that the program does not paint were painted before.
+    None stands for a stroke that is painted in parts, between which paint is fetched: no part is to be measured
+    against the whole. resumed: strokes that the program does not paint were painted before.
     """
     left: dict[str, list] = {}
     for stroke in strokes:
         left.setdefault(_written(stroke.id), []).append(stroke)
+    names = [_written(a_pass.stroke) for a_pass in plan.passes]
+    in_parts = {_whole(name) for name in names if _whole(name) != name}
     found, problems = [], []
-    for a_pass in plan.passes:
-        name = _written(re.sub(r"~\d+$", "", a_pass.stroke))
-        if name.endswith("..."):  # a long name is cut in a program
-            name = next((key for key in left if key.startswith(name[:-3]) and left[key]), name)
-        if left.get(name):
-            found.append(left[name].pop(0))
+    for name in names:
+        key = _whole(name) if name not in left else name
+        if key.endswith("..."):  # a long name is cut in a program
+            key = next((each for each in left if each.startswith(key[:-3]) and left[each]), key)
+        if key in in_parts and (left.get(key) or name != key):
+            left[key] = []
+            found.append(None)
+        elif left.get(key):
+            found.append(left[key].pop(0))
         else:
-            problems.append((a_pass.stroke, "the drawing has no such stroke"))
+            problems.append((name, "the drawing has no such stroke"))
     if not resumed:
         missing = [stroke.id for rest in left.values() for stroke in rest]
         problems += [(name, "the program does not paint this stroke") for name in missing]
     return found, problems
+
+
+def _whole(name: str) -> str:
+    return re.sub(r"~\d+$", "", name)
 
 
 def _written(name: str) -> str:

@@ -111,7 +111,8 @@ def check_file(args) -> None:
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
             _write({args.preview: convert.picture(_suffix(args.preview), shown, outlined)})
-        tell(convert.report_text(".json" if args.json else ".txt", shown, outlined, cell))
+        drawn = work.strokes if work and made.first_stroke == 1 else None
+        tell(convert.report_text(".json" if args.json else ".txt", shown, outlined, cell, drawn=drawn))
     if problems:
         raise RefusedError([(args.program, *problem) for problem in problems])
     if not args.json:
@@ -129,7 +130,7 @@ def predict_file(args) -> None:
 def animate_file(args) -> None:
     _check_places(args.output)
     cell = _cell(args)
-    work, marks, _ = _look(args, cell, outlines=True)
+    work, marks, _ = _look(args, cell, outlines=True, in_loads=True)
     with about(args.input):
         page = convert.played(work, marks, cell, args.speed)
     _write({args.output: page})
@@ -177,11 +178,13 @@ def report_file(args) -> None:
     tell(text)
 
 
-def _look(args, cell: Cell, outlines: bool):
+def _look(args, cell: Cell, outlines: bool, in_loads: bool = False):
     """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
     work = _prepare(args, cell)
     with about(args.input):
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
+        if in_loads:
+            work = convert.in_loads(work, cell)
         marks = convert.predict(work, outlines, stage)
         warnings = [(n.where, n.sentence) for n in work.notices]
         warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)

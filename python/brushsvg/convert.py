@@ -18,6 +18,7 @@ from .design import Notice
 from .errors import Error
 from .files import read_bytes
 from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
+from .paint import in_loads as in_loads_of
 from .strokes import strokes as strokes_of
 from .timeline import timeline
 
@@ -124,6 +125,12 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
     elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
         notices.append(Notice("brush_sha256", f"the plan was made with another file of brush {brush.name}"))
     return Work("", brush, plan, None, (), options, tuple(notices))
+
+
+def in_loads(work: Work, cell: Cell) -> Work:
+    """The work as the cell paints it: strokes longer than a load of paint in parts. Fit to be looked at, not measured:
+    strokes and misses are those of the whole drawing."""
+    return replace(work, plan=in_loads_of(work.plan, work.brush, cell))
 
 
 def nearest_first(work: Work) -> Work:
@@ -237,16 +244,17 @@ def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
     return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
-def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None) -> str:
-    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work."""
+def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn=None) -> str:
+    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; drawn: see
+    report.measure."""
     known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
-    drawn = work.strokes is not None
-    rows, total = report.measure(work.plan, marks, work.brush, work.strokes, work.options.tolerance_mm)
+    is_drawing = work.strokes is not None
+    rows, total = report.measure(work.plan, marks, work.brush, work.strokes, work.options.tolerance_mm, drawn)
     result = report.Report(
         title=work.title,
         brush=work.plan.brush,
-        compensation=work.options.compensation if drawn else "",
-        tolerance_mm=work.options.tolerance_mm if drawn else None,
+        compensation=work.options.compensation if is_drawing else "",
+        tolerance_mm=work.options.tolerance_mm if is_drawing else None,
         strokes=rows,
         total=total,
         time_s=time_s(work.plan, work.brush, cell),

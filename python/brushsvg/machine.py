@@ -17,7 +17,7 @@ from .errors import Error
 from .files import write_files
 from .limits import beyond_edges, broken_limits
 from .moves import Program, duration_s, in_robot_frame
-from .paint import visits
+from .paint import in_loads, painted_mm, visits
 from .posts import POSTS, Post
 from .program import WHOLE_JOB, Job, program, unchecked_program
 
@@ -130,6 +130,7 @@ def encode(
         return _core.write_plan(plan).encode()
     cell = cell or find_cell()
     post = post_for(suffix, cell)
+    plan = in_loads(plan, brush, cell)
     job = replace(job, visits=visits(plan, cell, job.first_stroke))
     made = program(plan, brush, cell, (), job)
     count = len(plan.passes)
@@ -140,7 +141,7 @@ def encode(
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
         *about(made, job),
-        f"length: {painted_mm(plan, job):.0f} mm on the paper",
+        f"length: {sum(map(painted_mm, plan.passes[job.first_stroke - 1 :])):.0f} mm on the paper",
     )
     return text_of(post, replace(made, header=header))
 
@@ -171,20 +172,14 @@ def clock(seconds: float) -> str:
     return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def painted_mm(plan, job: Job = WHOLE_JOB) -> float:
-    """Length of the TCP's path on the paper [mm]."""
-    steps = (np.diff(np.asarray(a_pass.poses_mm), axis=0) for a_pass in plan.passes[job.first_stroke - 1 :])
-    return sum(float(np.linalg.norm(each, axis=1).sum()) for each in steps)
-
-
 def whole_program(plan, brush, cell: Cell) -> Program:
-    """All that the machine does, paint included, for who only looks: limits are not looked at."""
+    """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
     return unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell)))
 
 
 def time_s(plan, brush, cell: Cell) -> float:
     """Estimated time of the whole plan, paint included; limits are not looked at."""
-    return duration_s(whole_program(plan, brush, cell))
+    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell))
 
 
 def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:

@@ -1,46 +1,81 @@
-"""When the brush fetches paint: which stations are visited before which stroke."""
+"""When the brush fetches paint: which stations are visited before which stroke, and where a long one is interrupted."""
 
 from __future__ import annotations
 
+import json
+import re
+
 import numpy as np
 
+from . import _core
 from .cell import Cell, Station
 from .errors import Error
 
 
-def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
-    """For each pass the stations to visit before it; () for a cell without paint.
+def in_loads(plan, brush, cell: Cell):
+    """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke~2, ...
 
-    Paint is fetched before the first stroke, before every change of colour or layer where that is asked for, and
-    where what is on the brush would not last. Error for a colour that no station serves.
+    The same plan for cells that do not count the length, and for strokes whose setting reload is false.
+    """
+    if not cell.reload or cell.reload.when != "length":
+        return plan
+    every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
+    passes = []
+    for a_pass in plan.passes:
+        whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
+        passes += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+    if len(passes) == len(plan.passes):
+        return plan
+    return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, plan.extra)
+
+
+def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
+    """For each pass of a plan in loads the stations to visit before it; () for a cell without paint.
+
+    Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
+    cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
+    without. Error for a colour that no station serves.
     """
     if not cell.reload:
         return ()
     found, last, used_mm = [], None, 0.0
     for number, a_pass in enumerate(plan.passes, 1):
-        length_mm = float(np.linalg.norm(np.diff(np.asarray(a_pass.poses_mm), axis=0), axis=1).sum())
         station = _station_for(a_pass, cell)
-        if number < first_stroke:
-            found.append(())
-            continue
+        length_mm = painted_mm(a_pass)
         changed = last is not None and _station_for(last, cell) != station
-        if last is None or changed or _is_due(a_pass, last, used_mm + length_mm, cell):
-            wash = [each for each in cell.stations if each.name == cell.reload.wash]
-            found.append((*wash, station) if changed else (station,))
-            used_mm = 0.0
-        else:
-            found.append(())
-        used_mm += length_mm
+        wash = [each for each in cell.stations if changed and each.name == cell.reload.wash]
+        fetch = (
+            last is None
+            or changed
+            or number == first_stroke
+            or _is_due(a_pass, last, used_mm + length_mm, cell)
+        )
+        found.append((*wash, station) if fetch else ())
+        used_mm = length_mm + (0.0 if fetch else used_mm)
         last = a_pass
     return tuple(found)
 
 
+def painted_mm(a_pass) -> float:
+    """Length of the TCP's path on the paper [mm]."""
+    return float(np.linalg.norm(np.diff(np.asarray(a_pass.poses_mm), axis=0), axis=1).sum())
+
+
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
+    if re.fullmatch(rf"{re.escape(last.stroke.partition('~')[0])}~\d+", a_pass.stroke):
+        return True  # a part of the same stroke
+    asked = _asked(a_pass)
+    if asked is not None:
+        return asked
     if cell.reload.when == "stroke":
         return True
     if cell.reload.when == "layer":
         return a_pass.layer != last.layer
     return used_mm > cell.reload.every_mm
+
+
+def _asked(a_pass) -> bool | None:
+    return json.loads(a_pass.settings).get("reload")
 
 
 def _station_for(a_pass, cell: Cell) -> Station:

@@ -52,14 +52,18 @@ def wanted_rings(strokes) -> list[np.ndarray]:
 
 
 def measure(
-    plan, marks, brush, strokes=None, tolerance_mm: float = 0.05
+    plan, marks, brush, strokes=None, tolerance_mm: float = 0.05, drawn=None
 ) -> tuple[tuple[Figures, ...], Figures]:
-    """Figures for each pass and for all. marks: with outlines; strokes: one per pass, None if unknown."""
+    """Figures for each pass and for all. marks: with outlines; strokes: one per pass, None if unknown, or None for a
+    pass that is a part of a stroke: then drawn is all that was drawn, the strokes themselves where it is None."""
     if strokes is None:
         rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
         return rows, _in_all(rows, None)
     rows, wanted = [], []
     for a_pass, trace, stroke in zip(plan.passes, marks.passes, strokes, strict=True):
+        if stroke is None:
+            rows.append(_bare_figures(a_pass))
+            continue
         rings = _core.wanted_outline(stroke, RING_TOLERANCE_MM)
         miss = _core.miss_of(a_pass, stroke, brush, tolerance_mm)
         line = _core.flatten(stroke, RING_TOLERANCE_MM)
@@ -74,7 +78,8 @@ def measure(
         )
         rows.append(figures)
         wanted += rings
-    return tuple(rows), _in_all(tuple(rows), _core.overlap(marks.outline_mm, _core.unite(wanted)))
+    meant = _core.unite(wanted) if drawn is None else wanted_rings(drawn)
+    return tuple(rows), _in_all(tuple(rows), _core.overlap(marks.outline_mm, meant))
 
 
 def _bare_figures(a_pass) -> Figures:

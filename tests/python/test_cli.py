@@ -49,7 +49,9 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
     words = ["--preview", "p.png", "--report", "r.json"]
     assert run(capsys, "convert", "a.svg", "a.ngc", *words) == (0, "", [])
     code = (desk / "a.ngc").read_text(encoding="ascii")
-    assert code.startswith("(title: A line)\n(brush: round-6, 2 strokes)\n(compensation: closed, ")
+    assert code.startswith(
+        "(title: A line)\n(brush: round-6, 2 strokes)\n(sheet: 120 x 60 mm)\n(compensation: closed, "
+    )
     assert "(warnings: 0)" in code
     assert code.index("(stroke 1 of 2: line)") < code.index("(stroke 2 of 2: dab)")
     assert (desk / "p.png").read_bytes().startswith(b"\x89PNG")

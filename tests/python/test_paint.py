@@ -6,12 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from brushsvg import _core, machine
+from brushsvg.brushes import find_brush
 from brushsvg.cell import Reload, Station
 from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
 from brushsvg.limits import broken_limits
 from brushsvg.moves import Wait
-from brushsvg.paint import visits
+from brushsvg.paint import in_loads, painted_mm, visits
 from brushsvg.program import visit
 
 BLACK = Station(
@@ -27,14 +29,12 @@ def cell_with(reload, *stations):
 
 
 def plan_of(*strokes):
-    """Strokes as (length in mm, colour, layer)."""
+    """Strokes as (length in mm, colour, layer, and perhaps settings as JSON)."""
     passes = [
-        SimpleNamespace(
-            stroke=f"s{k}", poses_mm=np.array([(0, 0, 0), (length, 0, -1.0)]), colour=colour, layer=layer
-        )
-        for k, (length, colour, layer) in enumerate(strokes, 1)
+        _core.Pass(f"s{k}", np.array([(0, 0, 0), (length, 0, -1.0)]), 20.0, layer, colour, *settings)
+        for k, (length, colour, layer, *settings) in enumerate(strokes, 1)
     ]
-    return SimpleNamespace(passes=passes, sheet_mm=(400.0, 100.0))
+    return _core.Plan("round-6", "", (400.0, 100.0), passes)
 
 
 def names(found):
@@ -74,7 +74,12 @@ def test_another_colour_is_washed_for():
 
 def test_a_resumed_job_begins_with_paint():
     plan = plan_of(*[(40, "#000000", "")] * 4)
-    assert names(visits(plan, cell_with(Reload("length", 1000.0)), first_stroke=3)) == [[], [], ["black"], []]
+    assert names(visits(plan, cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
+        ["black"],
+        [],
+        ["black"],
+        [],
+    ]
 
 
 def test_a_colour_that_nobody_serves_is_refused():
@@ -122,3 +127,65 @@ def test_a_station_out_of_the_box_is_refused():
         "black",
         "the tool goes to x -20.0 mm, outside the range [-15, 500] mm of the box of cell linuxcnc-3axis",
     ) in broken
+
+
+def test_a_stroke_may_ask_for_paint_or_go_without():
+    plan = plan_of(
+        (9, "#000000", ""), (9, "#000000", "", '{"reload": true}'), (999, "#000000", "", '{"reload": false}')
+    )
+    assert names(visits(plan, cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
+    assert in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))) is plan
+
+
+def long_plan(brush):
+    t = np.linspace(0, 1, 200)
+    depth = np.minimum(1.0, 20 * np.minimum(t, 1 - t)) * (3 + np.sin(9 * t))
+    wave = np.column_stack([30 + 300 * t, 50 + 12 * np.sin(14 * t), -depth])
+    short = np.array([(30, 80, 0), (40, 80, -2), (60, 80, -2), (58, 80, 0)], float)
+    passes = [_core.Pass("short", short, 20.0, "", "#000000"), _core.Pass("long", wave, 20.0, "", "#000000")]
+    return _core.Plan(
+        brush.name,
+        "",
+        (400.0, 100.0),
+        [*passes, _core.Pass("last", short + np.array([0, -60, 0]), 20.0, "", "#000000")],
+    )
+
+
+def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
+    brush = find_brush("round-6")
+    cell = cell_with(Reload("length", 120.0, 6.0))
+    whole = long_plan(brush)
+    plan = in_loads(whole, brush, cell)
+    assert [a_pass.stroke for a_pass in plan.passes] == [
+        "short",
+        "long",
+        "long~2",
+        "long~3",
+        "last",
+    ]
+    assert names(visits(plan, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
+    assert max(map(painted_mm, plan.passes)) < 120 + 8
+    rings = []
+    for each in (whole, plan):
+        marks = _core.simulate(each, brush)
+        _core.trace_outlines(marks, brush)
+        rings.append(marks.outline_mm)
+    assert len(rings[0]) == len(rings[1]), "no gap, no island"
+    assert _core.overlap(*rings) > 0.99
+    assert in_loads(whole, brush, cell_with(Reload("length", 1000.0))) is whole
+
+
+def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
+    brush = find_brush("round-6")
+    text = "".join(
+        machine.encode(".ngc", long_plan(brush), brush, "t", (), cell_with(Reload("length", 120.0, 6.0)))
+    )
+    titles = [line.strip("()") for line in text.splitlines() if line.startswith(("(stroke", "(paint"))]
+    assert titles[:5] == [
+        "paint: black",
+        "stroke 1 of 5: short",
+        "paint: black",
+        "stroke 2 of 5: long",
+        "paint: black",
+    ]
+    assert titles[5] == "stroke 3 of 5: long~2"
