@@ -10,6 +10,8 @@ from .errors import Error
 
 MM_PER = {"mm": 1.0, "cm": 10.0, "q": 0.25, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "px": 25.4 / 96}
 PX_PER = {"mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "in": 96.0, "pt": 96 / 72, "pc": 16.0, "px": 1.0}
+FONT_PX = 16.0  # of a font whose size nobody says
+_OF_FONT = {"em": 1.0, "ex": 0.5, "rem": 1.0}
 
 # Digits are spelled out, for \d and float() read other alphabets' digits too. Possessive quantifiers stand
 # behind single characters only: behind a group Python before 3.11.5 keeps what a failed attempt consumed.
@@ -31,7 +33,7 @@ def _parts(text: str) -> tuple[float, str]:
     value, unit = float(found[1]), found[2].lower()
     if not math.isfinite(value):
         raise Error(f"{_shown(text)} is too large to be a length")
-    if unit not in MM_PER and unit not in ("", "%"):
+    if unit not in MM_PER and unit not in ("", "%", *_OF_FONT):
         raise Error(f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q")
     return value, unit
 
@@ -41,12 +43,18 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
     value, unit = _parts(text)
     if unit == "%":
         raise Error(f"{_shown(text)} is a percentage, but there is nothing to take it of")
+    if unit in _OF_FONT:
+        raise Error(
+            f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q"
+        )
     return value * MM_PER[unit or default_unit]
 
 
-def length_px(text: str, percent_of: float) -> float:
-    """A length in px (SVG user units, 96 to the inch); percentages are taken of percent_of px."""
+def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
+    """A length in px (SVG user units, 96 to the inch); percentages are of percent_of px, em and ex of a font's size."""
     value, unit = _parts(text)
+    if unit in _OF_FONT:
+        return value * (FONT_PX if unit == "rem" else em_px * _OF_FONT[unit])
     return value * percent_of / 100 if unit == "%" else value * PX_PER[unit or "px"]
 
 

@@ -226,7 +226,7 @@ def _check_operands(args) -> None:
             args.parser.error(f"{args.output} cannot be two files at once")
         return
     drawing = os.path.splitext(args.input)[1].lower()
-    if args.units and drawing == ".svg":
+    if args.units and drawing in (".svg", ".svgz"):
         args.parser.error("--units is for drawings that do not say them; an SVG does")
     if args.select and drawing == ".dxf":
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")

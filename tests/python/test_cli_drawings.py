@@ -1,5 +1,6 @@
 """The command line's choices among what a drawing holds: layers, selections, sizes, settings, and looking at it."""
 
+import gzip
 import json
 import os
 import re
@@ -46,7 +47,7 @@ def test_layers_and_selections(desk, capsys):
     assert [each["stroke"] for each in passes] == ["b"]
     assert len(err) == 1 and "--export-text-to-path" in err[0]
     said = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
-    assert said == "brushsvg: d.svg: layer: no layer 'Blue' with something to paint; there are: Ink, Red"
+    assert said == "brushsvg: d.svg: layer: there is no layer 'Blue'; there are: Ink, Red"
     assert "matches no element" in refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
 
 
@@ -55,9 +56,21 @@ def test_an_empty_choice_is_wrong_usage(desk, capsys):
         assert main(["convert", "d.svg", "x.json", flag, ""]) == 2
 
 
-def test_a_compressed_drawing_is_told(desk, capsys):
-    (desk / "z.svg").write_bytes(b"\x1f\x8b\x08\0")
-    assert "the file is compressed (SVGZ)" in refusal(capsys, "convert", "z.svg", "x.json")
+def test_compressed_drawings(desk, capsys):
+    packed = gzip.compress(DRAWING.encode())
+    (desk / "d.svgz").write_bytes(packed)
+    (desk / "z.svg").write_bytes(packed)
+    plain, _ = plan(desk, capsys)
+    assert plan(desk, capsys, drawing="d.svgz")[0] == plan(desk, capsys, drawing="z.svg")[0] == plain
+    for damaged, why in (
+        (packed[:-40], "cut short"),
+        (b"\x1f\x8b\x08\0", "cut short"),
+        (packed[:20] + b"????" + packed[24:], "is damaged"),
+        (gzip.compress(b" " * 70_000_000), "unpacks to more than 64000000 bytes"),
+    ):
+        (desk / "z.svgz").write_bytes(damaged)
+        said = refusal(capsys, "convert", "z.svgz", "x.json")
+        assert "the file is compressed (SVGZ)" in said and why in said
 
 
 def test_the_exit_status_does_not_depend_on_who_reads(desk):
