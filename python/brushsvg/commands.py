@@ -13,6 +13,7 @@ from .describe import cell_page, one_line, page
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
+from .fold import folded
 from .importers import ReadOptions, read_drawing
 from .layout import Layout, arrange
 from .posts import POSTS
@@ -28,7 +29,7 @@ def convert_file(args) -> None:
     with about(args.input):
         marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
         problems = convert.problems(work.plan, work.brush, marks, cell)
-        problems += [(n.where, n.sentence) for n in damaged]
+        problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
         if damaged:
             where, sentence = problems[-1]
             problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")

@@ -159,3 +159,25 @@ def test_text(desk, capsys):
     assert "has no glyph for" in refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
     for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2
+
+
+def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
+    def drawing(width):
+        lines = "".join(f'<path id="p{k}" d="M20 {20 + 5 * k}h40" stroke-width="{width}"/>' for k in range(6))
+        size = 'width="80mm" height="60mm" viewBox="0 0 80 60" stroke="#000"'
+        (desk / "w.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{lines}</svg>')
+
+    drawing(0.3)
+    for command in (("convert", "w.svg", "x.json"), ("predict", "w.svg", "x.png")):
+        assert main(list(command)) == 0
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith(
+            "brushsvg: w.svg: p0 and 5 like it: depth 0.36 mm is outside the range [1.0, 10.0] mm"
+        )
+        assert line.endswith("; --width MM gives all strokes one width")
+    passes, err = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
+    assert len(passes) == 6 and len(err) == 1 and err[0].endswith("was measured")
+    drawing(30)
+    assert "p0: width 30.000 mm is outside the range" in refusal(capsys, "convert", "w.svg", "x.json")
+    drawing('2" transform="translate(-30)')
+    assert "p0 and 5 like it: the mark reaches" in refusal(capsys, "convert", "w.svg", "x.json")
