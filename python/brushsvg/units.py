@@ -16,6 +16,7 @@ _OF_FONT = {"em": 1.0, "ex": 0.5, "rem": 1.0}
 # Digits are spelled out, for \d and float() read other alphabets' digits too. Possessive quantifiers stand
 # behind single characters only: behind a group Python before 3.11.5 keeps what a failed attempt consumed.
 NUMBER = r"[+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?"
+_NUMBER = re.compile(NUMBER)
 _LENGTH = re.compile(rf"({NUMBER})\s*([a-zA-Z]+|%|)")
 _SIZE = re.compile(rf"({NUMBER}) ?(mm|cm|in|pt|pc|px|q|) ?x ?({NUMBER}) ?([a-z]*)")
 
@@ -38,6 +39,14 @@ def _parts(text: str) -> tuple[float, str]:
     return value, unit
 
 
+def number(text: str) -> float:
+    """A finite number as SVG writes it. Error if it is none."""
+    value = float(text) if _NUMBER.fullmatch(text := text.strip()) else math.nan
+    if not math.isfinite(value):
+        raise Error(f"{_shown(text)} is not a number")
+    return value
+
+
 def length_mm(text: str, default_unit: str = "mm") -> float:
     """A length in mm; a bare number counts in default_unit. Error if it is no length or a percentage."""
     value, unit = _parts(text)
@@ -47,7 +56,11 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
         raise Error(
             f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q"
         )
-    return value * MM_PER[unit or default_unit]
+    unit = unit or default_unit
+    length = value * MM_PER[unit]
+    return (
+        float(f"{length:.15g}") if unit in ("in", "pt", "pc") else length
+    )  # 8.5in are 215.9 mm, not 215.89999999999998
 
 
 def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:

@@ -223,7 +223,9 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
     [
         ('speed="fast"', "data-brushsvg-speed: 'fast' is not a speed in mm/s"),
         ('speed="-1"', "-1 mm/s is outside the range [0.001, 10000] mm/s"),
-        ('speed="nan"', "nan mm/s is outside the range"),
+        ('speed="nan"', "'nan' is not a speed in mm/s"),
+        ('speed="1_0"', "'1_0' is not a speed in mm/s"),
+        ('passes="\u0663"', "'\u0663' is not a whole number"),  # an Arabic three
         ('width="5 furlongs"', "data-brushsvg-width: '5 furlongs' has a unit"),
         ('width="0"', "0 mm is outside the range [0.001, 1000] mm"),
         ('passes="1.5"', "'1.5' is not a whole number"),
