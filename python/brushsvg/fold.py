@@ -13,7 +13,7 @@ def folded(told: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """(element, sentence) pairs in the order in which each kind comes first; the rest of a kind is counted."""
     kinds: dict[str, list[tuple[str, str]]] = {}
     for where, sentence in told:
-        kinds.setdefault(_OWN.sub("", sentence), []).append((where, sentence))
+        kinds.setdefault(kind(sentence), []).append((where, sentence))
     result = []
     for alike in kinds.values():
         if len(alike) <= MOST_ALIKE:
@@ -22,3 +22,8 @@ def folded(told: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
             where, sentence = alike[0]
             result.append((f"{where} and {len(alike) - 1} like it", sentence))
     return result
+
+
+def kind(sentence: str) -> str:
+    """What sentences have in common that differ in names and numbers only."""
+    return _OWN.sub("", sentence)

@@ -118,6 +118,8 @@ def _layer(name: str, paths: list[str]) -> str:
     def plain(text: str) -> str:
         return text.casefold().replace("_", " ")
 
+    if any(path.startswith(name + "/") for path in paths):  # "Ink" where there is "Ink/Fine" alone
+        return name
     for matches in (
         lambda path: path == name,
         lambda path: path.endswith("/" + name),

@@ -51,6 +51,11 @@ def test_a_group_around_all_is_a_page_with_layers():
     assert layers(f'<rect id="board" width="9" height="9"/><g id="Top"><g id="One">{A}</g></g>')["a"] == "Top"
 
 
+def test_a_name_before_a_stroke_of_a_name_holds_all_of_them():
+    body = f'<g id="Icon/one">{A}</g><g id="Icon/two">{B}</g>'
+    assert [element.id for element in arrange(read(body), Layout(layers=("Icon",))).elements] == ["a", "b"]
+
+
 def test_a_layer_goes_by_its_end_capitals_and_underscores_aside_unless_two_are_meant():
     body = f'<g id="Page"><g id="Ink_one"><g id="Fine">{A}</g></g><g id="Two">{B}</g></g>'
     for name in ("Page/Ink_one", "Ink_one", "ink one", "page/ink one"):

@@ -6,16 +6,17 @@ from collections.abc import Iterable, Mapping
 
 from ..design import Notice
 from ..errors import Error
+from ..fold import kind
 
 _REASONS = 3
 
 
 def nothing_to_paint(notices: Iterable[Notice], left_out: Mapping[str, int] | None = None) -> Error:
     """Names damage first, then what was met most often. left_out: how often something was, without a notice, by why."""
-    places: dict[tuple[bool, str], list[str]] = {}
+    alike: dict[tuple[bool, str], list[Notice]] = {}
     for notice in notices:
-        places.setdefault((notice.damaged, notice.sentence), []).append(notice.where)
-    reasons = [(damaged, len(found), _at(found, said)) for (damaged, said), found in places.items()]
+        alike.setdefault((notice.damaged, kind(notice.sentence)), []).append(notice)
+    reasons = [(damaged, len(found), _said(found)) for (damaged, _), found in alike.items()]
     for why, count in (left_out or {}).items():
         reasons.append((False, count, f"{count} {'element is' if count == 1 else 'elements are'} {why}"))
     reasons.sort(key=lambda reason: (not reason[0], -reason[1]))
@@ -27,5 +28,6 @@ def nothing_to_paint(notices: Iterable[Notice], left_out: Mapping[str, int] | No
     return Error(sentence)
 
 
-def _at(places: list[str], sentence: str) -> str:
-    return f"{places[0]}: {sentence}" if len(places) == 1 else f"{len(places)} times: {sentence}"
+def _said(alike: list[Notice]) -> str:
+    first = alike[0]
+    return f"{first.where}: {first.sentence}" if len(alike) == 1 else f"{len(alike)} times: {first.sentence}"

@@ -104,7 +104,9 @@ def cascade(
             if "var(" in value.lower():
                 value, problem = _substituted(value, inherited)
                 if problem:  # CSS does not fall back to a weaker declaration here
-                    problems.append((f"{name} {text[:40]!r} {problem}: it counts as not given", True))
+                    sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
+                    if name != "font-size":
+                        problems.append((sentence, name == "stroke-width" or name in _GEOMETRY))
                     break
             if name in _GEOMETRY:
                 geometry[name] = _path_text(value) if name == "d" else value
