@@ -22,6 +22,8 @@ using Set = bp::polygon_set_data<int>;
 constexpr double kUnitsPerMm = 1e5;
 // slivers that rounding leaves between shapes that only touch: of no area, or narrower than two units
 constexpr double kLeastArea = 1e-6;
+// half the width [mm] below which a piece of a hull is not worth its corners: a hundred times what rounding moves them
+constexpr double kThinnest = 2e-3;
 
 Polygon to_polygon(const Ring& ring) {
     std::vector<Point> points;
@@ -47,14 +49,19 @@ Ring to_ring(Iterator begin, Iterator end, bool counter_clockwise) {
     return ring;
 }
 
+double length_around(const Ring& ring) {
+    double length = (ring.row(0) - ring.row(ring.rows() - 1)).norm();
+    for (Eigen::Index i = 1; i < ring.rows(); ++i) length += (ring.row(i) - ring.row(i - 1)).norm();
+    return length;
+}
+
 Rings to_rings(const Set& set) {
     std::vector<PolygonWithHoles> polygons;
     set.get(polygons);
     Rings rings;
     const auto keep = [&](Ring ring) {
-        double around = (ring.row(0) - ring.row(ring.rows() - 1)).norm();
-        for (Eigen::Index i = 1; i < ring.rows(); ++i) around += (ring.row(i) - ring.row(i - 1)).norm();
-        if (std::abs(signed_area(ring)) > std::max(kLeastArea, around / kUnitsPerMm)) rings.push_back(std::move(ring));
+        if (std::abs(signed_area(ring)) > std::max(kLeastArea, length_around(ring) / kUnitsPerMm))
+            rings.push_back(std::move(ring));
     };
     for (const PolygonWithHoles& polygon : polygons) {
         keep(to_ring(polygon.begin(), polygon.end(), true));
@@ -184,13 +191,22 @@ Rings pieces_between(const Rings& chain) {
         const bool is_one = std::all_of(hull.begin(), hull.end(), [&](auto k) { return k < n; }) ||
                             std::all_of(hull.begin(), hull.end(), [&](auto k) { return k >= n; });
         Numbers kept;
-        for (std::size_t k = 0; k < hull.size(); ++k) {
+        const std::size_t m = hull.size();
+        for (std::size_t k = 0; k < m; ++k) {
             const bool front = hull[k] >= n;
-            const bool at_end = (hull[k == 0 ? hull.size() - 1 : k - 1] >= n) != front ||
-                                (hull[k + 1 == hull.size() ? 0 : k + 1] >= n) != front;
-            if (is_one || at_end || (front ? in_next[std::size_t(hull[k] - n)] : is_first)) kept.push_back(hull[k]);
+            std::size_t before = 0, behind = 0;  // corners of the same shape next to it
+            while (!is_one && (hull[(k + m - 1 - before) % m] >= n) == front) ++before;
+            while (!is_one && (hull[(k + 1 + behind) % m] >= n) == front) ++behind;
+            // the middle one as well: pieces must overlap, for where they only meet rounding would leave cracks
+            const bool rear_stays = is_first || before == behind || before == behind + 1;
+            if (is_one || before == 0 || behind == 0 || (front ? in_next[std::size_t(hull[k] - n)] : rear_stays))
+                kept.push_back(hull[k]);
         }
-        if (kept.size() > 2) pieces.push_back(rows_of(both(chain[i], chain[i + 1]), kept));
+        // a shape that grows or turns in place leaves strips so thin that rounding would fray the outline
+        Ring piece = rows_of(both(chain[i], chain[i + 1]), kept);
+        if (kept.size() < 3 || signed_area(piece) < kThinnest * length_around(piece))
+            piece = rows_of(both(chain[i], chain[i + 1]), hull);
+        pieces.push_back(std::move(piece));
     }
     return pieces;
 }
