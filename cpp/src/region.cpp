@@ -192,14 +192,18 @@ Rings pieces_between(const Rings& chain) {
                             std::all_of(hull.begin(), hull.end(), [&](auto k) { return k >= n; });
         Numbers kept;
         const std::size_t m = hull.size();
+        // corners of the same shape next to each, before and behind it: twice around, for the ends meet
+        std::vector<std::size_t> before(m, 0), behind(m, 0);
+        for (std::size_t k = 1; !is_one && k < 2 * m; ++k) {
+            const std::size_t a = (k - 1) % m, b = k % m, c = (2 * m - k) % m, d = (2 * m - k - 1) % m;
+            before[b] = (hull[a] >= n) == (hull[b] >= n) ? before[a] + 1 : 0;
+            behind[d] = (hull[c] >= n) == (hull[d] >= n) ? behind[c] + 1 : 0;
+        }
         for (std::size_t k = 0; k < m; ++k) {
             const bool front = hull[k] >= n;
-            std::size_t before = 0, behind = 0;  // corners of the same shape next to it
-            while (!is_one && (hull[(k + m - 1 - before) % m] >= n) == front) ++before;
-            while (!is_one && (hull[(k + 1 + behind) % m] >= n) == front) ++behind;
             // the middle one as well: pieces must overlap, for where they only meet rounding would leave cracks
-            const bool rear_stays = is_first || before == behind || before == behind + 1;
-            if (is_one || before == 0 || behind == 0 || (front ? in_next[std::size_t(hull[k] - n)] : rear_stays))
+            const bool rear_stays = is_first || before[k] == behind[k] || before[k] == behind[k] + 1;
+            if (is_one || before[k] == 0 || behind[k] == 0 || (front ? in_next[std::size_t(hull[k] - n)] : rear_stays))
                 kept.push_back(hull[k]);
         }
         // a shape that grows or turns in place leaves strips so thin that rounding would fray the outline
