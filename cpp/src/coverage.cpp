@@ -380,18 +380,22 @@ Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
 }
 
 Rings outline(const PassMarks& pass, const Brush& brush) {
-    Rings swept;
+    Rings swept, chain;
     const auto keep = [&](const Ring& ring) {
         if (ring.rows() > 2) swept.push_back(ring);
+    };
+    const auto end_chain = [&] {
+        for (const Ring& piece : pieces_between(chain)) keep(piece);
+        chain.clear();
     };
     sweep(
         pass, brush,
         [&](const Ring& a, const Ring& b) {
-            Ring points(a.rows() + b.rows(), 2);
-            points << a, b;
-            keep(convex_hull(points));
+            if (&a == &b) end_chain();  // set down, or turned over at once
+            chain.push_back(b);
         },
         keep, keep);
+    end_chain();
     return unite(swept);
 }
 

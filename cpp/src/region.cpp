@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <boost/polygon/polygon.hpp>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "brushsvg/error.hpp"
 
@@ -17,8 +20,10 @@ using Set = bp::polygon_set_data<int>;
 
 // 32-bit coordinates at 1e-5 mm reach 21 m; coarser and the area of fine hatching drifts, finer and a page overflows
 constexpr double kUnitsPerMm = 1e5;
-// slivers that rounding leaves between shapes that only touch
+// slivers that rounding leaves between shapes that only touch: of no area, or narrower than two units
 constexpr double kLeastArea = 1e-6;
+// half the width [mm] below which a piece of a hull is not worth its corners: a hundred times what rounding moves them
+constexpr double kThinnest = 2e-3;
 
 Polygon to_polygon(const Ring& ring) {
     std::vector<Point> points;
@@ -44,12 +49,19 @@ Ring to_ring(Iterator begin, Iterator end, bool counter_clockwise) {
     return ring;
 }
 
+double length_around(const Ring& ring) {
+    double length = (ring.row(0) - ring.row(ring.rows() - 1)).norm();
+    for (Eigen::Index i = 1; i < ring.rows(); ++i) length += (ring.row(i) - ring.row(i - 1)).norm();
+    return length;
+}
+
 Rings to_rings(const Set& set) {
     std::vector<PolygonWithHoles> polygons;
     set.get(polygons);
     Rings rings;
     const auto keep = [&](Ring ring) {
-        if (std::abs(signed_area(ring)) > kLeastArea) rings.push_back(std::move(ring));
+        if (std::abs(signed_area(ring)) > std::max(kLeastArea, length_around(ring) / kUnitsPerMm))
+            rings.push_back(std::move(ring));
     };
     for (const PolygonWithHoles& polygon : polygons) {
         keep(to_ring(polygon.begin(), polygon.end(), true));
@@ -76,6 +88,44 @@ double area_of(const Set& set) {
     double sum = 0.0;
     for (const PolygonWithHoles& polygon : polygons) sum += double(bp::area(polygon));
     return sum / (kUnitsPerMm * kUnitsPerMm);
+}
+
+/// Numbers of the points that are corners of their convex hull, counter-clockwise.
+std::vector<Eigen::Index> hull_order(const Ring& points) {
+    std::vector<Eigen::Index> order(points.rows());
+    std::iota(order.begin(), order.end(), Eigen::Index(0));
+    std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+        return points(a, 0) < points(b, 0) || (points(a, 0) == points(b, 0) && points(a, 1) < points(b, 1));
+    });
+    std::vector<Eigen::Index> hull;
+    const auto turns_right = [&](Eigen::Index c) {
+        const Eigen::Index a = hull[hull.size() - 2], b = hull.back();
+        return (points(b, 0) - points(a, 0)) * (points(c, 1) - points(b, 1)) -
+                   (points(b, 1) - points(a, 1)) * (points(c, 0) - points(b, 0)) <=
+               0.0;
+    };
+    for (int pass = 0; pass < 2; ++pass) {
+        const std::size_t floor = hull.size() + 1;
+        for (const Eigen::Index c : order) {
+            while (hull.size() > floor && turns_right(c)) hull.pop_back();
+            hull.push_back(c);
+        }
+        hull.pop_back();
+        std::reverse(order.begin(), order.end());
+    }
+    return hull;
+}
+
+Ring rows_of(const Ring& points, const std::vector<Eigen::Index>& numbers) {
+    Ring ring(Eigen::Index(numbers.size()), 2);
+    for (Eigen::Index i = 0; i < ring.rows(); ++i) ring.row(i) = points.row(numbers[i]);
+    return ring;
+}
+
+Ring both(const Ring& a, const Ring& b) {
+    Ring points(a.rows() + b.rows(), 2);
+    points << a, b;
+    return points;
 }
 
 }  // namespace
@@ -119,28 +169,50 @@ double overlap(const Rings& a, const Rings& b) {
     return all > 0.0 ? shared / all : 1.0;
 }
 
-Ring convex_hull(const Ring& points) {
-    std::vector<Eigen::Vector2d> p(points.rows());
-    for (Eigen::Index i = 0; i < points.rows(); ++i) p[i] = points.row(i).transpose();
-    std::sort(p.begin(), p.end(),
-              [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
-    std::vector<Eigen::Vector2d> hull;
-    const auto turns_right = [&](const Eigen::Vector2d& c) {
-        const Eigen::Vector2d &a = hull[hull.size() - 2], &b = hull.back();
-        return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) <= 0.0;
-    };
-    for (int pass = 0; pass < 2; ++pass) {
-        const std::size_t floor = hull.size() + 1;
-        for (const auto& c : p) {
-            while (hull.size() > floor && turns_right(c)) hull.pop_back();
-            hull.push_back(c);
+Ring convex_hull(const Ring& points) { return rows_of(points, hull_order(points)); }
+
+Rings pieces_between(const Rings& chain) {
+    if (chain.size() < 2) return chain;
+    using Numbers = std::vector<Eigen::Index>;
+    std::vector<Numbers> hulls;  // of F_i and F_i+1, whose corners are numbered behind those of F_i
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) hulls.push_back(hull_order(both(chain[i], chain[i + 1])));
+    // Between two corners of F_i that stay, others of F_i can go: what they enclose lies in F_i, so in the hull before.
+    // So can corners of F_i+1 that are none of the next hull: what they enclose is in that, and is not what it loses.
+    Rings pieces;
+    std::vector<bool> in_next;
+    for (std::size_t i = 0; i < hulls.size(); ++i) {
+        const Numbers& hull = hulls[i];
+        const Eigen::Index n = chain[i].rows();
+        const bool is_first = i == 0, is_last = i + 1 == hulls.size();
+        in_next.assign(std::size_t(chain[i + 1].rows()), is_last);
+        if (!is_last)
+            for (const Eigen::Index k : hulls[i + 1])
+                if (k < chain[i + 1].rows()) in_next[std::size_t(k)] = true;
+        const bool is_one = std::all_of(hull.begin(), hull.end(), [&](auto k) { return k < n; }) ||
+                            std::all_of(hull.begin(), hull.end(), [&](auto k) { return k >= n; });
+        Numbers kept;
+        const std::size_t m = hull.size();
+        // corners of the same shape next to each, before and behind it: twice around, for the ends meet
+        std::vector<std::size_t> before(m, 0), behind(m, 0);
+        for (std::size_t k = 1; !is_one && k < 2 * m; ++k) {
+            const std::size_t a = (k - 1) % m, b = k % m, c = (2 * m - k) % m, d = (2 * m - k - 1) % m;
+            before[b] = (hull[a] >= n) == (hull[b] >= n) ? before[a] + 1 : 0;
+            behind[d] = (hull[c] >= n) == (hull[d] >= n) ? behind[c] + 1 : 0;
         }
-        hull.pop_back();
-        std::reverse(p.begin(), p.end());
+        for (std::size_t k = 0; k < m; ++k) {
+            const bool front = hull[k] >= n;
+            // the middle one as well: pieces must overlap, for where they only meet rounding would leave cracks
+            const bool rear_stays = is_first || before[k] == behind[k] || before[k] == behind[k] + 1;
+            if (is_one || before[k] == 0 || behind[k] == 0 || (front ? in_next[std::size_t(hull[k] - n)] : rear_stays))
+                kept.push_back(hull[k]);
+        }
+        // a shape that grows or turns in place leaves strips so thin that rounding would fray the outline
+        Ring piece = rows_of(both(chain[i], chain[i + 1]), kept);
+        if (kept.size() < 3 || signed_area(piece) < kThinnest * length_around(piece))
+            piece = rows_of(both(chain[i], chain[i + 1]), hull);
+        pieces.push_back(std::move(piece));
     }
-    Ring ring(Eigen::Index(hull.size()), 2);
-    for (Eigen::Index i = 0; i < ring.rows(); ++i) ring.row(i) = hull[i].transpose();
-    return ring;
+    return pieces;
 }
 
 }  // namespace brushsvg

@@ -15,6 +15,7 @@ from .describe import cell_page, one_line, page
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
+from .fold import folded
 from .importers import ReadOptions, read_drawing
 from .jobs import border, paper_height
 from .layout import Layout, arrange
@@ -39,7 +40,7 @@ def convert_file(args) -> None:
             machine.post_for(_suffix(args.output), cell)
         marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
         problems = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
-        problems += [(n.where, n.sentence) for n in damaged]
+        problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
         if damaged:
             where, sentence = problems[-1]
             problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")

@@ -6,6 +6,7 @@ import sys
 from contextlib import contextmanager, suppress
 
 from .errors import Error
+from .fold import folded
 
 
 class RefusedError(Exception):
@@ -44,8 +45,8 @@ def tell(text: str) -> None:
 
 
 def warn(file: str, warnings) -> None:
-    """warnings: (element, sentence)."""
-    for where, sentence in warnings:
+    """warnings: (element, sentence); many of a kind become one line."""
+    for where, sentence in folded(warnings):
         say(file, where, sentence)
 
 

@@ -74,11 +74,19 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
         progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
     )
     plan = _with_speeds(done.plan, strokes)
-    notices = [*design.notices, *notices, *(Notice(where, sentence) for where, sentence in done.warnings)]
+    notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
     notices += _other_brushes(strokes, brush)
     if options.compensation == "closed":
         notices += _misses(strokes, done.misses, options.tolerance_mm)
     return Work(design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices))
+
+
+def _widths(warnings, may_advise: bool) -> list[Notice]:
+    advice = "; --width MM gives all strokes one width"
+    return [
+        Notice(where, said + advice * (may_advise and said.endswith("was measured")))
+        for where, said in warnings
+    ]
 
 
 def _with_speeds(plan, strokes):

@@ -59,12 +59,16 @@ class Element:
 
 @dataclass(frozen=True)
 class Design:
-    """A drawing: sheet (width, height) in mm, elements in document order, what was noticed while reading."""
+    """A drawing: sheet (width, height) in mm, elements in document order, what was noticed while reading.
+
+    layers: why a layer by that name ("Ink/Fine" for one in another) is not painted, "" where nothing forbids it.
+    """
 
     sheet_mm: tuple[float, float]
     elements: tuple[Element, ...]
     notices: tuple[Notice, ...] = ()
     title: str = ""
+    layers: dict[str, str] = field(default_factory=dict)
 
 
 def extremes(cubics: np.ndarray) -> np.ndarray:

@@ -29,13 +29,14 @@ class Layout:
 
 
 AS_DRAWN = Layout()
+_NAMED = 20  # layers in a sentence
 
 
 def arrange(design: Design, layout: Layout) -> Design:
     """The drawing with its layers chosen, its widths set and its place found; widths are scaled with the drawing,
     but for layout.width_mm. The sheet stays.
 
-    Error for a layer that is not there, or marks that cannot be fitted.
+    Error for a layer that is not there or has nothing to paint, or marks that cannot be fitted.
     """
     if layout.layers:
         design = _of_layers(design, layout.layers)
@@ -95,17 +96,55 @@ def _fitting_scale(
 
 
 def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
-    def chosen(layer: str | None) -> bool:
-        return any(layer == name or (layer or "").startswith(name + "/") for name in names)
+    painted = [element.layer for element in design.elements if element.layer]
+    told = [notice.layer for notice in design.notices if notice.layer]
+    paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *told]))
+    wanted = [_layer(name, paths) for name in names]
 
-    known = list(dict.fromkeys(element.layer for element in design.elements if element.layer))
-    for name in names:
-        if not any(layer == name or layer.startswith(name + "/") for layer in known):
-            there = ", ".join(known[:20]) or "none"
-            raise Error(f"no layer {name!r} with something to paint; there are: {there}", where="layer")
+    def chosen(layer: str | None, among: list[str] = wanted) -> bool:
+        return any(layer == path or (layer or "").startswith(path + "/") for path in among)
+
+    for path in wanted:
+        if not any(chosen(element.layer, [path]) for element in design.elements):
+            raise Error(_why_nothing(design, path, chosen), where="layer")
     elements = tuple(element for element in design.elements if chosen(element.layer))
     notices = tuple(notice for notice in design.notices if notice.layer is None or chosen(notice.layer))
     return replace(design, elements=elements, notices=notices)
+
+
+def _layer(name: str, paths: list[str]) -> str:
+    """The layer that a name means: as written, or the end of just one, capitals and underscores aside."""
+
+    def plain(text: str) -> str:
+        return text.casefold().replace("_", " ")
+
+    if any(path.startswith(name + "/") for path in paths):  # "Ink" where there is "Ink/Fine" alone
+        return name
+    for matches in (
+        lambda path: path == name,
+        lambda path: path.endswith("/" + name),
+        lambda path: plain(path) == plain(name),
+        lambda path: plain(path).endswith("/" + plain(name)),
+    ):
+        found = [path for path in paths if matches(path)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            listed = ", ".join(map(repr, found[:_NAMED]))
+            raise Error(f"{name!r} names {len(found)} layers: {listed}; write the whole name", where="layer")
+    there = ", ".join(paths[:_NAMED]) + (f" and {len(paths) - _NAMED} more" if len(paths) > _NAMED else "")
+    raise Error(f"there is no layer {name!r}; there are: {there or 'none'}", where="layer")
+
+
+def _why_nothing(design: Design, path: str, chosen) -> str:
+    if why := design.layers.get(path):
+        return f"layer {path!r} cannot be painted: {why}"
+    told = [notice for notice in design.notices if chosen(notice.layer, [path])]
+    sentence = f"layer {path!r} has nothing to paint"
+    if told:
+        first = next((notice for notice in told if notice.damaged), told[0])
+        sentence += f": {first.where}: {first.sentence}"
+    return sentence
 
 
 def _with_width(element: Element, width_mm: float) -> Element:

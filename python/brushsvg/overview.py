@@ -5,6 +5,7 @@ The picture is laid out once, in px with y down, and drawn by two pens, SVG and 
 
 from __future__ import annotations
 
+import math
 import textwrap
 from dataclasses import dataclass, field
 from xml.sax.saxutils import escape
@@ -13,13 +14,16 @@ import numpy as np
 
 from . import _core
 from .design import Design, Notice
+from .fold import folded
 from .layout import bounds_mm
+from .numbering import Room, Run, ahead, runs_of, width_text
 
 PAPER, SHEET, EDGE, TEXT, QUIET, SHAPE = "#f3f1ec", "#ffffff", "#c9c7c0", "#22252b", "#6d717a", "#d9d7d0"
 WARNING = "#b3401f"
 INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c2185b", "#5d6d1e")
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
 LISTED, WRAPPED = 120, 120  # strokes in the list, letters in a line
+APART_PX = 80.0  # between two numbers of one element's dashes
 TOLERANCE_MM = 0.02
 
 
@@ -76,15 +80,30 @@ def _picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
     for element in design.elements:
         if element.fill_rule:
             canvas.area([place(_flat(subpath.cubics)) for subpath in element.subpaths], SHAPE)
-    for number, stroke in enumerate(strokes):
+    runs = runs_of(strokes)
+    inks = _inks(runs)
+    for stroke, ink in zip(strokes, inks, strict=True):
         rings = _core.wanted_outline(stroke, TOLERANCE_MM)
-        canvas.area([place(ring) for ring in rings], INKS[number % len(INKS)], 0.3)
-    for number, stroke in enumerate(strokes):
-        _direction(canvas, place(_core.flatten(stroke, TOLERANCE_MM)), number, INKS[number % len(INKS)])
+        canvas.area([place(ring) for ring in rings], ink, 0.3)
+    lines = [place(_core.flatten(stroke, TOLERANCE_MM)) for stroke in strokes]
+    for line, ink in zip(lines, inks, strict=True):
+        _direction(canvas, line, ink)
+    _numbers(canvas, lines, inks, runs)
     y = top + (y1 - y0) * px_per_mm + 2 * LINE_PX
-    y = _list_strokes(canvas, strokes, y)
+    y = _list_strokes(canvas, strokes, inks, runs, y)
     canvas.height = _list_notices(canvas, notices, y) + MARGIN_PX
     return canvas
+
+
+def _inks(runs: list[Run]) -> list[str]:
+    inks: list[str] = []
+    number = 0
+    for run in runs:
+        for _ in range(run.first, run.last + 1):
+            inks.append(INKS[number % len(INKS)])
+            number += not run.is_one
+        number += run.is_one
+    return inks
 
 
 def _flat(cubics: np.ndarray) -> np.ndarray:
@@ -94,11 +113,10 @@ def _flat(cubics: np.ndarray) -> np.ndarray:
     return np.vstack([cubics[0, :1], points.reshape(-1, 2)])
 
 
-def _direction(canvas: _Canvas, line: np.ndarray, number: int, ink: str) -> None:
-    """Middle line, arrows and the number at its start."""
+def _direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
+    """Middle line, arrows and a dot at its start."""
     steps = np.hypot(*np.diff(line, axis=0).T) if len(line) > 1 else np.zeros(0)
     length = float(steps.sum())
-    start, along = line[0], np.array([1.0, 0.0])
     if length > 0:
         canvas.line(line, ink, 2.0)
         at = np.concatenate([[0.0], np.cumsum(steps)])
@@ -109,39 +127,58 @@ def _direction(canvas: _Canvas, line: np.ndarray, number: int, ink: str) -> None
                 along = (tip - tail) / norm
                 side = np.array([-along[1], along[0]]) * head * 0.45
                 canvas.area([np.array([tip, tail + side, tail - side])], ink)
-        ahead = np.array([np.interp(min(length, 6.0), at, line[:, k]) for k in (0, 1)]) - start
-        along = ahead / max(np.hypot(*ahead), 1e-9)
     dot = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-    canvas.area([start + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
-    label = str(number + 1)
-    x, y = start - 20.0 * along
-    canvas.text(x - 5.5 * len(label), y + 6, label, ink, 18)
+    canvas.area([line[0] + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
 
 
-def _list_strokes(canvas: _Canvas, strokes: list, y: float) -> float:
+def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run]) -> None:
+    """Numbers at the starts, where there is room for them; of many dashes some."""
+    room = Room(lines)
+    for run in runs:
+        before = None
+        for number in range(run.first, run.last + 1):
+            start = lines[number][0]
+            if run.is_one and before is not None and math.dist(before, start) < APART_PX:
+                continue
+            label = str(number + 1)
+            corner = room.take(start, ahead(lines[number]), 11.0 * len(label), 16.0)
+            if corner is not None:
+                canvas.text(corner[0], corner[1] + 15, label, inks[number], 18)
+                before = start
+
+
+def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Run], y: float) -> float:
     columns = 3
-    for k, stroke in enumerate(strokes[:LISTED]):
+    for k, run in enumerate(runs[:LISTED]):
         x = MARGIN_PX + (k % columns) * (canvas.width - 2 * MARGIN_PX) / columns
-        widths = sorted(2 * knot[1] for knot in stroke.half_width)
-        width = f"{widths[0]:.3g}" + (f" to {widths[-1]:.3g}" if widths[-1] > widths[0] else "")
+        stroke = strokes[run.first]
+        number, names, count = f"{run.first + 1}", stroke.id, ""
+        if run.last > run.first:
+            number, names = f"{number}-{run.last + 1}", f"{names} ... {strokes[run.last].id}"
+            count = f" ({run.last - run.first + 1} strokes)"
         layer = f", {stroke.layer}" if stroke.layer else ""
-        words = f"{k + 1}  {stroke.id}: {width} mm{layer}"
-        canvas.text(x, y, words if len(words) <= 46 else words[:43] + "...", INKS[k % len(INKS)], 18)
-        y += LINE_PX if k % columns == columns - 1 or k == min(len(strokes), LISTED) - 1 else 0
-    if len(strokes) > LISTED:
-        canvas.text(MARGIN_PX, y, f"and {len(strokes) - LISTED} more", QUIET, 18)
+        words = f"{number}  {names}: {width_text(stroke)} mm{count}{layer}"
+        ink = inks[run.first] if run.is_one or run.last == run.first else TEXT
+        canvas.text(x, y, words if len(words) <= 46 else words[:43] + "...", ink, 18)
+        y += LINE_PX if k % columns == columns - 1 or k == min(len(runs), LISTED) - 1 else 0
+    if len(runs) > LISTED:
+        canvas.text(MARGIN_PX, y, f"and {len(strokes) - runs[LISTED].first} more", QUIET, 18)
         y += LINE_PX
     return y + LINE_PX / 2
 
 
 def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
-    for notice in notices[:LISTED]:
-        colour = WARNING if notice.damaged else TEXT
-        for line in textwrap.wrap(f"{notice.where}: {notice.sentence}", WRAPPED, subsequent_indent="    "):
+    told = [
+        (colour, where, sentence)
+        for is_damage, colour in ((True, WARNING), (False, TEXT))
+        for where, sentence in folded((n.where, n.sentence) for n in notices if n.damaged == is_damage)
+    ]
+    for colour, where, sentence in told[:LISTED]:
+        for line in textwrap.wrap(f"{where}: {sentence}", WRAPPED, subsequent_indent="    "):
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
-    if len(notices) > LISTED:
-        canvas.text(MARGIN_PX, y, f"and {len(notices) - LISTED} warnings more", QUIET, 18)
+    if len(told) > LISTED:
+        canvas.text(MARGIN_PX, y, f"and {len(told) - LISTED} warnings more", QUIET, 18)
         y += LINE_PX
     return y
 

@@ -10,10 +10,13 @@ from .errors import Error
 
 MM_PER = {"mm": 1.0, "cm": 10.0, "q": 0.25, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "px": 25.4 / 96}
 PX_PER = {"mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "in": 96.0, "pt": 96 / 72, "pc": 16.0, "px": 1.0}
+FONT_PX = 16.0  # of a font whose size nobody says
+_OF_FONT = {"em": 1.0, "ex": 0.5, "rem": 1.0}
 
 # Digits are spelled out, for \d and float() read other alphabets' digits too. Possessive quantifiers stand
 # behind single characters only: behind a group Python before 3.11.5 keeps what a failed attempt consumed.
 NUMBER = r"[+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?"
+_NUMBER = re.compile(NUMBER)
 _LENGTH = re.compile(rf"({NUMBER})\s*([a-zA-Z]+|%|)")
 _SIZE = re.compile(rf"({NUMBER}) ?(mm|cm|in|pt|pc|px|q|) ?x ?({NUMBER}) ?([a-z]*)")
 
@@ -31,9 +34,17 @@ def _parts(text: str) -> tuple[float, str]:
     value, unit = float(found[1]), found[2].lower()
     if not math.isfinite(value):
         raise Error(f"{_shown(text)} is too large to be a length")
-    if unit not in MM_PER and unit not in ("", "%"):
+    if unit not in MM_PER and unit not in ("", "%", *_OF_FONT):
         raise Error(f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q")
     return value, unit
+
+
+def number(text: str) -> float:
+    """A finite number as SVG writes it. Error if it is none."""
+    value = float(text) if _NUMBER.fullmatch(text := text.strip()) else math.nan
+    if not math.isfinite(value):
+        raise Error(f"{_shown(text)} is not a number")
+    return value
 
 
 def length_mm(text: str, default_unit: str = "mm") -> float:
@@ -41,12 +52,22 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
     value, unit = _parts(text)
     if unit == "%":
         raise Error(f"{_shown(text)} is a percentage, but there is nothing to take it of")
-    return value * MM_PER[unit or default_unit]
+    if unit in _OF_FONT:
+        raise Error(
+            f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q"
+        )
+    unit = unit or default_unit
+    length = value * MM_PER[unit]
+    return (
+        float(f"{length:.15g}") if unit in ("in", "pt", "pc") else length
+    )  # 8.5in are 215.9 mm, not 215.89999999999998
 
 
-def length_px(text: str, percent_of: float) -> float:
-    """A length in px (SVG user units, 96 to the inch); percentages are taken of percent_of px."""
+def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
+    """A length in px (SVG user units, 96 to the inch); percentages are of percent_of px, em and ex of a font's size."""
     value, unit = _parts(text)
+    if unit in _OF_FONT:
+        return value * (FONT_PX if unit == "rem" else em_px * _OF_FONT[unit])
     return value * percent_of / 100 if unit == "%" else value * PX_PER[unit or "px"]
 
 

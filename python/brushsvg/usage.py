@@ -108,9 +108,7 @@ def _parser() -> argparse.ArgumentParser:
         "--font", metavar="FILE", required=True, help="an SVG font of single lines, or TrueType, OpenType"
     )
     text.add_argument("--size", metavar="MM", type=_width, default=20.0, help="of the em; default: 20")
-    text.add_argument(
-        "--width", metavar="MM", type=_width, default=1.0, help="of the lines of an SVG font; default: 1"
-    )
+    text.add_argument("--width", metavar="MM", type=_width, help="of the lines of an SVG font; default: 1")
     text.add_argument(
         "--sheet", metavar="WxH", type=_size, help="the sheet; default: the text and 20 mm around it"
     )
@@ -279,9 +277,11 @@ def _width(text: str) -> float:
 
 
 def _scale(text: str) -> float:
+    from .units import number
+
     try:
-        value = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
-    except ValueError:
+        value = number(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    except Error:
         raise argparse.ArgumentTypeError(
             f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
         ) from None
@@ -364,7 +364,7 @@ def _check_operands(args) -> None:
             args.parser.error(f"{args.output} cannot be two files at once")
         return
     drawing = os.path.splitext(args.input)[1].lower()
-    if args.units and drawing == ".svg":
+    if args.units and drawing in (".svg", ".svgz"):
         args.parser.error("--units is for drawings that do not say them; an SVG does")
     if args.select and drawing == ".dxf":
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <random>
+
 using namespace brushsvg;
 
 namespace {
@@ -52,4 +55,72 @@ TEST_CASE("convex hull") {
     const Ring hull = convex_hull(points);
     CHECK(hull.rows() == 4);
     CHECK(area({hull}) == doctest::Approx(4.0));
+}
+
+namespace {
+
+/// A convex shape of 40 corners, longer than wide, one corner sharper than the others.
+Ring leaf(double x, double y, double heading, double size) {
+    Ring r(40, 2);
+    for (int k = 0; k < 40; ++k) {
+        const double a = 2 * 3.14159265358979 * k / 40;
+        const double u = size * (1.8 * std::cos(a) + (k == 0 ? 0.4 : 0.0)), v = size * std::sin(a);
+        r.row(k) << x + u * std::cos(heading) - v * std::sin(heading),
+            y + u * std::sin(heading) + v * std::cos(heading);
+    }
+    return r;
+}
+
+struct Swept {
+    Rings whole, pieces;
+    std::size_t corners = 0;
+};
+
+Swept swept(const Rings& chain) {
+    Swept found;
+    Rings hulls;
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+        Ring points(chain[i].rows() + chain[i + 1].rows(), 2);
+        points << chain[i], chain[i + 1];
+        hulls.push_back(convex_hull(points));
+    }
+    found.whole = unite(hulls);
+    const Rings pieces = pieces_between(chain);
+    for (const Ring& piece : pieces) found.corners += std::size_t(piece.rows());
+    found.pieces = unite(pieces);
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("pieces between shapes cover what their hulls cover, with few corners where the shape moves on") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    for (int trial = 0; trial < 60; ++trial) {
+        CAPTURE(trial);
+        const double step = trial % 3 == 0 ? 1.5 : 0.05, turn = trial % 4 == 0 ? 1.0 : 0.05;
+        const double growth = trial % 5 == 0 ? 0.5 : 0.02;
+        double x = 50, y = 50, heading = 0, size = 1;
+        Rings chain;
+        for (int i = 0; i < 2 + trial; ++i) {
+            if (trial % 7 != 0 || i % 3 == 0) {  // every third only: the others stay where they are
+                x += step * std::cos(heading), y += step * std::sin(heading);
+                heading += turn * any(random);
+                size = std::max(0.0, size + growth * any(random));
+            }
+            chain.push_back(leaf(x, y, heading, size));
+        }
+        const Swept found = swept(chain);
+        CHECK(area(found.pieces) == doctest::Approx(area(found.whole)).epsilon(1e-6));
+        CHECK(overlap(found.pieces, found.whole) > 1.0 - 1e-5);
+        CHECK(found.pieces.size() == found.whole.size());
+    }
+    Rings straight;
+    for (int i = 0; i < 100; ++i) straight.push_back(leaf(0.05 * i, 0.02 * i, 0.4, 1.0));
+    CHECK(swept(straight).corners < 100 * 9);
+    CHECK(pieces_between({}).empty());
+    CHECK(pieces_between({box(0, 0, 1, 1)}).size() == 1);
+    // one in the other, and one that is but a point
+    CHECK(area(unite(pieces_between({box(0, 0, 4, 4), box(1, 1, 1, 1), box(0, 0, 4, 4)}))) == doctest::Approx(16.0));
+    CHECK(area(unite(pieces_between({leaf(0, 0, 0, 0), leaf(0, 0, 0, 0)}))) == doctest::Approx(0.0));
 }

@@ -297,6 +297,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.ngc --fit 5x5 --scale 2",
         "convert a.svg out.ngc --scale 0",
         "convert a.svg out.ngc --scale big",
+        "convert a.svg out.ngc --scale \u0662",  # an Arabic two
         "convert a.svg out.ngc --origin 5",
         "convert a.svg out.ngc --origin 5,1e9",
         "convert a.svg out.ngc --units mm",

@@ -1,5 +1,6 @@
 """The command line's choices among what a drawing holds: layers, selections, sizes, settings, and looking at it."""
 
+import gzip
 import json
 import os
 import re
@@ -46,7 +47,7 @@ def test_layers_and_selections(desk, capsys):
     assert [each["stroke"] for each in passes] == ["b"]
     assert len(err) == 1 and "--export-text-to-path" in err[0]
     said = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
-    assert said == "brushsvg: d.svg: layer: no layer 'Blue' with something to paint; there are: Ink, Red"
+    assert said == "brushsvg: d.svg: layer: there is no layer 'Blue'; there are: Ink, Red"
     assert "matches no element" in refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
 
 
@@ -55,9 +56,21 @@ def test_an_empty_choice_is_wrong_usage(desk, capsys):
         assert main(["convert", "d.svg", "x.json", flag, ""]) == 2
 
 
-def test_a_compressed_drawing_is_told(desk, capsys):
-    (desk / "z.svg").write_bytes(b"\x1f\x8b\x08\0")
-    assert "the file is compressed (SVGZ)" in refusal(capsys, "convert", "z.svg", "x.json")
+def test_compressed_drawings(desk, capsys):
+    packed = gzip.compress(DRAWING.encode())
+    (desk / "d.svgz").write_bytes(packed)
+    (desk / "z.svg").write_bytes(packed)
+    plain, _ = plan(desk, capsys)
+    assert plan(desk, capsys, drawing="d.svgz")[0] == plan(desk, capsys, drawing="z.svg")[0] == plain
+    for damaged, why in (
+        (packed[:-40], "cut short"),
+        (b"\x1f\x8b\x08\0", "cut short"),
+        (packed[:20] + b"????" + packed[24:], "is damaged"),
+        (gzip.compress(b" " * 70_000_000), "unpacks to more than 64000000 bytes"),
+    ):
+        (desk / "z.svgz").write_bytes(damaged)
+        said = refusal(capsys, "convert", "z.svgz", "x.json")
+        assert "the file is compressed (SVGZ)" in said and why in said
 
 
 def test_the_exit_status_does_not_depend_on_who_reads(desk):
@@ -146,3 +159,25 @@ def test_text(desk, capsys):
     assert "has no glyph for" in refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
     for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2
+
+
+def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
+    def drawing(width):
+        lines = "".join(f'<path id="p{k}" d="M20 {20 + 5 * k}h40" stroke-width="{width}"/>' for k in range(6))
+        size = 'width="80mm" height="60mm" viewBox="0 0 80 60" stroke="#000"'
+        (desk / "w.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{lines}</svg>')
+
+    drawing(0.3)
+    for command in (("convert", "w.svg", "x.json"), ("predict", "w.svg", "x.png")):
+        assert main(list(command)) == 0
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith(
+            "brushsvg: w.svg: p0 and 5 like it: depth 0.36 mm is outside the range [1.0, 10.0] mm"
+        )
+        assert line.endswith("; --width MM gives all strokes one width")
+    passes, err = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
+    assert len(passes) == 6 and len(err) == 1 and err[0].endswith("was measured")
+    drawing(30)
+    assert "p0: width 30.000 mm is outside the range" in refusal(capsys, "convert", "w.svg", "x.json")
+    drawing('2" transform="translate(-30)')
+    assert "p0 and 5 like it: the mark reaches" in refusal(capsys, "convert", "w.svg", "x.json")

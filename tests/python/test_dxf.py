@@ -462,9 +462,7 @@ def test_what_is_hidden_is_left_out_and_counted():
 def test_paper_space_alone_is_refused():
     document = drawing()
     document.paperspace().add_circle((0, 0), 5)
-    with pytest.raises(
-        Error, match="nothing to paint; for example Layout1: paper space is not painted: 1 entity"
-    ):
+    with pytest.raises(Error, match="nothing to paint: Layout1: paper space is not painted: 1 entity"):
         read(document)
     with pytest.raises(Error, match=r"holds nothing to paint$"):
         read(drawing())

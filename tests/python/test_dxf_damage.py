@@ -120,10 +120,6 @@ def test_blocks_layers_and_handles_of_r12_stay_when_newer_entities_are_among_the
             b"AutoCAD Binary DXF\r\n\x1a\x00" + bytes(range(256)) + b"ENTITIES",
             "the DXF is damaged beyond repair",
         ),
-        (
-            text_dxf(LINE.replace("10 0", "10 x")),
-            "damaged beyond repair: Invalid floating point values near line: 14",
-        ),
     ],
 )
 def test_what_is_no_dxf_is_refused(data, sentence):
@@ -188,7 +184,7 @@ def test_damaged_geometry_is_left_out_and_the_rest_is_read(entity, why):
     assert len(damaged) == 1
     assert why in damaged[0].sentence
     assert damaged[0].layer == "0"
-    assert refusal(text_dxf(entity)).startswith("the drawing holds nothing to paint; for example ")
+    assert refusal(text_dxf(entity)).startswith("the drawing holds nothing to paint: ")
 
 
 @pytest.mark.parametrize(
@@ -300,3 +296,72 @@ def test_heavy_blocks_are_refused():
     document.modelspace().add_blockref("heavy", (0, 0), array)
     with pytest.raises(Error, match="unfolds to more than 1000000 curves"):
         read(document)
+
+
+@pytest.mark.parametrize("value", ["x", "1.#QNAN", "1,5", "--3"])
+def test_an_entity_with_a_bad_number_is_left_out_alone(value):
+    bad = LINE.replace("11 5", f"11 {value}")
+    design = read_dxf(text_dxf(LINE, bad, "0 CIRCLE 8 0 10 0 20 0 40 5"), OPTIONS)
+    assert [element.id[:6] for element in design.elements] == ["LINE-1", "CIRCLE"]
+    (notice,) = design.notices
+    assert (notice.where, notice.damaged) == ("LINE-2", True)
+    assert notice.sentence == f"it is damaged ('{value}' at group code 11 is not a number): left out"
+
+
+def test_a_polyline_with_a_bad_number_in_one_vertex_is_left_out_whole():
+    vertices = "0 VERTEX 8 0 10 0 20 0 0 VERTEX 8 0 10 9 20 y 0 VERTEX 8 0 10 9 20 9 0 SEQEND"
+    design = read_dxf(text_dxf(f"0 POLYLINE 8 0 5 2F 66 1 {vertices}", LINE), OPTIONS)
+    assert [element.id[:4] for element in design.elements] == ["LINE"]
+    assert [notice.where for notice in design.notices] == ["POLYLINE-2F"]
+
+
+def test_an_entity_that_lacks_what_it_needs_is_left_out_alone():
+    design = read_dxf(text_dxf(LINE, "0 HATCH 8 0 10 0 20 0"), OPTIONS)
+    assert len(design.elements) == 1
+    assert [(notice.where, notice.damaged) for notice in design.notices] == [("HATCH-2", True)]
+
+
+@pytest.mark.parametrize("header", HEADERS)
+@pytest.mark.parametrize("markers", ["", "100 AcDbEntity"])
+@pytest.mark.parametrize("kind", ["IMAGE", "3DSOLID", "MESH", "WIPEOUT", "ACAD_TABLE", "LAYER", "WHATEVER"])
+def test_what_is_not_read_is_counted_whoever_wrote_it(header, markers, kind):
+    entity = f"0 {kind} {markers} 8 0 10 0 20 0 30 0 40 3"
+    design = read_dxf(text_dxf(LINE, entity, entity, header=HEADERS[header]), OPTIONS)
+    assert len(design.elements) == 1
+    assert [(n.where, n.sentence, n.damaged) for n in design.notices] == [
+        (kind, f"{kind} is not read: 2 entities left out", False)
+    ]
+
+
+def test_a_helix_without_markers_is_not_read_and_one_with_them_is():
+    knots = "40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 10 0 20 0 30 0 10 10 20 0 30 0 10 10 20 10 30 0 10 20 20 10 30 0"
+    spline, axis = (
+        f"70 8 71 3 72 8 73 4 {knots}",
+        "90 29 91 63 10 0 20 0 30 0 11 1 21 0 31 0 12 0 22 0 32 1 40 1",
+    )
+    marked = f"0 HELIX 100 AcDbEntity 8 0 100 AcDbSpline {spline} 100 AcDbHelix {axis}"
+    bare = f"0 HELIX 8 0 {spline} {axis}"
+    design = read_dxf(text_dxf(marked, bare), OPTIONS)
+    assert [element.subpaths[0].cubics[-1, 3].tolist() for element in design.elements] == [[20, 10]]
+    assert [notice.sentence for notice in design.notices] == ["HELIX is not read: 1 entity left out"]
+
+
+def test_drawings_in_map_coordinates_are_moved_to_the_sheet_and_what_is_astray_is_left_out():
+    def line(x, y):
+        return f"0 LINE 8 0 10 {x} 20 {y} 11 {x + 5} 21 {y + 50}"
+
+    anywhere = ReadOptions(units="mm")
+    design = read_dxf(text_dxf(line(5e9, 4e9), line(5e9 + 30, 4e9), line(0, 0)), anywhere)
+    assert [(notice.where, notice.damaged) for notice in design.notices] == [("LINE-3", True)]
+    assert "beyond 1e6 mm" in design.notices[0].sentence
+    assert design.sheet_mm == pytest.approx((75.25, 90.25), abs=1e-5)
+    assert design.elements[1].subpaths[0].cubics[0, 0].tolist() == pytest.approx([50.125, 20.125], abs=1e-5)
+    near = read_dxf(text_dxf(line(0, 0), line(30, 0), line(5e9, 4e9)), anywhere)
+    assert [notice.where for notice in near.notices] == ["LINE-3"]
+    assert near.sheet_mm == pytest.approx((75.25, 90.25))
+    assert "LINE-1: its geometry lies beyond 1e6 mm" in refusal(
+        text_dxf(line(5e9, 4e9))
+    )  # OPTIONS have a sheet
+    assert "its geometry is not finite or beyond" in refusal(text_dxf(line(5e12, 0)))
+    with pytest.raises(Error, match="its geometry is not finite or beyond 1e6 mm"):
+        read_dxf(text_dxf("0 LINE 8 0 10 5e9 20 0 11 5.01e9 21 0"), anywhere)

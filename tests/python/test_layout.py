@@ -36,8 +36,9 @@ def test_layers():
     assert ids("Ink") == ["a", "b"]
     assert ids("Ink/Fine") == ["b"]
     assert [n.where for n in arrange(read(BODY), Layout(layers=("Ink",))).notices] == ["t"]
-    with pytest.raises(Error, match="no layer 'ink' with something to paint; there are: Ink, Ink/Fine"):
-        ids("ink")
+    assert ids("Fine") == ids("ink/fine") == ["b"]
+    with pytest.raises(Error, match="there is no layer 'Inks'; there are: Ink, Ink/Fine"):
+        ids("Inks")
 
 
 def test_width_of_all():

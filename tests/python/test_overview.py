@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 from svg_text import read
 
+from brushsvg.design import Notice
 from brushsvg.overview import overview
 from brushsvg.strokes import strokes
 
@@ -38,3 +39,47 @@ def test_png_shows_the_band_as_wide_as_the_stroke_where_it_was_drawn():
 def test_without_strokes_there_is_still_something_to_look_at():
     design = read('<circle r="5" cx="80" cy="20" fill="red" stroke="none"/>')
     assert overview(".png", design, [], []).startswith(b"\x89PNG")
+
+
+def words_of(body, notices=()):
+    design = read(body)
+    made, _ = strokes(design)
+    tree = ET.fromstring(overview(".svg", design, made, [*design.notices, *notices]))
+    return [
+        (node.text, float(node.get("x")), float(node.get("y")), node.get("fill"))
+        for node in tree.iter("{http://www.w3.org/2000/svg}text")
+    ]
+
+
+def test_many_dashes_are_one_entry_in_one_ink_with_some_numbers():
+    words = words_of('<path id="path7" d="M2 10H98" stroke-dasharray="1 1"/><path id="z" d="M2 30H98"/>')
+    texts = [word for word, *_ in words]
+    assert "1-48  path7/1 ... path7/48: 1 mm (48 strokes)" in texts
+    assert "49  z: 1 mm" in texts
+    numbers = [(int(word), x, ink) for word, x, _, ink in words if word.isdigit() and int(word) < 49]
+    assert numbers[0][0] == 1
+    assert 8 < len(numbers) < 20
+    assert len({ink for *_, ink in numbers}) == 1
+
+
+def test_strokes_alike_are_one_entry_and_unlike_ones_are_not():
+    line = '<path id="{}" d="M{} 5v9" stroke-width="{}"/>'.format
+    alike = "".join(line(f"p{k}", 5 + 3 * k, 1) for k in range(6))
+    texts = [word for word, *_ in words_of(alike + line("p6", 50, 2) + line("p8", 60, 1) + line("q", 70, 1))]
+    assert texts[-4:] == ["1-6  p0 ... p5: 1 mm (6 strokes)", "7  p6: 2 mm", "8  p8: 1 mm", "9  q: 1 mm"]
+    assert {"1", "2", "3", "4", "5", "6", "7", "8", "9"} <= set(texts)
+    assert len({ink for word, *_, ink in words_of(alike) if word.isdigit()}) == 6
+
+
+def test_numbers_do_not_lie_on_each_other():
+    crowd = "".join(f'<path d="M{30 + k % 15} {20 + k // 15}h.5" stroke-width=".3"/>' for k in range(150))
+    boxes = [(x, y, 11.0 * len(word)) for word, x, y, _ in words_of(crowd) if word.isdigit()]
+    assert 15 < len(boxes) < 150
+    for k, (x, y, w) in enumerate(boxes):
+        assert all(x + w <= a or a + b <= x or abs(y - c) >= 16 for a, c, b in boxes[:k])
+
+
+def test_warnings_of_a_kind_are_one_line():
+    notices = [Notice(f"p{k}", f"depth 0.{k} mm is outside the range [1, 10] mm") for k in range(9)]
+    texts = [word for word, *_ in words_of('<path d="M1 1H9"/>', [*notices, Notice("x", "another")])]
+    assert texts[-2:] == ["p0 and 8 like it: depth 0.0 mm is outside the range [1, 10] mm", "x: another"]

@@ -96,6 +96,13 @@ def test_what_of_a_style_sheet_is_not_read(css, sentence):
 def test_a_variable_that_leads_to_itself_is_no_value():
     design = read(f"<style>:root{{--a:var(--b)x;--b:var(--a)}} path{{stroke-width:var(--a)}}</style>{P}")
     assert design.elements[0].stroke_width_mm == 1
+    sentence = "stroke-width 'var(--a)' leads through --b in a circle, or too far: it counts as not given"
+    assert [(notice.sentence, notice.damaged) for notice in design.notices] == [(sentence, True)]
+    unknown = read(f"<style>path{{stroke:blue;stroke:var(--c)}}</style>{P}")
+    assert unknown.elements[0].colour == "#ff0000", "what is inherited, not the weaker declaration"
+    (notice,) = unknown.notices
+    assert "names --c, which nothing says" in notice.sentence and not notice.damaged
+    assert read(f"<style>path{{font-size:var(--c)}}</style>{P}").notices == ()
     grown = "".join(f"--v{k}:var(--v{k + 1})var(--v{k + 1});" for k in range(60))
     read(f"<style>:root{{{grown}}} path{{stroke-width:var(--v0)}}</style>{P}")
 

@@ -50,7 +50,10 @@ def test_catmull_rom_passes_through_its_points():
 @pytest.mark.parametrize(
     ("choices", "sentence"),
     [
-        ({"kind": "SpiroInterpolator"}, "p: its width is interpolated SpiroInterpolator, read as Linear"),
+        (
+            {"kind": "SpiroInterpolator"},
+            "p: the width of its PowerStroke is interpolated SpiroInterpolator, read as Linear",
+        ),
         ({"effect": "skeletal"}, "p: path effect skeletal is not read: its outline counts"),
         (
             {"points": "0,1 | nan"},
@@ -60,6 +63,12 @@ def test_catmull_rom_passes_through_its_points():
 )
 def test_what_is_not_read_is_named(choices, sentence):
     assert sentence in sentences(powered(**choices))
+
+
+def test_an_effect_that_leaves_an_outline_is_named():
+    design = powered(effect="taper_stroke")
+    assert sentences(design) == ["p: path effect taper_stroke is not read: its outline counts"]
+    assert not design.elements[0].is_stroked
 
 
 def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():

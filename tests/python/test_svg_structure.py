@@ -4,7 +4,7 @@ import pytest
 from svg_text import lines, read, sentences
 
 from brushsvg import Error
-from brushsvg.importers import svg
+from brushsvg.importers import svg_element
 
 LINE = '<path id="l" d="M0 0H4"/>'
 
@@ -105,7 +105,7 @@ def test_a_long_chain_of_uses_is_walked_without_recursion():
 
 
 def test_path_data_without_end_is_refused(monkeypatch):
-    monkeypatch.setattr(svg, "_MOST_DATA", 1000)
+    monkeypatch.setattr(svg_element, "_MOST_DATA", 1000)
     assert read(LINE * 100).elements
     with pytest.raises(Error, match="more than 1000 characters of path data"):
         read(LINE * 200)
@@ -134,7 +134,12 @@ def test_transforms_as_css_writes_them_and_about_an_origin():
     assert start('transform="scale(2)" transform-origin="right bottom"') == (-80, -50)
     assert start('transform="scale(2)" transform-origin="top left"') == (20, 0)
     assert start('transform="rotate(90deg)"') == pytest.approx((0, 10))
-    design = read('<path id="p" d="M0 0H5" transform="scale(2)" transform-origin="1em 0"/>')
+    assert start('style="transform:scale(50%) scaleX(200%)"') == (10, 0)
+    for broken in ("translate(50%)", "scale(x)", "turn(3)"):
+        design = read(f'<path id="p" d="M10 0H5" transform="scale(2)" style="transform:{broken}"/>')
+        assert lines(design)[0][1] == (20, 0), "the attribute serves"
+        assert [notice.damaged for notice in design.notices] == [True]
+    design = read('<path id="p" d="M0 0H5" transform="scale(2)" transform-origin="1vw 0"/>')
     assert design.notices[0].damaged
 
 
@@ -218,7 +223,9 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
     [
         ('speed="fast"', "data-brushsvg-speed: 'fast' is not a speed in mm/s"),
         ('speed="-1"', "-1 mm/s is outside the range [0.001, 10000] mm/s"),
-        ('speed="nan"', "nan mm/s is outside the range"),
+        ('speed="nan"', "'nan' is not a speed in mm/s"),
+        ('speed="1_0"', "'1_0' is not a speed in mm/s"),
+        ('passes="\u0663"', "'\u0663' is not a whole number"),  # an Arabic three
         ('width="5 furlongs"', "data-brushsvg-width: '5 furlongs' has a unit"),
         ('width="0"', "0 mm is outside the range [0.001, 1000] mm"),
         ('passes="1.5"', "'1.5' is not a whole number"),

@@ -401,6 +401,13 @@ def filled(text, font, **options):
     return [(path.get("id"), path.get("d")) for path in paths(document)], notices[1:]
 
 
+def test_a_width_for_outlines_is_told_to_have_no_effect(ttf):
+    document, notices = text_svg("A", ttf, size_mm=10, width_mm=3)
+    sentence = "the width 3 mm has no effect: the font has outlines, not single lines"
+    assert notices[-1].sentence == sentence
+    assert text_svg("A", ttf, size_mm=10) == (document, notices[:-1])
+
+
 def test_an_outline_is_filled_and_lies_exactly(ttf):
     document, _ = text_svg("A", ttf, size_mm=10, width_mm=3)
     root = ET.fromstring(document.encode())

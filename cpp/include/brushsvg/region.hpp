@@ -14,6 +14,10 @@ double area(const Rings& rings);
 /// Area of the intersection over area of the union; 1 when both are empty.
 double overlap(const Rings& a, const Rings& b);
 
+/// Convex pieces whose union is that of the hulls of every two neighbours in a chain of convex counter-clockwise rings:
+/// the hulls without the corners that lie in the pieces next to them. One ring is its own piece.
+Rings pieces_between(const Rings& chain);
+
 /// Convex hull of points, counter-clockwise.
 Ring convex_hull(const Ring& points);
 

@@ -43,7 +43,7 @@ def _dxf(data: bytes, options: ReadOptions) -> Design:
     return read_dxf(data, options)
 
 
-READERS = {".svg": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
+READERS = {".svg": _svg, ".svgz": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
 
 
 def read_drawing(path: str | os.PathLike, options: ReadOptions = AS_DRAWN) -> Design:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
-import numpy as np
-
-from ..design import Design, Element, Notice, extremes
+from ..design import Design, Notice
 from ..errors import Error
 from . import AS_DRAWN, ReadOptions
 from .dxf_dashes import Dashes
 from .dxf_file import open_dxf
 from .dxf_lines import chained, element_of
+from .dxf_place import anchored, in_range, with_margin
 from .dxf_walk import Walk
+from .nothing import nothing_to_paint
 
-_MARGIN_MM = 20.0
 _FLAT_MM = 1e-3
 
 _FOOT_MM = 304.8
@@ -61,28 +59,20 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     mm_per_unit, unit_notices = _mm_per_unit(document, options.units)
     walk = Walk(document, mm_per_unit)
     walk.run()
-    notices += [*unit_notices, *walk.notices]
-    if not walk.pieces:
-        sentence = "the drawing holds nothing to paint"
-        if notices:
-            first = next((notice for notice in notices if notice.damaged), notices[-1])
-            sentence += f"; for example {first.where}: {first.sentence}"
-        raise Error(sentence)
-    heights = [curve.cubics[..., 2] for piece in walk.pieces for curve in piece.curves]
+    pieces, far = in_range(walk.pieces if options.sheet_mm else anchored(walk.pieces))
+    notices += [*unit_notices, *walk.notices, *far]
+    if not pieces:
+        raise nothing_to_paint(notices)
+    heights = [curve.cubics[..., 2] for piece in pieces for curve in piece.curves]
     lowest, highest = min(z.min() for z in heights), max(z.max() for z in heights)
     if highest - lowest > _FLAT_MM:
         sentence = f"the drawing is not flat: heights from {lowest:.6g} to {highest:.6g} mm are left out"
         notices.append(Notice("z", sentence))
     dashes = Dashes()
-    elements = [dashes.cut(element_of(piece), piece.pen) for piece in chained(walk.pieces)]
+    elements = [dashes.cut(element_of(piece), piece.pen) for piece in chained(pieces)]
     notices += dashes.notices
-    if options.sheet_mm is not None:
-        return Design(options.sheet_mm, tuple(elements), tuple(notices))
-    least, greatest = _extents(elements)
-    shift = _MARGIN_MM - least
-    moved = tuple(_moved(element, shift) for element in elements)
-    width, height = (greatest + shift + _MARGIN_MM).tolist()
-    return Design((width, height), moved, tuple(notices))
+    sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else with_margin(elements)
+    return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())
 
 
 def _mm_per_unit(document, asked_for: str | None) -> tuple[float, list[Notice]]:
@@ -95,24 +85,3 @@ def _mm_per_unit(document, asked_for: str | None) -> tuple[float, list[Notice]]:
     if drawn is None or drawn == wanted:
         return wanted, []
     return wanted, [Notice("$INSUNITS", f"the drawing is in {name}; read in {wanted_name}, as asked for")]
-
-
-# The sheet ------------------------------------------------------------------------------------------
-
-
-def _extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of what is drawn, half the widths included."""
-    cubics, halves = [], []
-    for element in elements:
-        for subpath in element.subpaths:
-            widest = element.stroke_width_mm if subpath.widths is None else subpath.widths[:, 1].max()
-            cubics.append(subpath.cubics)
-            halves.append(np.full(len(subpath.cubics), widest / 2))
-    half = np.concatenate(halves)[:, None]
-    points = extremes(np.concatenate(cubics)).reshape(-1, len(half), 2)
-    return (points - half).min(axis=(0, 1)), (points + half).max(axis=(0, 1))
-
-
-def _moved(element: Element, shift: np.ndarray) -> Element:
-    subpaths = tuple(replace(subpath, cubics=subpath.cubics + shift) for subpath in element.subpaths)
-    return replace(element, subpaths=subpaths)

@@ -6,11 +6,12 @@ import io
 
 from ..design import Notice
 from ..errors import Error
+from .dxf_entities import Entities
 from .dxf_library import ezdxf
-from .dxf_markers import marked_tags
 
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 _MOST_NOTICES = 5
+_NUMBER = ezdxf.audit.AuditError.INVALID_FLOATING_POINT_VALUE
 
 
 class _Auditor(ezdxf.audit.Auditor):
@@ -31,32 +32,49 @@ def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
         raise Error("the file is not a DXF, or cut short: it has no ENTITIES")
     read = _binary if data.startswith(_BINARY) else _text
     try:
-        document, damage = read(data)
+        document, notices = read(data)
         auditor = _Auditor(document)
         auditor.run()
     except ezdxf.DXFError as problem:
         raise Error(f"the DXF is damaged beyond repair: {reason(problem)}") from None
     except Exception:  # whatever ezdxf meets in bytes that anyone may have written
         raise Error("the DXF is damaged beyond repair, or cut short") from None
-    return document, _some(damage, damaged=True) + _some(
-        [error.message for error in auditor.errors], damaged=False
-    )
+    return document, notices + _some([("file", error.message) for error in auditor.errors], damaged=False)
 
 
-def _binary(data: bytes) -> tuple[ezdxf.document.Drawing, list[str]]:
+def _binary(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     return ezdxf.document.Drawing.load(ezdxf.lldxf.tagger.binary_tags_loader(data)), []
 
 
-def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[str]]:
-    """As ezdxf.recover.read() does, but without its audit."""
+def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     damage = []
     if not data.rstrip(b" \t\r\n\0\x1a").endswith(b"EOF"):
-        damage.append("the end of the file is missing")
+        damage.append(("file", "the end of the file is missing"))
         data = _up_to_the_last_entity(data)
-    recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=marked_tags)
+    entities = Entities()
+    try:
+        document, recovered = _loaded(data, entities)
+        bad_numbers = any(code == _NUMBER for code, _ in recovered.errors)
+    except Exception:  # as above; entity by entity it is told what is wrong
+        bad_numbers = True
+    if bad_numbers:
+        entities = Entities(is_strict=True)
+        document, recovered = _loaded(data, entities)
+    damage += [(shown(name), f"it is damaged ({shown(why)}): left out") for name, why in entities.broken]
+    damage += [("file", message) for _, message in (*recovered.errors, *recovered.fixes)]
+    counts = [
+        Notice(shown(kind), f"{shown(kind)} is not read: {n} {'entity' if n == 1 else 'entities'} left out")
+        for kind, n in entities.left_out.items()
+    ]
+    return document, _some(damage, damaged=True) + counts
+
+
+def _loaded(data: bytes, entities: Entities) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
+    """As ezdxf.recover.read() does, but without its audit."""
+    recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=entities.tags)
     document = ezdxf.document.Drawing()
     document._load_section_dict(recovered.section_dict)
-    return document, damage + [message for _, message in (*recovered.errors, *recovered.fixes)]
+    return document, recovered
 
 
 def _up_to_the_last_entity(data: bytes) -> bytes:
@@ -78,8 +96,8 @@ def shown(text: str, most: int = 120) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
-def _some(messages: list[str], damaged: bool) -> list[Notice]:
-    kept = [shown(message).rstrip(".") for message in messages[:_MOST_NOTICES]]
-    if more := len(messages) - len(kept):
-        kept.append(f"and {more} more such problems")
-    return [Notice("file", sentence, damaged) for sentence in kept]
+def _some(told: list[tuple[str, str]], damaged: bool) -> list[Notice]:
+    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in told[:_MOST_NOTICES]]
+    if more := len(told) - len(kept):
+        kept.append(("file", f"and {more} more such problems"))
+    return [Notice(where, sentence, damaged) for where, sentence in kept]

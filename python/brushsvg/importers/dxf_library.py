@@ -44,10 +44,13 @@ with _empty_home():
     import ezdxf.colors
     import ezdxf.document
     import ezdxf.entities
+    import ezdxf.entities.factory
     import ezdxf.fonts.font_manager
     import ezdxf.fonts.fonts
     import ezdxf.layouts
+    import ezdxf.lldxf.extendedtags
     import ezdxf.lldxf.tagger
+    import ezdxf.lldxf.tags
     import ezdxf.lldxf.types
     import ezdxf.math
     import ezdxf.path

@@ -48,6 +48,10 @@ class Pens:
         self._line_types = {key: line_type for key, line_type in types if line_type is not None}
         self._layers = {_key(layer.dxf.name): self._of_layer(layer) for layer in document.layers}
 
+    def hidden(self) -> dict[str, str]:
+        """Why each layer is not painted, "" if it is."""
+        return {pen.layer: pen.hidden for pen in self._layers.values()}
+
     def pen(self, entity, outer: Pen | None) -> Pen:
         """outer: the pen of the block reference the entity is in, None outside of blocks."""
         dxf, block = entity.dxf, outer or Pen()

@@ -24,6 +24,7 @@ from .svg_trace import LARGEST_MM
 _TOLERANCE_MM = 1e-4
 _MOST_ENTITIES = 100_000  # a brush paints some thousand strokes a day; what unfolds to more was made to
 _MOST_CUBICS = 1_000_000
+_FARTHEST_MM = 1e11  # from the origin: beyond it a number of 64 bits does not know hundredths of a hair
 _DEEPEST = 50  # blocks in blocks
 _JOINABLE = frozenset(("LINE", "ARC", "ELLIPSE", "SPLINE"))
 _SILENT = frozenset(("VIEWPORT", "ATTDEF", "SEQEND"))
@@ -233,7 +234,7 @@ class Walk:
                 raise Error(f"the drawing unfolds to more than {_MOST_CUBICS} curves", where=_top(name))
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
             widths = None if line.widths is None else line.widths * place.mean_stretch
-            if not np.abs(cubics).max() <= LARGEST_MM:
+            if not (np.abs(cubics).max() <= _FARTHEST_MM and np.ptp(cubics, axis=(0, 1)).max() <= LARGEST_MM):
                 self._note(
                     name, "its geometry is not finite or beyond 1e6 mm: left out", pen.layer, damaged=True
                 )

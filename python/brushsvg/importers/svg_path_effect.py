@@ -65,7 +65,7 @@ def drawn_line(node: ET.Element, by_id: dict[str, ET.Element]) -> tuple[PowerStr
     interpolator = said.get("interpolator_type", "Linear")
     if interpolator not in _INTERPOLATORS:
         sentences.append(
-            f"its width is interpolated {re.sub('[^A-Za-z]', '', interpolator)[:30]}, read as Linear"
+            f"the width of its PowerStroke is interpolated {re.sub('[^A-Za-z]', '', interpolator)[:30]}, read as Linear"
         )
     return PowerStroke(original, offsets, interpolator, beta[0]), sentences
 

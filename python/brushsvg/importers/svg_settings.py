@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 
 from ..errors import Error
-from ..units import length_mm
+from ..units import length_mm, number
 
 _PREFIX = "data-brushsvg-"
 
@@ -34,20 +35,17 @@ def _width_mm(text: str) -> float:
 
 def _speed_mm_s(text: str) -> float:
     try:
-        return _in_range(float(text), 0.001, 10000, "mm/s")
-    except ValueError as problem:
-        raise (
-            problem if isinstance(problem, Error) else Error(f"{text[:24]!r} is not a speed in mm/s")
-        ) from None
+        value = number(text)
+    except Error:
+        raise Error(f"{text[:24]!r} is not a speed in mm/s") from None
+    return _in_range(value, 0.001, 10000, "mm/s")
 
 
 def _whole(least: int, greatest: int):
     def read(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            raise Error(f"{text[:24]!r} is not a whole number") from None
-        return _in_range(value, least, greatest)
+        if not re.fullmatch("[+-]?[0-9]{1,18}", text):  # int() reads other alphabets' digits, too
+            raise Error(f"{text[:24]!r} is not a whole number")
+        return _in_range(int(text), least, greatest)
 
     return read
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..errors import Error
-from ..units import length_px
+from ..units import FONT_PX, length_px
 from .svg_path import Command, parse_path, parse_points, snippet
 
 
@@ -17,15 +17,18 @@ class DamageError(Exception):
         self.commands = commands
 
 
-def commands_of(tag: str, attributes: dict[str, str], viewport: tuple[float, float]) -> list[Command]:
+def commands_of(
+    tag: str, attributes: dict[str, str], viewport: tuple[float, float], em_px: float = FONT_PX
+) -> list[Command]:
     """Commands in user units, [] for a shape SVG does not render. viewport: (w, h), base of percentages."""
-    return _SHAPES[tag](attributes, _Lengths(attributes, viewport))
+    return _SHAPES[tag](attributes, _Lengths(attributes, viewport, em_px))
 
 
 class _Lengths:
-    def __init__(self, attributes: dict[str, str], viewport: tuple[float, float]):
+    def __init__(self, attributes: dict[str, str], viewport: tuple[float, float], em_px: float):
         self.attributes = attributes
         self.viewport = viewport
+        self.em_px = em_px
 
     def __call__(self, name: str, base: str, least: float = -math.inf) -> float:
         value = self.optional(name, base, least)
@@ -36,7 +39,7 @@ class _Lengths:
         if text is None or text.strip() == "auto":
             return None
         try:
-            value = length_px(text, self._base(base))
+            value = length_px(text, self._base(base), self.em_px)
         except Error as error:
             raise DamageError(f"{name}: {error}", []) from None
         if value < least:

@@ -11,11 +11,12 @@ from operator import itemgetter
 import tinycss2
 
 from ..errors import Error
-from ..units import length_px
+from ..units import FONT_PX, NUMBER, length_px
 from .svg_colour import parse_colour
 from .svg_rules import Declaration, declarations
 
 INHERITED = {
+    "font-size": f"{FONT_PX:g}",  # in px
     "stroke": "none",
     "stroke-width": "1",
     "stroke-opacity": "1",
@@ -43,8 +44,19 @@ OWN = {
 _GEOMETRY = frozenset("transform transform-origin d x y width height cx cy r rx ry".split())
 _PRESENTED = (*INHERITED, *OWN)  # as attributes, in the order of what is told about them
 _READ = frozenset(_PRESENTED) | _GEOMETRY
+_LENGTHS = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
 _MARKERS = ("marker-start", "marker-mid", "marker-end")
 _URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
+_OF_FONT = re.compile(rf"({NUMBER})(r?em|ex)\b", re.IGNORECASE)
+_FONT_SIZES = {
+    "xx-small": 9.0,
+    "x-small": 10.0,
+    "small": 13.0,
+    "medium": 16.0,
+    "large": 18.0,
+    "x-large": 24.0,
+    "xx-large": 32.0,
+}
 _LONGEST_VALUE = 10_000  # of custom properties put into each other
 
 Problem = tuple[str, bool]  # a sentence, and whether geometry is damaged
@@ -83,12 +95,19 @@ def cascade(
                 said.setdefault(each, []).append(value)
     inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
     inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
+    if "font-size" in said:  # others count in it
+        said = {"font-size": said["font-size"], **said}
     problems: list[Problem] = []
     for name, values in said.items():
         for text in reversed(values):  # the strongest that is valid
             value = text.strip()
             if "var(" in value.lower():
-                value = _substituted(value, inherited)
+                value, problem = _substituted(value, inherited)
+                if problem:  # CSS does not fall back to a weaker declaration here
+                    sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
+                    if name != "font-size":
+                        problems.append((sentence, name == "stroke-width" or name in _GEOMETRY))
+                    break
             if name in _GEOMETRY:
                 geometry[name] = _path_text(value) if name == "d" else value
                 break
@@ -109,7 +128,7 @@ def cascade(
 
 
 def _problem(name: str, value: str, diagonal: float) -> Problem | None:
-    """Why a value is not one of its property."""
+    """Why a value is not one of its property, as far as it matters."""
     if name in ("stroke", "fill", "color"):
         if not _URL.match(value) and parse_colour(value) is None:
             return f"{name} {value[:40]!r} is not a colour: it counts as not given", False
@@ -130,27 +149,51 @@ def _computed(name: str, value: str, inherited: dict[str, str]) -> str:
         return inherited["color"] if colour in (None, "none", "currentcolor") else colour
     if name == "fill-rule":
         return "evenodd" if value.lower() == "evenodd" else "nonzero"
-    return value if name == "stroke-width" or name in _MARKERS else value.lower()
+    if name == "font-size":
+        return _font_size(value.lower(), inherited["font-size"])
+    if name in _LENGTHS:  # what is said in em is handed down in px
+        return _OF_FONT.sub(
+            lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
+        )
+    return value if name in _MARKERS else value.lower()
 
 
-def _substituted(value: str, inherited: dict[str, str]) -> str:
-    """A value with its var(--name, fallback) replaced; "" where that leads nowhere."""
+def _font_size(value: str, parents: str) -> str:
+    em_px = float(parents)
+    if value in ("larger", "smaller"):
+        return f"{em_px * (1.2 if value == 'larger' else 1 / 1.2):.15g}"
+    try:
+        size_px = _FONT_SIZES[value] if value in _FONT_SIZES else length_px(value, em_px, em_px)
+    except Error:
+        return parents
+    return f"{size_px:.15g}" if 0 <= size_px <= 1e6 else parents
+
+
+def _substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
+    """A value with its var(--name, fallback) replaced, and why that leads nowhere, "" if it does not."""
+    problem = ""
 
     @cache  # or variables that name two others each would take for ever
     def at(depth: int, value: str) -> str:
+        nonlocal problem
         parts = []
         for token in tinycss2.parse_component_value_list(value):
             if token.type != "function" or token.lower_name != "var":
                 parts.append(tinycss2.serialize([token]))
                 continue
-            name, _, fallback = tinycss2.serialize(token.arguments).partition(",")
-            found = inherited.get(name.strip(), fallback.strip())
-            if depth > 20 or len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
-                return ""
-            parts.append(at(depth + 1, found) if "var(" in found.lower() else found)
+            name, comma, fallback = tinycss2.serialize(token.arguments).partition(",")
+            found = inherited.get(name.strip(), fallback.strip() if comma else None)
+            if found is None:
+                problem = problem or f"names {name.strip()[:40]}, which nothing says"
+            elif depth > 20:
+                problem = problem or f"leads through {name.strip()[:40]} in a circle, or too far"
+            elif len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
+                problem = problem or f"grows beyond {_LONGEST_VALUE} characters"
+            else:
+                parts.append(at(depth + 1, found) if "var(" in found.lower() else found)
         return "".join(parts).strip()
 
-    return at(0, value)
+    return at(0, value), problem
 
 
 def _path_text(value: str) -> str:

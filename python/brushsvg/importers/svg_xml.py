@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+import zlib
 from dataclasses import dataclass
 from xml.parsers import expat
 
@@ -16,6 +17,8 @@ from ..errors import Error
 
 # Drawing programs declare a dozen short entities and use each once per element: far below a megabyte.
 EXPANSION_LIMIT = 10_000_000
+_MOST_ELEMENTS = 1_000_000  # ten times what may be painted
+_LARGEST_UNPACKED = 64_000_000  # characters; path data may have 10 million
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,7 @@ def parse_xml(data: bytes) -> Document:
     """
     if not data.strip():
         raise Error("the file is empty")
-    if data.startswith(b"\x1f\x8b"):
-        raise Error("the file is compressed (SVGZ): save it as plain SVG")
+    data = _unpacked(data) if data.startswith(b"\x1f\x8b") else data
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     builder = ET.TreeBuilder()
@@ -52,7 +54,13 @@ def parse_xml(data: bytes) -> Document:
             names[name] = "{" + name if "}" in name else name
         return names[name]
 
+    elements = 0
+
     def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal elements
+        elements += 1
+        if elements > _MOST_ELEMENTS:
+            raise Error(f"{line()}: the document has more than {_MOST_ELEMENTS} elements")
         builder.start(full(tag), {full(name): value for name, value in attributes.items()})
 
     def entity(name, is_parameter, value, _base, system_id, _public_id, _notation) -> None:
@@ -93,3 +101,17 @@ def parse_xml(data: bytes) -> Document:
             raise
         raise Error(f"this is not XML that can be read: {error}") from None
     return Document(builder.close(), instructions, comments)
+
+
+def _unpacked(data: bytes) -> bytes:
+    """What a compressed file (SVGZ) holds."""
+    unpacking = zlib.decompressobj(wbits=31)
+    try:
+        plain = unpacking.decompress(data, _LARGEST_UNPACKED + 1)
+    except zlib.error:
+        raise Error("the file is compressed (SVGZ), but what it holds is damaged") from None
+    if len(plain) > _LARGEST_UNPACKED:
+        raise Error(f"the file is compressed (SVGZ) and unpacks to more than {_LARGEST_UNPACKED} bytes")
+    if not unpacking.eof:
+        raise Error("the file is compressed (SVGZ) and cut short")
+    return plain

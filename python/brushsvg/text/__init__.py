@@ -20,20 +20,20 @@ def text_svg(
     font: bytes,
     *,
     size_mm: float = 20.0,
-    width_mm: float = 1.0,
+    width_mm: float | None = None,
     sheet_mm: tuple[float, float] | None = None,
     line_spacing: float = 1.4,
 ) -> tuple[str, list[Notice]]:
     """The SVG document of a text and what was noticed while setting it.
 
-    font: what a font file holds, an SVG font (its lines are stroked with width_mm) or TrueType or OpenType
+    font: what a font file holds, an SVG font (its lines are stroked with width_mm, 1 if None) or TrueType or OpenType
     (outlines, filled); size_mm: its em; sheet_mm: (w, h), None for the ink and 20 mm around it;
     line_spacing: from line to line, in ems. A newline starts a line; lines begin at the same x.
 
     Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
     """
     _in_range("size", size_mm, 1000, " mm")
-    _in_range("width", width_mm, 1000, " mm")
+    _in_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
     _in_range("line spacing", line_spacing, 100)
     for side_mm in sheet_mm or ():
         _in_range("a side of the sheet", side_mm, 1e6, " mm")
@@ -52,7 +52,10 @@ def text_svg(
     if not any(setting.lines):
         said = "; ".join(notice.sentence for notice in notices if notice.where != "font")
         raise Error("the text leaves nothing to paint" + (f": {said}" if said else ""), "text")
-    stroke_mm = 0.0 if setting.filled else width_mm
+    if setting.filled and width_mm is not None:
+        sentence = f"the width {width_mm:g} mm has no effect: the font has outlines, not single lines"
+        notices.append(Notice("font", sentence))
+    stroke_mm = 0.0 if setting.filled else width_mm or 1.0
     return document(setting, text, line_spacing * size_mm, stroke_mm, sheet_mm), notices
 
 

@@ -1,0 +1,18 @@
+from brushsvg.fold import MOST_ALIKE, folded
+
+
+def test_few_of_a_kind_stay_as_they_are():
+    told = [(f"p{k}", f"width {k} mm is odd") for k in range(MOST_ALIKE)] + [("q", "it is dashed")]
+    assert folded(told) == told
+
+
+def test_many_of_a_kind_are_counted_where_the_first_of_them_stood():
+    told = [("a", "one thing")]
+    told += [(f"p{k}", f"'p{k}' is 1.{k}e-0{k} mm off, x -{k}, range [0, {k}]") for k in range(5)]
+    told[3:3] = [("b", "another thing")]
+    assert folded(told) == [
+        ("a", "one thing"),
+        ("p0 and 4 like it", "'p0' is 1.0e-00 mm off, x -0, range [0, 0]"),
+        ("b", "another thing"),
+    ]
+    assert folded([]) == []

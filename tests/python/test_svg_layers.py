@@ -1,0 +1,114 @@
+"""Layers as Inkscape, Illustrator, CorelDRAW, Affinity and Figma write them, and --layer among them."""
+
+import pytest
+from svg_text import HEAD, read
+
+from brushsvg import Error
+from brushsvg.importers import ReadOptions
+from brushsvg.importers.svg import read_svg
+from brushsvg.layout import Layout, arrange
+
+A, B = '<path id="a" d="M1 1H9"/>', '<path id="b" d="M1 5H9"/>'
+
+
+def layers(body):
+    return {element.id: element.layer for element in read(body).elements}
+
+
+def why_not(body, name):
+    with pytest.raises(Error) as refused:
+        arrange(read(body), Layout(layers=(name,)))
+    return str(refused.value)
+
+
+def test_inkscapes_layers_win_over_groups_with_names():
+    marked = 'inkscape:groupmode="layer" inkscape:label="Ink"'
+    assert layers(f'<g id="g1">{A}</g><g id="g2"><g {marked}>{B}</g></g>') == {"a": "", "b": "Ink"}
+
+
+@pytest.mark.parametrize(
+    ("group", "name"),
+    [
+        ('id="Layer_x0020_1"', "Layer 1"),  # CorelDRAW
+        ('id="Ink_x20__x26__x20_paper"', "Ink & paper"),  # Illustrator
+        ('id="Layer_2" data-name="Fine lines"', "Fine lines"),  # Illustrator's export
+        ('id="Layer1" serif:id="Layer 1" xmlns:serif="http://www.serif.com/"', "Layer 1"),  # Affinity
+        ('id="figure_1"', "figure_1"),  # matplotlib
+        ('id="snake_xyz_case_x1_"', "snake_xyz_case_x1_"),
+        ('id="bell_x07_"', "bell_x07_"),
+    ],
+)
+def test_the_outermost_groups_with_names_are_layers(group, name):
+    body = f'<g><g {group}><g id="inner">{A}</g></g></g>{B}'
+    assert layers(body) == {"a": name, "b": ""}
+    assert [element.id for element in arrange(read(body), Layout(layers=(name,))).elements] == ["a"]
+
+
+def test_a_group_around_all_is_a_page_with_layers():
+    body = f'<title>t</title><defs/><switch><g id="Page"><g id="One">{A}</g><g id="Two">{B}</g></g></switch>'
+    assert layers(body) == {"a": "Page/One", "b": "Page/Two"}
+    assert layers(f'<g id="Page"><g id="One">{A}</g>{B}</g>') == {"a": "Page/One", "b": "Page"}
+    assert layers(f'<rect id="board" width="9" height="9"/><g id="Top"><g id="One">{A}</g></g>')["a"] == "Top"
+
+
+def test_a_name_before_a_stroke_of_a_name_holds_all_of_them():
+    body = f'<g id="Icon/one">{A}</g><g id="Icon/two">{B}</g>'
+    assert [element.id for element in arrange(read(body), Layout(layers=("Icon",))).elements] == ["a", "b"]
+
+
+def test_a_layer_goes_by_its_end_capitals_and_underscores_aside_unless_two_are_meant():
+    body = f'<g id="Page"><g id="Ink_one"><g id="Fine">{A}</g></g><g id="Two">{B}</g></g>'
+    for name in ("Page/Ink_one", "Ink_one", "ink one", "page/ink one"):
+        assert [element.id for element in arrange(read(body), Layout(layers=(name,))).elements] == ["a"]
+    marked = 'inkscape:groupmode="layer" inkscape:label'
+    body = f'<g {marked}="X"><g {marked}="Fine">{A}</g></g><g {marked}="Y"><g {marked}="Fine">{B}</g></g>'
+    assert why_not(body, "Fine") == "'Fine' names 2 layers: 'X/Fine', 'Y/Fine'; write the whole name"
+    assert [element.id for element in arrange(read(body), Layout(layers=("Y/Fine",))).elements] == ["b"]
+
+
+def test_why_a_layer_is_not_painted():
+    marked = 'inkscape:groupmode="layer" inkscape:label'
+    body = (
+        f'{A}<g {marked}="Off" style="display:none">{B}<g {marked}="In">{B}</g></g><g {marked}="Faint" '
+        f'visibility="hidden">{B}</g><g {marked}="Bad"><path id="c" d="x"/></g><g {marked}="Empty"/>'
+    )
+    for name in ("Off", "Off/In", "In", "Faint"):
+        assert why_not(body, name).endswith("cannot be painted: it is hidden in the drawing")
+    assert why_not(body, "Bad").startswith("layer 'Bad' has nothing to paint: c: d is damaged at character 1")
+    assert why_not(body, "Empty") == "layer 'Empty' has nothing to paint"
+    assert why_not(body, "New") == "there is no layer 'New'; there are: Off, Off/In, Faint, Bad, Empty"
+
+
+def test_layers_without_end_are_bounded_in_length():
+    depth = 3000
+    body = '<g inkscape:groupmode="layer" inkscape:label="layer">' * depth + A + "</g>" * depth
+    (element,) = read(body).elements
+    assert len(element.layer) == 599
+
+
+def test_nothing_to_paint_names_every_reason():
+    body = (
+        '<text id="t">x</text><text>y</text><g display="none"/><path d="M0 0H1" data-brushsvg-skip="yes"/>'
+        '<image/><path id="p" d="M0 0"/>'
+    )
+    with pytest.raises(Error) as refused:
+        read(body)
+    assert str(refused.value) == (
+        "the drawing holds nothing to paint: 2 times: text is not read: turn it into paths first, for example with "
+        "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg; image 1: image is not read: left out; "
+        "p: a moveto without a line to follow: skipped; and 2 more reasons"
+    )
+    with pytest.raises(Error, match=r"nothing to paint: 2 elements are hidden$"):
+        read('<g display="none"/><path d="M0 0H1" visibility="hidden"/>')
+
+
+def test_lengths_in_the_size_of_the_font():
+    px = 25.4 / 96
+    svg = HEAD.replace('width="100mm" height="50mm" viewBox="0 0 100 50"', 'width="400" height="200"')
+    body = (
+        '<g font-size="10"><path id="a" d="M0 0H5" stroke-width=".2em"/><g font-size="150%" stroke-width=".4ex">'
+        '<path d="M0 0H9"/><line style="font-size:2em" x2="1em" y2="1rem"/></g></g>'
+    )
+    one, two, three = read_svg(f"{svg}{body}</svg>".encode(), ReadOptions()).elements
+    assert [e.stroke_width_mm / px for e in (one, two, three)] == pytest.approx([2, 3, 3])
+    assert (three.subpaths[0].cubics[0, 3] / px).tolist() == pytest.approx([30, 200 - 16])
