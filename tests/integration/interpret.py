@@ -1,8 +1,9 @@
 """Reads a program with LinuxCNC's own interpreter and prints what the machine would do, as JSON.
 
 Run with the system's Python, which has LinuxCNC's module gcode: python3 interpret.py PROGRAM PARAMETERS
-Events: ["comment", text], ["rapid", x, y, z], ["feed", x, y, z, mm/min], ["other", name] for what is neither
-geometry nor harmless; mm. Exit status 1 and LinuxCNC's sentence on stderr when it refuses the program.
+Events: ["comment", text], ["rapid", x, y, z], ["feed", x, y, z, mm/min], ["arc", x, y, z, mm/min, centre x, centre y,
+turns] (turns > 0 counter-clockwise), ["other", name] for what is neither geometry nor harmless; mm.
+Exit status 1 and LinuxCNC's sentence on stderr when it refuses the program.
 """
 
 import json
@@ -32,6 +33,11 @@ class Canon:
 
     def straight_feed(self, x, y, z, *turned):
         self.events.append(["feed", x * MM, y * MM, z * MM, self.feed_mm_min])
+        self._no_other_axes(turned)
+
+    def arc_feed(self, x, y, centre_x, centre_y, turns, z, *turned):
+        centre = [centre_x * MM, centre_y * MM, turns]
+        self.events.append(["arc", x * MM, y * MM, z * MM, self.feed_mm_min, *centre])
         self._no_other_axes(turned)
 
     def _no_other_axes(self, turned):

@@ -1,11 +1,13 @@
 """What LinuxCNC makes of our programs: the plan, pose by pose, and never too fast or too low."""
 
 import json
+import math
 import re
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command import brush_file, brushsvg
 from drawings import SOURCES
@@ -69,8 +71,12 @@ def canonical(program, tmp_path):
             x, y, z, *turned = map(float, words.split(","))
             assert not any(turned), line
             events.append(["rapid", x, y, z] if name == "STRAIGHT_TRAVERSE" else ["feed", x, y, z, feed])
+        elif name == "ARC_FEED":
+            x, y, centre_x, centre_y, turns, z, *turned = map(float, words.split(","))
+            assert not any(turned), line
+            events.append(["arc", x, y, z, feed, centre_x, centre_y, turns])
         else:
-            assert not re.search("ARC|NURBS|PROBE|TAP|DWELL|START_SPINDLE|TOOL", name), line
+            assert not re.search("NURBS|PROBE|TAP|DWELL|START_SPINDLE|TOOL", name), line
     return in_sections(events)
 
 
@@ -85,13 +91,35 @@ def check_points(before, sections, passes):
         assert section.stroke == wanted["stroke"]
         poses = wanted["poses_mm"]
         (x0, y0, _), (x1, y1, _) = poses[0], poses[-1]
-        kinds = [event[0] for event in section.events]
-        assert kinds == ["rapid", *["feed"] * (len(poses) + 2), "rapid"]
         clearance = section.events[1][3]
         assert 0 < clearance < safe
-        points = [(x0, y0, safe), (x0, y0, clearance), *poses, (x1, y1, clearance), (x1, y1, safe)]
-        for event, point in zip(section.events, points, strict=True):
+        arcs = {last: (first, *circle) for first, last, *circle in wanted.get("arcs", ())}
+        on_an_arc = {k for last, (first, *_) in arcs.items() for k in range(first + 1, last)}
+        painted = [
+            ("arc" if k in arcs else "feed", pose) for k, pose in enumerate(poses) if k not in on_an_arc
+        ]
+        meant = [
+            *(("rapid", (x0, y0, safe)), ("feed", (x0, y0, clearance))),
+            *painted,
+            *(("feed", (x1, y1, clearance)), ("rapid", (x1, y1, safe))),
+        ]
+        assert [event[0] for event in section.events] == [kind for kind, _ in meant]
+        for event, (_, point) in zip(section.events, meant, strict=True):
             assert event[1:4] == pytest.approx(point, abs=NEAR_MM, rel=0)
+        circles = [event for event in section.events if event[0] == "arc"]
+        for event, (last, (first, x, y, turn)) in zip(circles, sorted(arcs.items()), strict=True):
+            check_circle(event, np.array(poses[first : last + 1]), (x, y), turn)
+
+
+def check_circle(event, poses, centre, turn):
+    """The circle that is run passes all of the arc's poses, in the arc's direction, and goes once round at most."""
+    *_, x, y, turns = event
+    assert (x, y) == pytest.approx(centre, abs=NEAR_MM)
+    assert turns == turn, "less than a whole turn, in the arc's direction"
+    radius = math.hypot(event[1] - x, event[2] - y)
+    assert np.hypot(poses[:, 0] - x, poses[:, 1] - y) == pytest.approx(radius, abs=3 * NEAR_MM)
+    angles = np.unwrap(np.arctan2(poses[:, 1] - y, poses[:, 0] - x)) * turn
+    assert (np.diff(angles) > 0).all() and angles[-1] - angles[0] < 2 * np.pi
 
 
 def check_rapids(before, sections):
@@ -99,7 +127,7 @@ def check_rapids(before, sections):
     here = [0.0, 0.0, before[0][3]]
     safe = before[0][3]
     for event in (event for section in sections for event in section.events):
-        assert event[0] in ("rapid", "feed"), event
+        assert event[0] in ("rapid", "feed", "arc"), event
         there = event[1:4]
         if event[0] == "rapid":
             assert there[2] == pytest.approx(safe)
@@ -111,11 +139,11 @@ def check_rapids(before, sections):
 def check_feeds(sections, passes, limit_mm_s):
     """No feed faster than the brush endures; each stroke painted at its own speed."""
     for section, wanted in zip(sections, passes, strict=True):
-        feeds = [event[4] for event in section.events if event[0] == "feed"]
+        feeds = [event[4] for event in section.events if event[0] != "rapid"]
         assert min(feeds) > 0
         assert max(feeds) <= 60 * limit_mm_s + 1e-6
         speed = 60 * wanted["speed_mm_s"]
-        at = [event[1:4] for event in section.events if event[0] == "feed"]
+        at = [event[1:4] for event in section.events if event[0] != "rapid"]
         steps = list(zip(feeds[2:-1], at[1:], at[2:], strict=False))
         moving = [feed for feed, here, there in steps if here[:2] != there[:2]]
         pressing = [feed for feed, here, there in steps if here[:2] == there[:2] and here[2] != there[2]]
@@ -250,6 +278,11 @@ TAMPERED = {
     "a rapid down to the paper": (lambda text: re.sub(r"(?m)^G1 (.*Z0\.0000)", r"G0 \1", text), "rapids"),
     "low travel": (lambda text: re.sub(r"(?m)^(G0 X.* Z)10\.0", r"\g<1>2.0", text), "rapids"),
     "painting too fast": (lambda text: text.replace("F1200", "F1600"), "feeds"),
+    "a circle the other way round": (lambda text: re.sub("(?m)^G3 ", "G2 ", text, count=1), "points"),
+    "a circle about another centre": (
+        lambda text: re.sub(r"(G3 .* I)(-?)(\d)", r"\1\g<2>1\3", text, count=1),
+        "points",
+    ),
     "pressing too fast": (lambda text: text.replace("F480", "F1400"), "feeds"),
 }
 
@@ -257,7 +290,8 @@ TAMPERED = {
 @pytest.mark.parametrize("change", TAMPERED)
 def test_the_checks_see_a_wrong_program(change, converted, tmp_path):
     """So that what LinuxCNC accepts and is yet wrong is found."""
-    folder = converted("robot")
+    source, flags = WAYS["constant lag"] if "circle" in change else ("robot", ())
+    folder = converted(source, *flags)
     edit, check = TAMPERED[change]
     text = (folder / "program.ngc").read_text(encoding="ascii")
     assert edit(text) != text
