@@ -235,13 +235,19 @@ FAULTS = {
     "a comma as decimal mark": lambda text: re.sub(r"X(\d+)\.(\d+)", r"X\1,\2", text, count=1),
     "an open comment": lambda text: text.replace(")", "", 1),
     "no end": lambda text: text.replace("M2", ""),
+    "a circle about another centre": lambda text: re.sub(r"(G3 .* I)(-?)(\d)", r"\1\g<2>1\3", text, count=1),
 }
+
+
+def program_for(change, converted):
+    source, flags = WAYS["constant lag"] if "circle" in change else ("robot", ())
+    return converted(source, *flags)
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_linuxcnc_refuses_a_broken_program(fault, converted, tmp_path):
     """So that the acceptance above says something."""
-    text = (converted("robot") / "program.ngc").read_text(encoding="ascii")
+    text = (program_for(fault, converted) / "program.ngc").read_text(encoding="ascii")
     broken = FAULTS[fault](text)
     assert broken != text
     (tmp_path / "broken.ngc").write_text(broken)
@@ -279,10 +285,6 @@ TAMPERED = {
     "low travel": (lambda text: re.sub(r"(?m)^(G0 X.* Z)10\.0", r"\g<1>2.0", text), "rapids"),
     "painting too fast": (lambda text: text.replace("F1200", "F1600"), "feeds"),
     "a circle the other way round": (lambda text: re.sub("(?m)^G3 ", "G2 ", text, count=1), "points"),
-    "a circle about another centre": (
-        lambda text: re.sub(r"(G3 .* I)(-?)(\d)", r"\1\g<2>1\3", text, count=1),
-        "points",
-    ),
     "pressing too fast": (lambda text: text.replace("F480", "F1400"), "feeds"),
 }
 
@@ -290,8 +292,7 @@ TAMPERED = {
 @pytest.mark.parametrize("change", TAMPERED)
 def test_the_checks_see_a_wrong_program(change, converted, tmp_path):
     """So that what LinuxCNC accepts and is yet wrong is found."""
-    source, flags = WAYS["constant lag"] if "circle" in change else ("robot", ())
-    folder = converted(source, *flags)
+    folder = program_for(change, converted)
     edit, check = TAMPERED[change]
     text = (folder / "program.ngc").read_text(encoding="ascii")
     assert edit(text) != text
