@@ -12,6 +12,9 @@ import pytest
 from command import brush_file, brushsvg
 from drawings import SOURCES
 
+from brushsvg import _core
+from brushsvg.brushes import find_brush
+
 INTERPRET = Path(__file__).with_name("interpret.py")
 NEAR_MM = 1e-3
 WAYS = {
@@ -192,6 +195,38 @@ def test_a_plan_gives_the_same_moves_as_its_drawing(source, converted, tmp_path)
     folder = converted(source)
     brushsvg("convert", folder / "plan.json", tmp_path / "by_plan.ngc", cwd=tmp_path, status=0)
     check_points(*interpreted(tmp_path / "by_plan.ngc", tmp_path), passes_in(folder))
+
+
+def simulated(poses_of_passes, brush):
+    plan = _core.Plan(
+        brush.name, "", (1000.0, 1000.0), [_core.Pass("s", poses, 20.0) for poses in poses_of_passes]
+    )
+    marks = _core.simulate(plan, brush)
+    _core.trace_outlines(marks, brush)
+    return marks.outline_mm
+
+
+def run_poses(section):
+    """What the machine passes on the paper, circles in steps of a hundredth of a turn."""
+    poses = []
+    for kind, x, y, z, *rest in section.events:
+        if kind == "arc":
+            _, centre_x, centre_y, turns = rest
+            first = math.atan2(poses[-1][1] - centre_y, poses[-1][0] - centre_x)
+            last = math.atan2(y - centre_y, x - centre_x)
+            sweep = (last - first) * turns % (2 * math.pi) * turns
+            radius = math.hypot(x - centre_x, y - centre_y)
+            for angle in first + sweep * np.linspace(0, 1, 100)[1:-1]:
+                poses.append([centre_x + radius * math.cos(angle), centre_y + radius * math.sin(angle), z])
+        poses.append([x, y, z])
+    return np.array([pose for pose in poses if pose[2] <= 1e-6])
+
+
+def test_the_marks_are_the_plans(way, made, tmp_path):
+    brush = find_brush(BRUSHES.get(way, "round-6"))
+    _, sections = interpreted(made / "program.ngc", tmp_path)
+    planned = simulated([np.array(each["poses_mm"]) for each in passes_in(made)], brush)
+    assert _core.overlap(simulated(map(run_poses, sections), brush), planned) > 0.999
 
 
 def test_text_is_plain(made):

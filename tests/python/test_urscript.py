@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from urscript_stub import matrix, run
 
+from brushsvg import _core, convert, machine
+from brushsvg.brushes import find_brush
 from brushsvg.cell import Paper, Reload, Station, robot_from_paper
 from brushsvg.cell_file import find_cell
 from brushsvg.frame import moved
@@ -43,8 +45,8 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), **job):
     return "".join(text_of(POSTS["urscript"], made))
 
 
-def touched(robot, cell):
-    """Poses below the clearance in the paper's frame [mm], with name, speed [mm/s] and blend [mm] of each."""
+def rows_of(robot, cell):
+    """(name, point in the paper's frame [mm], speed [mm/s], blend [mm]) of every point it goes to."""
     paper_from_robot = np.linalg.inv(robot_from_paper(cell))
     rows = []
     for name, *rest in robot.events:
@@ -54,7 +56,15 @@ def touched(robot, cell):
         for pose in poses:
             point = moved(paper_from_robot, 1e3 * np.array([pose[:3]]))[0]
             rows.append((name, point, 1e3 * speed, 1e3 * blend))
-    return [row for row in rows if row[1][2] < cell.heights.clearance_mm - 1e-6]
+    return rows
+
+
+def touched(robot, cell):
+    """Those below the clearance."""
+    return [row for row in rows_of(robot, cell) if row[1][2] < cell.heights.clearance_mm - 1e-6]
+
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "vincent.svg"
 
 
 @pytest.mark.parametrize("paper", [CELL.paper, Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0))])
@@ -73,6 +83,28 @@ def test_the_robot_goes_through_the_plans_poses(paper):
     assert np.array([row[1] for row in rows]) == pytest.approx(np.array(wanted), abs=1e-3)
     assert [row[0] for row in rows].count("movec") == 2
     assert max(row[2] for row in rows) <= 20.0 + 1e-9
+
+
+def test_the_marks_are_the_plans():
+    brush = find_brush("round-6")
+    work = convert.prepare(EXAMPLE)
+    cell = machine.as_exact_as(CELL, 0.05)
+    cell = replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
+    robot = run("".join(machine.encode(".script", work.plan, brush, "v", (), cell)))
+    passes, here = [], []
+    for _, point, _, _ in rows_of(robot, cell):
+        if point[2] > 1e-6 and here:
+            passes.append(here)
+            here = []
+        elif point[2] <= 1e-6:
+            here.append(point)
+    rings = []
+    for poses in ([a_pass.poses_mm for a_pass in work.plan.passes], [np.array(each) for each in passes]):
+        plan = _core.Plan("round-6", "", (400.0, 400.0), [_core.Pass("s", each, 20.0) for each in poses])
+        marks = _core.simulate(plan, brush)
+        _core.trace_outlines(marks, brush)
+        rings.append(marks.outline_mm)
+    assert _core.overlap(*rings) > 0.999
 
 
 def test_the_brush_stands_on_the_papers_normal():

@@ -1,0 +1,149 @@
+"""Programs of random plans, cells and brushes: what is written is safe to run. Read by a reader of the tests' own."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import make_brush, random_poses
+from hypothesis import given
+from hypothesis import strategies as st
+
+from brushsvg import _core, machine
+from brushsvg.cell import Heights, Paper, Reload, Station, robot_from_paper
+from brushsvg.cell_file import find_cell
+from brushsvg.errors import Error
+from brushsvg.posts import POSTS
+from brushsvg.program import Job
+
+LANGUAGES = {"linuxcnc-3axis": ".ngc", "grbl-3axis": ".ngc", "grbl-servo": ".ngc", "ur5e": ".script"}
+SHEET = (400.0, 400.0)
+
+
+def random_cell(rng, name):
+    """A cell of a language with heights, speeds, paper and paint of its own."""
+    cell = find_cell(name)
+    safe = rng.uniform(6, 20)
+    if name == "grbl-servo":
+        cell = replace(cell, servo=replace(cell.servo, table=((-12.0, 100.0), (0.0, 500.0), (25.0, 900.0))))
+    lowest = -rng.uniform(5, 10)
+    cell = replace(cell, heights=Heights(safe, rng.uniform(0.5, 3), lowest))
+    cell = replace(
+        cell, speeds=replace(cell.speeds, press_mm_s=rng.uniform(2, 30), approach_mm_s=rng.uniform(5, 60))
+    )
+    if name != "grbl-servo":  # whose values know no paper that leans
+        paper = Paper(
+            tuple(rng.uniform(-300, 300, 3)),
+            (*rng.uniform(-1, 1, 2) * rng.integers(0, 2), rng.uniform(0, 360)),
+        )
+        cell = replace(cell, paper=paper)
+    cell = replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=(), margin_mm=60.0))
+    if rng.random() < 0.6:
+        ink = Station(
+            "ink", (-20.0, 30.0), ("#000000",), surface_mm=-1.0, depth_mm=3.0, rim_mm=1.0, hold_s=0.3
+        )
+        wiped = Station(
+            "red",
+            (-20.0, 60.0),
+            surface_mm=0.0,
+            depth_mm=2.0,
+            wipe_mm=((-15.0, 60.0, 2.0), (-10.0, 60.0, 2.0)),
+        )
+        when = str(rng.choice(["length", "stroke", "layer"]))
+        cell = replace(cell, reload=Reload(when, float(rng.uniform(40, 200)), 4.0), stations=(ink, wiped))
+    return cell
+
+
+def random_plan(rng, brush, lowest):
+    passes = []
+    for number in range(rng.integers(1, 5)):
+        poses = random_poses(rng, rng.integers(2, 12), deepest=0.95 * -lowest)
+        poses[:, :2] += np.array(SHEET) / 2 - poses[:, :2].mean(axis=0)
+        colour = str(rng.choice(["#000000", "#ff0000"]))
+        speed = float(rng.uniform(1, brush.max_speed_mm_s))
+        passes.append(_core.Pass(f"s{number}(\u00e9)", poses, speed, str(rng.choice(["a", "b"])), colour))
+    return _core.Plan(brush.name, "", SHEET, passes)
+
+
+def gcode_moves(text, cell):
+    """(rapid, point, mm/s, in a visit) of every move; circles as their ends."""
+    at, feed, visit, word = [np.nan] * 3, 0.0, False, ""
+    table = np.array(sorted(cell.servo.table, key=lambda row: row[1])) if cell.servo else None
+    for line in text.splitlines():
+        if line.startswith("("):
+            visit = line.startswith("(paint")
+            continue
+        words = re.findall(r"([A-Z])(-?\d+(?:\.\d+)?)", line)
+        values = {letter: float(value) for letter, value in words if letter != "G"}
+        feed = values.get("F", feed) if "F" in values else feed
+        codes = [value for letter, value in words if letter == "G"]
+        if codes and codes[0] in ("0", "1", "2", "3"):
+            word = codes[0]
+        moves = {"X", "Y", "Z", "S"} & set(values)
+        if "S" in values:
+            height = float(np.interp(values["S"], table[:, 1], table[:, 0]))
+            yield word == "0" and "X" in values, (at[0], at[1], height), feed / 60, visit
+            at[2] = height
+        for k, axis in enumerate("XYZ"):
+            at[k] = values.get(axis, at[k])
+        if moves:
+            yield bool(codes) and word == "0", tuple(at), feed / 60, visit
+
+
+def urscript_moves(text):
+    visit = False
+    for line in text.splitlines():
+        if line.startswith("  # "):
+            visit = line.startswith("  # paint")
+        speed = re.search(r"v=([\d.]+)", line)
+        for point in re.findall(r"on_paper\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)", line):
+            yield False, tuple(1e3 * float(value) for value in point), 1e3 * float(speed[1]), visit
+
+
+def in_paper_frame(moves, cell, name, z_offset):
+    back = np.eye(4) if name == "ur5e" else np.linalg.inv(robot_from_paper(cell, z_offset))
+    for rapid, point, speed, visit in moves:
+        yield rapid, back[:3, :3] @ np.array(point) + back[:3, 3], speed, visit
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_whatever_is_written_is_safe(name, seed):
+    rng = np.random.default_rng(seed)
+    cell, brush = random_cell(rng, name), make_brush(name="made")
+    brush.max_speed_mm_s = float(rng.uniform(3, 40))
+    plan = random_plan(rng, brush, cell.heights.lowest_mm)
+    z_offset = float(rng.choice([0.0, 0.7]))
+    job = Job(z_offset, int(rng.integers(1, len(plan.passes) + 1)))
+    try:
+        text = "".join(machine.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
+    except Error as refusal:
+        assert len(str(refusal)) > 20 and "mm" in str(refusal)
+        return
+    again = "".join(machine.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
+    assert text == again and text.isascii() and "\r" not in text and text.endswith("\n")
+    code = re.sub(r"\(.*\)|#.*", "", text) if name != "ur5e" else text
+    assert not re.search(r"\d[eE][-+]?\d|nan|inf\b|-0\.0+(?![\d])", code)
+    moves = gcode_moves(text, cell) if name != "ur5e" else urscript_moves(text)
+    slack = 0.15 if name == "grbl-servo" else 2e-3
+    fastest = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s)
+    # what leans and is rounded in the robot's frame is off by as much in the paper's
+    last = None
+    for rapid, point, speed, visit in in_paper_frame(moves, cell, name, z_offset):
+        assert np.isnan(point[2]) or point[2] >= cell.heights.lowest_mm - slack
+        low = point[2] if last is None else min(point[2], last[2])
+        sideways = last is not None and np.abs(point[:2] - last[:2]).max() > slack
+        if low < cell.heights.safe_mm - slack:
+            straight_up = rapid and point[2] > low and not sideways
+            assert not rapid or straight_up, "fast only at safe height, or straight up to it"
+            if sideways and not visit:
+                assert low <= slack and point[2] <= slack, "sideways below the safe height only on the paper"
+        if low <= slack and not rapid:
+            assert speed <= fastest + 0.01
+        if not np.isnan(point).any():
+            assert (point[:2] > -61).all() and (point[:2] < SHEET[0] + 61).all()
+        last = point
+
+
+def test_every_language_is_tried():
+    assert {find_cell(name).language for name in LANGUAGES} == set(POSTS)
