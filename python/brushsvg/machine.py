@@ -67,28 +67,52 @@ def shifted_by_blends(plan, brush, marks, cell: Cell, tolerance_mm: float) -> li
     """
     if not cell.blending.tolerance_mm:
         return []
-    paths = [np.asarray(a_pass.poses_mm) for a_pass in plan.passes]
-    paths = [blended(poses, blend_radii(poses, cell.blending)) for poses in paths]
-    cut = _core.Plan(
-        sheet_mm=plan.sheet_mm,
-        passes=[
-            _core.Pass(each.stroke, path, each.speed_mm_s)
-            for each, (path, _) in zip(plan.passes, paths, strict=True)
-        ],
-    )
-    run_marks = _core.simulate(cut, brush, for_outlines=False)
     found = []
-    for meant, run, (_, at) in zip(marks.passes, run_marks.passes, paths, strict=True):
-        shift_mm = _largest_shift_mm(meant, run, at, brush)
-        if shift_mm > tolerance_mm:
-            found.append(
-                (
-                    meant.stroke,
+    for first, last in _groups(plan.passes):
+        passes, traces = plan.passes[first:last], marks.passes[first:last]
+        paths = _as_run([np.asarray(a_pass.poses_mm) for a_pass in passes], cell)
+        cut = [
+            _core.Pass(each.stroke, path, each.speed_mm_s)
+            for each, (path, _) in zip(passes, paths, strict=True)
+        ]
+        run_marks = _core.simulate(_core.Plan(sheet_mm=plan.sheet_mm, passes=cut), brush, for_outlines=False)
+        for meant, run, (_, at) in zip(traces, run_marks.passes, paths, strict=True):
+            shift_mm = _largest_shift_mm(meant, run, at, brush)
+            if shift_mm > tolerance_mm:
+                sentence = (
                     f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
-                    f"mark by {shift_mm:.2f} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance",
+                    f"mark by {shift_mm:.2f} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance"
                 )
-            )
+                found.append((meant.stroke, sentence))
     return found
+
+
+POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
+
+
+def _groups(passes) -> Iterator[tuple[int, int]]:
+    """First and last of passes that are handled at once."""
+    first, poses = 0, 0
+    for number, a_pass in enumerate(passes):
+        if poses and poses + len(a_pass.poses_mm) > POSES_AT_ONCE:
+            yield first, number
+            first, poses = number, 0
+        poses += len(a_pass.poses_mm)
+    yield first, len(passes)
+
+
+def _as_run(paths: list[np.ndarray], cell: Cell) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Each path with its corners cut, and the pose that each of its points belongs to: see blended()."""
+    starts = np.cumsum([0, *map(len, paths)])
+    poses = np.vstack(paths)
+    radii = blend_radii(poses, cell.blending)
+    radii[starts[:-1]] = radii[starts[1:] - 1] = 0.0  # no path goes on in the next
+    cut, at = blended(poses, radii)
+    bounds = np.searchsorted(at, starts)
+    return [
+        (cut[first:last], at[first:last] - start)
+        for first, last, start in zip(bounds[:-1], bounds[1:], starts[:-1], strict=True)
+    ]
 
 
 def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
@@ -132,7 +156,7 @@ def encode(
     post = post_for(suffix, cell)
     plan = in_loads(plan, brush, cell)
     job = replace(job, visits=visits(plan, cell, job.first_stroke))
-    made = program(plan, brush, cell, (), job)
+    made = _held(program(plan, brush, cell, (), job), plan)
     count = len(plan.passes)
     header = (
         f"title: {title or 'untitled'}",
@@ -144,6 +168,14 @@ def encode(
         f"length: {sum(map(painted_mm, plan.passes[job.first_stroke - 1 :])):.0f} mm on the paper",
     )
     return text_of(post, replace(made, header=header))
+
+
+def _held(made: Program, plan) -> Program:
+    """The program with its sections made once, where that is little: they are walked for the time and for the text."""
+    if sum(len(a_pass.poses_mm) for a_pass in plan.passes) > POSES_AT_ONCE:
+        return made
+    sections = tuple(made.sections())
+    return replace(made, sections=lambda: iter(sections))
 
 
 def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:

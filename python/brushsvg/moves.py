@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -72,6 +73,8 @@ class Program:
 def in_robot_frame(program: Program) -> Program:
     """The same program with points in the robot's own frame; arcs on paper that leans become lines."""
     frame = program.robot_from_frame
+    if np.array_equal(frame, np.eye(4)):
+        return program
 
     def sections() -> Iterator[Section]:
         for section in program.sections():
@@ -114,6 +117,10 @@ def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
 
 def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
     """(n,) path [mm] from where the tool is (the first point, where that is not known) to each point of the move."""
+    if (
+        len(move.points_mm) == 1 and here is not None and move.arc is None
+    ):  # most moves by far: no arrays for them
+        return np.array([math.dist(here, move.points_mm[0])])
     path = np.vstack([move.points_mm[:1] if here is None else here[None], move.points_mm])
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     if move.arc is not None:
