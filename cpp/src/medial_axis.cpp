@@ -25,7 +25,7 @@ constexpr double kUnitsPerMm = 1e5;  // as region's: its rings are whole numbers
 constexpr double kLeastCorner = 0.02;
 // A corner that adds as much to the disc at a line's end is where the line ends, if no other adds half of it: the even
 // corners of a square end add 0.21 each.
-constexpr double kLeastEnd = 0.15;
+constexpr double kLeastEnd = 0.3, kEndStandsOut = 1.4;
 constexpr double kNothing = 10.0;  // units
 constexpr double kPi = 3.14159265358979323846;
 
@@ -330,7 +330,7 @@ class Branches {
             while (j < drops.size() && std::get<0>(drops[j]) == std::get<0>(drops[i])) ++j;
             const std::size_t p = std::get<0>(drops[i]);
             const double most = std::get<1>(drops[j - 1]), next = j - i > 1 ? std::get<1>(drops[j - 2]) : 0.0;
-            const bool stands_out = axis_.out[p].size() == j - i + 1 && most > kLeastEnd && most > 2.0 * next;
+            const bool stands_out = axis_.out[p].size() == j - i + 1 && most > kLeastEnd && most > kEndStandsOut * next;
             if (stands_out) is_end_[p] = true;
             kept.insert(kept.end(), drops.begin() + std::ptrdiff_t(i),
                         drops.begin() + std::ptrdiff_t(stands_out ? j - 1 : j));

@@ -72,6 +72,9 @@ def _beside(stroke, greatest: float) -> list:
     line = _core.flatten(stroke, _FLAT_MM)
     if line[-1, 2] == 0:
         return _round_about(stroke, line[0], greatest)
+    even_mm = np.linspace(0, line[-1, 2], min(int(4 * line[-1, 2] / greatest) + 8, 5000))
+    line = np.column_stack([np.interp(even_mm, line[:, 2], line[:, k]) for k in range(4)])
+    line[:, 3] = np.interp(even_mm / even_mm[-1], *np.array(stroke.half_width).T)
     wider = np.concatenate([[0], (line[:, 3] > greatest + 1e-9).astype(int), [0]])
     starts, ends = np.flatnonzero(np.diff(wider) == 1), np.flatnonzero(np.diff(wider) == -1)
     found = []

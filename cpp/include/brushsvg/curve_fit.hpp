@@ -15,11 +15,11 @@ struct FittedLine {
     std::vector<WidthKnot> half_width;
 };
 
-/// Few cubics with one tangent where they meet, no farther than the tolerance from the line's points, half width
-/// counted as a third coordinate; least squares, the parameters moved to the nearest points, split at the worst point
-/// (P. J. Schneider, "An Algorithm for Automatically Fitting Digitized Curves", Graphics Gems, 1990). The half widths
-/// are those of the cubics, as few knots as keep them to a quarter of the tolerance. closed: the last point is the
-/// first again, and the tangent goes through. A line without length gives one cubic that is a point.
+/// Few cubics with one tangent where they meet, no farther than the tolerance from the line's points: least squares,
+/// the parameters moved to the nearest points, split at the worst point (P. J. Schneider, "An Algorithm for
+/// Automatically Fitting Digitized Curves", Graphics Gems, 1990). Half widths: as few knots as keep all of them to the
+/// tolerance. closed: the last point is the first again, and the tangent goes through. A line without length gives one
+/// cubic that is a point.
 FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed);
 
 }  // namespace brushsvg

@@ -19,7 +19,8 @@ __all__ = ["OutlineStroke", "filled", "flattened", "outline_strokes"]
 
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
 # outline, more shows in the overlap.
-SMOOTHED = 0.06
+SMOOTHED = 0.03
+_ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
 
 @dataclass(frozen=True)
@@ -68,18 +69,18 @@ def _part(chain, found: Skeleton) -> list[np.ndarray]:
     rings = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
     for piece in chain:
         for line in piece.inside:
-            ends = line[[0, 0, -1, -1], :2]
-            rough = _core.Stroke(
-                middle_mm=ends.reshape(1, 8), half_width=[(0.0, line[0, 2]), (1.0, line[-1, 2])]
+            rings.append(
+                _core.convex_hull(
+                    np.vstack([line[0, :2] + line[0, 2] * _ROUND, line[-1, :2] + line[-1, 2] * _ROUND])
+                )
             )
-            rings += _core.wanted_outline(rough, 0.02)
     return _core.unite(rings)
 
 
 def _stroke(chain, wanted_mm) -> OutlineStroke:
     middles, knots, at_mm = [], [], 0.0
     for piece in chain:
-        line = _evenly(piece.line)
+        line = piece.line
         middle, widths = _core.fit_curve(line, max(SMOOTHED * float(line[:, 2].mean()), 1e-3), piece.closed)
         length_mm = _length_mm(middle)
         knots += [(at_mm + at * length_mm, half) for at, half in widths]
@@ -87,15 +88,6 @@ def _stroke(chain, wanted_mm) -> OutlineStroke:
         middles.append(middle)
     half_width = [(min(at / at_mm, 1.0) if at_mm > 0 else 0.0, half) for at, half in knots]
     return OutlineStroke(np.vstack(middles), half_width, len(chain) == 1 and chain[0].closed, wanted_mm)
-
-
-def _evenly(line: np.ndarray) -> np.ndarray:
-    """The line in even steps of a quarter of its half width: the fit weighs points, not lengths."""
-    steps = np.hypot(*np.diff(line[:, :2], axis=0).T)
-    at_mm = np.concatenate([[0.0], np.cumsum(steps)])
-    step_mm = max(0.25 * float(np.median(line[:, 2])), at_mm[-1] / 2000, 1e-4)
-    even_mm = np.linspace(0.0, at_mm[-1], max(int(at_mm[-1] / step_mm), 8) + 1)
-    return np.column_stack([np.interp(even_mm, at_mm, line[:, k]) for k in range(3)])
 
 
 def _length_mm(middle_mm: np.ndarray) -> float:

@@ -7,6 +7,7 @@ it meets another line, or at a corner.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -34,7 +35,7 @@ class Arm:
     mate: Arm | None = None
     other: Arm | None = None  # the same branch from its other end, None where that is free
 
-    @property
+    @cached_property
     def direction(self) -> np.ndarray:
         """Unit vector away from the crossing, where the arm leaves it."""
         start = self.line[self.out]
@@ -72,8 +73,7 @@ class Skeleton:
 
 @dataclass
 class Crossing:
-    nodes: list[int]
-    discs: np.ndarray  # (k, 3)
+    discs: np.ndarray  # (k, 3), of its nodes
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
 
@@ -108,42 +108,52 @@ def skeleton(rings: list[np.ndarray]) -> Skeleton:
     for arm in arms:
         if arm.branch not in used:
             pieces.append(_ring(arm, used, crossings))
+    for number, crossing in enumerate(crossings):
+        _give_away(number, crossing, pieces, lines)
     return Skeleton(pieces, crossings, nodes[degree == 0, :3], [branch.part for branch in branches])
+
+
+def _give_away(number: int, crossing: Crossing, pieces: list[Piece], lines: list[np.ndarray]) -> None:
+    """What lies inside of a crossing through which nothing runs goes to a line that ends there; if there is none, the
+    longest branch inside is one."""
+    if not crossing.inner or any(number in piece.through for piece in pieces):
+        return
+    found = next((piece for piece in pieces if number in piece.ends), None)
+    if found is None:
+        longest = max(crossing.inner, key=lambda branch: len(lines[branch]))
+        found = Piece(lines[longest], (None, None), [])
+        pieces.append(found)
+    found.branches.extend(crossing.inner)
 
 
 def _crossings(nodes, lines, ends, degree):
     """Nodes that lie within each other's discs, as one crossing; and all arms of all crossings."""
-    home = list(range(len(nodes)))
-
-    def root(k: int) -> int:
-        while home[k] != k:
-            home[k] = home[home[k]]
-            k = home[k]
-        return k
-
+    home = {k: [k] for k in range(len(nodes)) if degree[k] >= 2}
     inner = []
-    for number, (a, b) in enumerate(ends):
-        if degree[a] < 2 or degree[b] < 2:
+    lengths = [float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum()) for line in lines]
+    for number in np.argsort(lengths, kind="stable").tolist():
+        a, b = ends[number]
+        if a not in home or b not in home:
             continue
-        length = np.hypot(*np.diff(lines[number][:, :2], axis=0).T).sum()
-        if length < CROSSING_REACH * (nodes[a, 2] + nodes[b, 2]):
-            home[root(a)] = root(b)
-            inner.append(number)
+        reach = CROSSING_REACH * (nodes[a, 2] + nodes[b, 2])
+        if lengths[number] >= reach:
+            continue
+        if home[a] is not home[b]:
+            both = [*home[a], *home[b]]
+            if len(both) > 2 and np.hypot(*np.ptp(nodes[both, :2], axis=0)) > reach:
+                continue  # or a thick line with many hairs would be but one crossing
+            home |= dict.fromkeys(both, both)
+        inner.append(number)
     crossings: list[Crossing] = []
     number_of: dict[int, int] = {}
-    for k in range(len(nodes)):
-        if degree[k] >= 2:
-            r = root(k)
-            if r not in number_of:
-                number_of[r] = len(crossings)
-                crossings.append(Crossing([], np.zeros((0, 3))))
-            crossings[number_of[r]].nodes.append(k)
-    for crossing in crossings:
-        crossing.discs = nodes[crossing.nodes, :3]
+    for k, members in home.items():
+        if k == members[0]:
+            number_of |= dict.fromkeys(members, len(crossings))
+            crossings.append(Crossing(nodes[members, :3]))
     arms = []
     for number, (a, b) in enumerate(ends):
         if number in inner:
-            crossings[number_of[root(a)]].inner.append(number)
+            crossings[number_of[a]].inner.append(number)
             continue
         if a == b and degree[a] == 2:
             continue  # a ring that meets nothing
@@ -151,7 +161,7 @@ def _crossings(nodes, lines, ends, degree):
         for side, node in enumerate((a, b)):
             if degree[node] < 2:
                 continue
-            c = number_of[root(node)]
+            c = number_of[node]
             line = lines[number] if side == 0 else lines[number][::-1]
             discs = crossings[c].discs
             off = np.hypot(line[:, None, 0] - discs[None, :, 0], line[:, None, 1] - discs[None, :, 1])
