@@ -37,6 +37,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .convert import write_program
     from .errors import Error
     from .importers import ReadOptions, read_drawing
+    from .reach import within_reach
     from .render import marks_png, marks_svg
     from .strokes import strokes
     from .text import text_svg
@@ -52,6 +53,7 @@ _HOME = {
     "brush_names": "brushes",
     "find_brush": "brushes",
     "write_program": "convert",
+    "within_reach": "reach",
     "marks_png": "render",
     "marks_svg": "render",
 } | dict.fromkeys(
@@ -107,6 +109,7 @@ __all__ = [
     "trace_outlines",
     "unite",
     "wanted_outline",
+    "within_reach",
     "write_marks",
     "write_plan",
     "write_program",

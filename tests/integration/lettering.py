@@ -14,10 +14,10 @@ from brushsvg.text import text_svg
 
 PACKAGES = {
     "hanzi-writer-data": "2.0.1",
-    "@fontsource/open-sans": "5.2.7",
-    "@fontsource/lora": "5.2.8",
-    "@fontsource/kaushan-script": "5.2.8",
-    "@fontsource/caveat-brush": "5.2.8",
+    "@fontsource/open-sans": "5.3.0",
+    "@fontsource/lora": "5.3.0",
+    "@fontsource/kaushan-script": "5.3.0",
+    "@fontsource/caveat-brush": "5.3.0",
 }
 FONTS = {"sans": "open-sans", "serif": "lora", "script": "kaushan-script", "brush": "caveat-brush"}
 CHARACTER_MM = 100.0

@@ -87,6 +87,14 @@ def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
     assert _core.overlap(shape, filled(outline)) > 0.999, "the parts make up the shape"
 
 
+def test_pointed_tips_can_be_painted():
+    made = painted(path("M10 20L60 24L10 28Z"))
+    assert 0 < min(half for _, half in made[0].half_width) < 0.1
+    from brushsvg import find_brush
+
+    assert _core.compensate(made, find_brush("round-6"), (100, 50)).plan.passes
+
+
 def test_where_lines_cross_they_stay_straight_and_both_have_the_crossing():
     bar, stem = painted(path("M10 5H50V11H33V45H27V11H10Z"))
     line = _core.flatten(bar, 0.001)

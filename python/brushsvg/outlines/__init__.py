@@ -20,6 +20,7 @@ __all__ = ["OutlineStroke", "filled", "flattened", "outline_strokes"]
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
 # outline, more shows in the overlap.
 SMOOTHED = 0.03
+HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
 _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
 
@@ -86,7 +87,8 @@ def _stroke(chain, wanted_mm) -> OutlineStroke:
         knots += [(at_mm + at * length_mm, half) for at, half in widths]
         at_mm += length_mm
         middles.append(middle)
-    half_width = [(min(at / at_mm, 1.0) if at_mm > 0 else 0.0, half) for at, half in knots]
+    least = HAIR * max(half for _, half in knots)
+    half_width = [(min(at / at_mm, 1.0) if at_mm > 0 else 0.0, max(half, least)) for at, half in knots]
     return OutlineStroke(np.vstack(middles), half_width, len(chain) == 1 and chain[0].closed, wanted_mm)
 
 

@@ -11,9 +11,10 @@ from .skeleton import Piece, Skeleton
 # Lines run towards this direction: down, and to the right where they lie flatter than 30 degrees.
 TOWARDS = np.array([np.cos(np.radians(-60)), np.sin(np.radians(-60))])
 # Strokes are set down wide and lifted thin: what a taper counts for beside the direction.
-TAPER = 0.35
-# A piece shorter than this many half widths of its beginning has no direction of its own: a flick.
-FLICK = 7.0
+TAPER = 0.27
+# A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
+# of its own: a flick.
+FLICK, FLICK_SHARE = 7.0, 0.6
 
 
 def directed(piece: Piece) -> Piece:
@@ -63,10 +64,9 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
             continue
         (i, side_i), (j, side_j) = here
         if side_i == side_j:  # both begin or both end here
-            flicks = [_is_flick(chains[k]) for k in (i, j)]
-            if not any(flicks):
+            turned = _flick(chains, i, j)
+            if turned is None:
                 continue
-            turned = i if flicks[0] and not (flicks[1] and _longer(chains[i], chains[j])) else j
             chains[turned] = [reversed_(piece) for piece in reversed(chains[turned])]
             side_i = side_i if turned == j else 1 - side_i
         first, second = (i, j) if side_i == 1 else (j, i)
@@ -80,15 +80,14 @@ def _end(chain: list[Piece], side: int) -> int | None:
     return chain[0].ends[0] if side == 0 else chain[-1].ends[1]
 
 
-def _is_flick(chain: list[Piece]) -> bool:
-    if len(chain) > 1 or None not in chain[0].ends:
-        return False
-    line = chain[0].line
-    return length_mm(line) < FLICK * line[:, 2].max()
-
-
-def _longer(a: list[Piece], b: list[Piece]) -> bool:
-    return sum(length_mm(p.line) for p in a) > sum(length_mm(p.line) for p in b)
+def _flick(chains: list[list[Piece]], i: int, j: int) -> int | None:
+    """Which of two that meet at a corner is but the flick of the other: short, with a free end."""
+    lengths = {k: sum(length_mm(piece.line) for piece in chains[k]) for k in (i, j)}
+    short, long = sorted((i, j), key=lambda k: (lengths[k], k))
+    if len(chains[short]) > 1 or None not in chains[short][0].ends:
+        return None
+    widest = chains[short][0].line[:, 2].max()
+    return short if lengths[short] < min(FLICK * widest, FLICK_SHARE * lengths[long]) else None
 
 
 def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
