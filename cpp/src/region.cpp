@@ -140,20 +140,15 @@ Set wound(const Rings& outlines, int turns, bool reversed) {
 }  // namespace
 
 Rings fill(const Rings& outlines, FillRule rule) {
-    using namespace bp::operators;
     Set filled;
     for (bool reversed : {false, true}) {
         for (int turns = 1; turns <= (rule == FillRule::nonzero ? 1 : kMostTurns); ++turns) {
-            Set level = wound(outlines, turns, reversed);
+            const Set level = wound(outlines, turns, reversed);
             if (level.empty()) break;
-            if (turns == 1 && filled.empty())
-                filled = std::move(level);
-            else if (turns == 1)
-                filled += level;
-            else
-                filled ^= level;
+            filled.insert(level, turns % 2 == 0);  // each level lies in the one before
         }
     }
+    filled.clean();
     return to_rings(filled);
 }
 

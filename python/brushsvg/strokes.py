@@ -41,9 +41,18 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
 
     Error if nothing is left to paint.
     """
-    made_of = [(element, _lines(element, paths_as)) for element in design.elements]
-    found = [(element, lines) for element, lines in made_of if lines]
-    notices = _left_out([element for element, lines in made_of if not lines], paths_as)
+    found, empty, notices = [], [], []
+    for element in design.elements:
+        try:
+            lines = _lines(element, paths_as)
+        except Error as beyond:
+            notices.append(Notice(element.id or "filled", f"{beyond}: left out"))
+            continue
+        if lines:
+            found.append((element, lines))
+        else:
+            empty.append(element)
+    notices += _left_out(empty, paths_as)
     if not found:
         where, sentence = (notices[-1].where, notices[-1].sentence) if notices else ("", "it is empty")
         sentence = f"there is nothing to paint: {sentence}"

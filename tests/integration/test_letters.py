@@ -64,13 +64,13 @@ def found(characters):
 def test_an_outline_of_one_stroke_is_one_stroke(found):
     single = np.mean([len(made) == 1 for made, _, _ in found])
     print(f"{len(found)} outlines, one stroke each: {single:.4f}")
-    assert single >= 0.95  # 0.979
+    assert single >= 0.95  # 0.974
 
 
 def test_a_disc_swept_along_it_paints_the_outline(found):
     overlaps = [_core.overlap(swept(made), shape) for made, shape, _ in found if len(made) == 1]
     print(f"overlap: mean {np.mean(overlaps):.4f}, 5th percentile {np.percentile(overlaps, 5):.3f}")
-    assert np.mean(overlaps) >= 0.96  # 0.964
+    assert np.mean(overlaps) >= 0.96  # 0.965
 
 
 def test_it_runs_the_way_one_writes(found):
@@ -105,9 +105,9 @@ def test_capitals_of_a_sans_have_the_strokes_one_writes(lettering):
     assert len(odd) <= 4  # none
 
 
-def painted(design, brush, method="closed", lag_mm=None) -> float:
+def painted(design, brush, method="closed", lag_mm=None, wide="clamp") -> float:
     """Overlap of what the brush would paint with what is wanted, on the whole drawing."""
-    made, wanted, _ = within_reach(strokes(design)[0], brush)
+    made, wanted, _ = within_reach(strokes(design)[0], brush, wide)
     plan = _core.compensate(made, brush, design.sheet_mm, method, 0.05, lag_mm).plan
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
@@ -137,15 +137,31 @@ def test_characters_painted(characters):
     print(f"closed form, {PAINTED} characters at 100 mm with round-6: {np.mean(closed):.4f}")
     few = compared(designs[:8], brush)
     print("8 of them: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in few.items()))
-    assert np.mean(closed) >= 0.85  # 0.943
+    assert np.mean(closed) >= 0.85  # 0.942
     assert few["closed"] == max(few.values())
 
 
-@pytest.mark.parametrize("kind", ["script", "sans"])
-def test_fonts_painted(lettering, kind):
+TEXT = "ABEGKMQRSaegkmnrst"
+
+
+@pytest.mark.parametrize(("kind", "em_mm"), [("sans", 100.0), ("script", 60.0)])
+def test_fonts_painted(lettering, kind, em_mm):
+    """At 100 mm the script has strokes of 14 mm, where round-6 paints 8.4: see the next test."""
     brush = find_brush("round-6")
-    designs = [letter(lettering.font(kind), text, 100.0) for text in "ABEGKMQRSaegkmnrst"]
-    overlaps = compared(designs, brush)
-    print(f"{kind} at 100 mm: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in overlaps.items()))
-    assert overlaps["closed"] >= 0.85
+    overlaps = compared([letter(lettering.font(kind), text, em_mm) for text in TEXT], brush)
+    print(
+        f"{kind} at {em_mm:g} mm: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in overlaps.items())
+    )
+    assert overlaps["closed"] >= 0.85  # 0.948, 0.949
     assert overlaps["closed"] == max(overlaps.values())
+
+
+def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
+    brush = find_brush("round-6")
+    designs = [letter(lettering.font("script"), text, 100.0) for text in TEXT]
+    clamp, passes = (
+        np.mean([painted(each, brush, wide=wide) for each in designs]) for wide in ("clamp", "passes")
+    )
+    print(f"script at 100 mm: nearest width {clamp:.3f}, passes {passes:.3f}")
+    assert passes >= 0.9  # 0.953
+    assert passes > clamp + 0.1

@@ -225,6 +225,18 @@ def test_hostile_outlines(name, rule):
         )
 
 
+def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
+    points = np.random.default_rng(1).uniform(0, 50, (1000, 2)).round(2)
+    scribble = "M" + "L".join(f"{x} {y}" for x, y in points) + "Z"
+    design = read(f'<g fill="red" stroke="none">{path(scribble)}<path id="bar" d="{BAR}"/></g>')
+    made, (notice,) = strokes(design)
+    assert [stroke.id for stroke in made] == ["bar"]
+    assert notice.where == "p"
+    assert "crosses itself about" in notice.sentence and "more than 10000: left out" in notice.sentence
+    with pytest.raises(Error, match="nothing to paint: its outline crosses itself"):
+        painted(path(scribble))
+
+
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])
