@@ -54,6 +54,7 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
         WEDGE,
         "M30 25A14 14 0 1 1 58 25A14 14 0 1 1 30 25Z",
         "M10 5H60A20 20 0 0 1 60 45V33A8 8 0 0 0 60 17H10Z",
+        "M10 4H26V24H60V40H10Z",
     ):
         made = of(d)
         passes, wanted, (notice,) = within_reach(made, brush, "passes")
