@@ -121,8 +121,39 @@ def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
 
 def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
     disc = "M{0} 25A{1} {1} 0 1 0 {2} 25A{1} {1} 0 1 0 {0} 25Z".format
-    made = painted(path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"'))
+    made = painted(
+        path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"')
+    )
     assert _core.area(wanted(made)) == pytest.approx(np.pi * (15**2 - 2 * 0.5**2), rel=0.01)
+
+
+def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a_line_that_ends_there():
+    from brushsvg.outlines import outline_strokes
+
+    bars = (
+        [[8.8, 14.7], [25.5, 15.8], [25.1, 21.4], [8.4, 20.3]],
+        [[19.0, 10.0], [8.4, 15.0], [6.7, 11.5], [17.3, 6.4]],
+    )
+    shape = _core.fill([np.array(bar) for bar in bars])
+    assert _core.area(wanted(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=1e-3)
+
+
+def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
+    from brushsvg.outlines import outline_strokes
+
+    random = np.random.default_rng(5)
+    for _ in range(40):
+        bars = []
+        for _ in range(random.integers(2, 8)):
+            turn, (length, width) = random.uniform(0, np.pi), random.uniform((4, 1), (20, 6))
+            corners = np.array([[-length, -width], [length, -width], [length, width], [-length, width]]) / 2
+            turned = [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+            bars.append(corners @ turned + random.uniform(0, 20, 2))
+        shape = _core.fill(bars)
+        made = outline_strokes(shape)
+        assert _core.area(wanted(made)) == pytest.approx(_core.area(shape), rel=0.03)
+        assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape)
+        assert _core.overlap(marks(made), shape) > 0.7
 
 
 def test_corners_stay_corners():
