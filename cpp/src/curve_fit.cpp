@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 using Cubic = std::array<Vector2d, 4>;
 
-constexpr int kMoves = 6;  // of the parameters: more gain less than a split
+constexpr int kMoves = 6;      // of the parameters: more gain less than a split
 constexpr double kStep = 8.0;  // tolerances between points: fewer cut bends short, more only cost time
 constexpr double kLeastPieces = 8.0, kMostPieces = 2000.0;
 // Points this many tolerances apart tell a direction: nearer ones would tell the noise.
