@@ -35,7 +35,7 @@ USAGE = [
 ]
 # of house rules, but not there yet: neither understood nor promised
 LATER = {
-    "flags": ["--caps", "--as", "--wide", "--order"],
+    "flags": ["--caps", "--order"],
     "commands": ["chart", "calibrate", "check", "animate"],
     "brush commands": ["plot", "new"],
     "formats": [".script", ".mod", ".pdf", ".krl", ".gcode"],
