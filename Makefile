@@ -112,6 +112,8 @@ bench: setup
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
 	$(BIN)/python benchmarks/read.py
+	font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf  # of `make integration`
+	if [ -f $$font ]; then $(BIN)/pip install -q -e '.[bench]' --no-build-isolation; $(BIN)/python benchmarks/outlines.py $$font; fi
 
 clean:
 	@rm -rf build demo $(VENV)

@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "brushsvg/error.hpp"
 #include "brushsvg/region.hpp"
 
 void bind_region(py::module_& m) {
@@ -6,6 +7,16 @@ void bind_region(py::module_& m) {
     const auto unlocked = py::call_guard<py::gil_scoped_release>();
     m.def("unite", &unite, py::arg("rings"), unlocked,
           "Union of shapes: counter-clockwise rings fill, the clockwise rings behind one are its holes.");
+    m.def(
+        "fill",
+        [](const Rings& outlines, const std::string& rule) {
+            if (rule != "nonzero" && rule != "evenodd")
+                throw Error("the fill rule is nonzero or evenodd, not \"" + rule + "\"");
+            return fill(outlines, rule == "nonzero" ? FillRule::nonzero : FillRule::evenodd);
+        },
+        py::arg("outlines"), py::arg("rule") = "nonzero", unlocked,
+        "Rings of the shape that closed outlines fill; they may cross and turn either way.");
+    m.def("convex_hull", &convex_hull, py::arg("points"), "Convex hull of points (n, 2), counter-clockwise.");
     m.def("area", &area, py::arg("rings"), "Area [mm^2], holes (clockwise) taken off.");
     m.def("overlap", &overlap, py::arg("rings_a"), py::arg("rings_b"), unlocked,
           "Area of the intersection over area of the union.");

@@ -19,6 +19,8 @@ void bind_lag(py::module_& m);
 void bind_bristle(py::module_& m);
 void bind_simulate(py::module_& m);
 void bind_region(py::module_& m);
+void bind_medial_axis(py::module_& m);
+void bind_curve_fit(py::module_& m);
 void bind_coverage(py::module_& m);
 void bind_compensate(py::module_& m);
 void bind_interrupt(py::module_& m);

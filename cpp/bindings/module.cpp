@@ -27,6 +27,8 @@ PYBIND11_MODULE(_core, m) {
     bind_bristle(m);
     bind_simulate(m);
     bind_region(m);
+    bind_medial_axis(m);
+    bind_curve_fit(m);
     bind_coverage(m);
     bind_compensate(m);
     bind_interrupt(m);

@@ -154,6 +154,54 @@ Rings unite(const Rings& rings) {
     return to_rings(level.front());
 }
 
+namespace {
+
+// a ring can run round a point any number of times; who winds more than this draws a spiral by mistake
+constexpr int kMostTurns = 32;
+
+/// Where the outlines run counter-clockwise `turns` times or more round a point; reversed: clockwise. The sweep keeps
+/// what is counted once or more, so a frame about everything takes turns - 1 away.
+Set wound(const Rings& outlines, int turns, bool reversed) {
+    const auto insert = [reversed](Set& set, const Ring& ring, bool once) {
+        const Polygon polygon = to_polygon(ring);
+        const bool positive = once != reversed;
+        set.insert_vertex_sequence(polygon.begin(), polygon.end(), positive ? bp::COUNTERCLOCKWISE : bp::CLOCKWISE,
+                                   false);
+    };
+    Set set;
+    for (const Ring& ring : outlines)
+        if (ring.rows() >= 3) insert(set, ring, true);
+    if (turns > 1) {
+        bp::rectangle_data<int> box;
+        if (!bp::extents(box, set)) return set;
+        std::vector<Point> frame{{bp::xl(box) - 1, bp::yl(box) - 1},
+                                 {bp::xh(box) + 1, bp::yl(box) - 1},
+                                 {bp::xh(box) + 1, bp::yh(box) + 1},
+                                 {bp::xl(box) - 1, bp::yh(box) + 1}};
+        set.clear();
+        for (const Ring& ring : outlines)
+            if (ring.rows() >= 3) insert(set, ring, true);
+        for (int k = 1; k < turns; ++k) set.insert_vertex_sequence(frame.begin(), frame.end(), bp::CLOCKWISE, false);
+    }
+    set.clean();
+    return set;
+}
+
+}  // namespace
+
+Rings fill(const Rings& outlines, FillRule rule) {
+    Set filled;
+    for (bool reversed : {false, true}) {
+        for (int turns = 1; turns <= (rule == FillRule::nonzero ? 1 : kMostTurns); ++turns) {
+            const Set level = wound(outlines, turns, reversed);
+            if (level.empty()) break;
+            filled.insert(level, turns % 2 == 0);  // each level lies in the one before
+        }
+    }
+    filled.clean();
+    return to_rings(filled);
+}
+
 double area(const Rings& rings) {
     double sum = 0.0;
     for (const Ring& ring : rings) sum += signed_area(ring);

@@ -39,6 +39,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .errors import Error
     from .importers import ReadOptions, read_drawing
     from .machine import write_program
+    from .reach import within_reach
     from .render import marks_png, marks_svg
     from .strokes import strokes
     from .text import text_svg
@@ -59,6 +60,7 @@ _HOME = {
     "write_cell": "cell_file",
     "find_brush": "brushes",
     "write_program": "machine",
+    "within_reach": "reach",
     "marks_png": "render",
     "marks_svg": "render",
 } | dict.fromkeys(
@@ -120,6 +122,7 @@ __all__ = [
     "trace_outlines",
     "unite",
     "wanted_outline",
+    "within_reach",
     "write_cell",
     "write_marks",
     "write_plan",

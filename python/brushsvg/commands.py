@@ -143,8 +143,8 @@ def import_file(args) -> None:
         stage("reading")
         design = arrange(read_drawing(args.input, _reading(args)), _layout(args))
         try:
-            strokes, notices = strokes_of(design)
-        except Error as nothing:  # a drawing of filled shapes alone is worth looking at, too
+            strokes, notices = strokes_of(design, args.paths_as)
+        except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
             strokes, notices = [], [Notice(nothing.where, str(nothing))]
         notices = [*design.notices, *notices]
         warn(args.input, [(notice.where, notice.sentence) for notice in notices])
@@ -195,8 +195,8 @@ def _look(args, cell: Cell, outlines: bool, in_loads: bool = False):
 
 def _prepare(args, cell: Cell, brush=None) -> convert.Work:
     if _suffix(args.input) == ".json":
-        for flag in (*LAYOUT_FLAGS, "compensation", "lag", "tolerance"):
-            if getattr(args, flag) is not None:
+        for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
+            if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
     options = convert.Options(
         brush=brush or _brush(args),
@@ -205,13 +205,15 @@ def _prepare(args, cell: Cell, brush=None) -> convert.Work:
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
         tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
+        paths_as=args.paths_as,
+        wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
     with about(args.input):
         return convert.prepare(args.input, options, stage)
 
 
-LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin")
+LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
 
 
 def _brush(args):

@@ -19,6 +19,7 @@ from .errors import Error
 from .files import read_bytes
 from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
 from .paint import in_loads as in_loads_of
+from .reach import within_reach
 from .strokes import strokes as strokes_of
 from .timeline import timeline
 
@@ -37,6 +38,8 @@ class Options:
     lag_mm: float | None = None
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
+    paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
+    wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
 
 
 @dataclass(frozen=True)
@@ -62,9 +65,12 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     design = layout.arrange(importers.read_drawing(path, options.reading), options.layout)
-    strokes, notices = strokes_of(design)
+    stage("finding strokes")
+    strokes, notices = strokes_of(design, options.paths_as)
+    painted, strokes, clamped = within_reach(strokes, brush, options.wide)
+    notices += clamped
     done = _core.compensate(
-        strokes,
+        painted,
         brush,
         design.sheet_mm,
         options.compensation,
@@ -191,7 +197,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
         options = replace(work.options, compensation="constant", lag_mm=lag_mm)
         done = _core.compensate(
-            work.strokes,
+            within_reach(work.strokes, work.brush)[0],
             work.brush,
             work.plan.sheet_mm,
             "constant",

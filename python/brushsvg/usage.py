@@ -206,6 +206,11 @@ def _add_choices(command: argparse.ArgumentParser) -> None:
     add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     _add_layout(command)
+    add(
+        "--wide",
+        choices=("clamp", "passes", "refuse"),
+        help="filled outlines wider than the brush: its greatest width, several passes, or no; default: clamp",
+    )
     add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
     add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
     add("--tolerance", metavar="MM", type=_tolerance, help="of the painted middle line; default: 0.05")
@@ -230,6 +235,12 @@ def _add_layout(command: argparse.ArgumentParser) -> None:
         help="paint what this selector names and what lies in it (SVG)",
     )
     add("--width", metavar="MM", type=_width, help="of all strokes, whatever the drawing says")
+    add(
+        "--as",
+        dest="paths_as",
+        choices=("stroke", "outline"),
+        help="paths are lines, fills count as none; or outlines of shapes, strokes count as none; default: as drawn",
+    )
     size = command.add_mutually_exclusive_group()
     size.add_argument(
         "--fit", metavar="WxH", type=_size, help="scale the marks to this size, centred on the sheet"

@@ -124,3 +124,33 @@ TEST_CASE("pieces between shapes cover what their hulls cover, with few corners 
     CHECK(area(unite(pieces_between({box(0, 0, 4, 4), box(1, 1, 1, 1), box(0, 0, 4, 4)}))) == doctest::Approx(16.0));
     CHECK(area(unite(pieces_between({leaf(0, 0, 0, 0), leaf(0, 0, 0, 0)}))) == doctest::Approx(0.0));
 }
+
+TEST_CASE("outlines fill as the rule says, whichever way they turn and however they cross") {
+    const Ring outer = box(0, 0, 10, 10), inner = box(3, 3, 4, 4);
+    const Ring turned = inner.colwise().reverse();
+    CHECK(area(fill({outer, inner}, FillRule::nonzero)) == doctest::Approx(100.0));
+    CHECK(area(fill({outer, turned}, FillRule::nonzero)) == doctest::Approx(84.0));
+    CHECK(area(fill({turned, outer}, FillRule::nonzero)) == doctest::Approx(84.0));
+    for (const Ring& hole : {inner, turned})
+        CHECK(area(fill({outer, hole}, FillRule::evenodd)) == doctest::Approx(84.0));
+    CHECK(area(fill({outer.colwise().reverse()}, FillRule::nonzero)) == doctest::Approx(100.0));
+    CHECK(area(fill({outer, outer, outer}, FillRule::nonzero)) == doctest::Approx(100.0));
+    CHECK(area(fill({outer, outer}, FillRule::evenodd)) == 0.0);
+    CHECK(area(fill({outer, outer, outer}, FillRule::evenodd)) == doctest::Approx(100.0));
+    CHECK(fill({}, FillRule::nonzero).empty());
+}
+
+TEST_CASE("outlines that cross themselves: both lobes of an eight, the heart of a star by its rule") {
+    Ring eight(4, 2);
+    eight << 0, 0, 10, 10, 10, 0, 0, 10;
+    CHECK(area(fill({eight}, FillRule::nonzero)) == doctest::Approx(50.0));
+    CHECK(area(fill({eight}, FillRule::evenodd)) == doctest::Approx(50.0));
+    Ring star(5, 2);
+    for (int i = 0; i < 5; ++i) {
+        const double a = 4.0 * 3.14159265358979323846 * i / 5;
+        star.row(i) << 10.0 * std::cos(a), 10.0 * std::sin(a);
+    }
+    const double whole = area(fill({star}, FillRule::nonzero)), rays = area(fill({star}, FillRule::evenodd));
+    CHECK(whole == doctest::Approx(112.2570).epsilon(1e-4));        // 10 r^2 sin(36) sin(18) / sin(126)
+    CHECK(whole - rays == doctest::Approx(34.6894).epsilon(1e-4));  // the pentagon within
+}

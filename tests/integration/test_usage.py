@@ -38,7 +38,7 @@ USAGE = [
 ]
 # of house rules, but not there yet: neither understood nor promised
 LATER = {
-    "flags": ["--caps", "--as", "--wide"],
+    "flags": ["--caps"],
     "commands": ["chart", "calibrate"],
     "brush commands": ["plot", "new"],
     "formats": [".mod", ".pdf", ".krl"],

@@ -530,7 +530,18 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     assert status == 0
     flags = set(re.findall(r"--[a-z-]+", out))
     choices = {"--brush", "--cell", "--compensation", "--lag", "--tolerance", "--lenient"}
-    choices |= {"--sheet", "--units", "--layer", "--select", "--width", "--fit", "--scale", "--origin"}
+    choices |= {
+        "--sheet",
+        "--units",
+        "--layer",
+        "--select",
+        "--width",
+        "--fit",
+        "--scale",
+        "--origin",
+        "--as",
+        "--wide",
+    }
     assert flags == choices | {"--help", "--preview", "--report", "--z-offset", "--from-stroke", "--order"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -140,12 +140,23 @@ def test_import_shows_damage_that_convert_refuses(desk, capsys):
     assert main(["convert", "d.svg", "x.json", "--layer", "Ink"]) == 0, "damage elsewhere does not count"
 
 
-def test_only_filled_shapes_are_refused_but_shown(desk, capsys):
+def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     (desk / "f.svg").write_text(
         DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', "")
     )
-    assert "filled outlines do not become strokes yet" in refusal(capsys, "convert", "f.svg", "x.json")
-    assert main(["import", "f.svg", "seen.png"]) == 0
+    assert "nothing to paint" in refusal(capsys, "convert", "f.svg", "x.json", "--as", "stroke")
+    assert main(["import", "f.svg", "seen.png", "--as", "stroke"]) == 0
+    capsys.readouterr()
+    bar = '<path id="bar" d="M20 20H70V26H20Z"/><rect id="wide" x="20" y="35" width="60" height="12"/>'
+    (desk / "bar.svg").write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{bar}</svg>'
+    )
+    passes, err = plan(desk, capsys, drawing="bar.svg")
+    assert [each["stroke"] for each in passes] == ["bar", "wide"]
+    assert "painted at the nearest" in err[0]
+    passes, err = plan(desk, capsys, "--wide", "passes", drawing="bar.svg")
+    assert [each["stroke"] for each in passes] == ["bar", "wide", "wide~2", "wide~3"]
+    assert "wide: width 12 mm" in refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
 
 
 def test_text(desk, capsys):

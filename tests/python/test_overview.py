@@ -20,7 +20,7 @@ def test_svg_numbers_names_and_warnings():
     assert "1" in words and "2" in words
     assert any(word.startswith("1  a: 6 mm") for word in words)
     assert any(word.startswith("2  b<: 1 mm") for word in words)
-    assert any("filled outline" in word for word in words)
+    assert any(word.startswith("3  stroke1: 9.97 mm") for word in words)
 
 
 def test_png_shows_the_band_as_wide_as_the_stroke_where_it_was_drawn():

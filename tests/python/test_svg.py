@@ -559,7 +559,6 @@ GRADIENT = '<linearGradient id="g"/>'
         ('<image id="i"/>', "i", "image is not read"),
         ("<foreignObject/>", "foreignObject 1", "foreignObject is not read"),
         ("<animate/>", "animate 1", "animate is not read"),
-        ('<g fill="red"><path id="p" d="M0 0H5V5Z"/></g>', "p", "its fill does not become strokes yet"),
         ('<path id="p" d="M0 0H5" stroke="none"/>', "p", "it has neither stroke nor fill"),
         ('<path id="p" d="M0 0H5" stroke-opacity="0"/>', "p", "it has neither stroke nor fill"),
         ('<path id="p" d="M0 0H5" stroke-width="0"/>', "p", "it has neither stroke nor fill"),

@@ -8,6 +8,13 @@ namespace brushsvg {
 /// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross.
 Rings unite(const Rings& rings);
 
+/// How often an outline must run round a point for it to be inside.
+enum class FillRule { nonzero, evenodd };
+
+/// The shape that closed outlines fill, as rings that do not cross: outlines may cross themselves and each other, turn
+/// either way and lie on each other. Coordinates are kept to 1e-5 mm.
+Rings fill(const Rings& outlines, FillRule rule);
+
 /// Area [mm^2] of rings in marks.json orientation (outer positive, holes negative).
 double area(const Rings& rings);
 

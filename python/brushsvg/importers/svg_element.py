@@ -75,8 +75,6 @@ class Painted:
         if of == "stroke" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence)
-        if of == "stroke" and fill != "none" and properties["fill"]:
-            self.notes.add(node, context, "its fill does not become strokes yet: only its stroke is painted")
         problem = fill_problem if of == "fill" else stroke_problem
         for sentence in [problem] * bool(problem) + sentences + unread(properties, of, tag in _WITH_MARKERS):
             self.notes.add(node, context, sentence)

@@ -1,0 +1,98 @@
+"""Milliseconds per glyph to find the strokes of filled letters, by stage, beside scikit-image's medial axis of the same
+glyphs drawn at 20 px/mm, which ends where our second stage does: with pixels of a middle line, not with strokes.
+
+Needs a font (TrueType, OpenType or WOFF) and, for the peer, `pip install scikit-image`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from brushsvg import _core
+from brushsvg.importers.svg import read_svg
+from brushsvg.outlines import _strokes, filled, outline_strokes
+from brushsvg.outlines.habit import joined, ordered
+from brushsvg.outlines.skeleton import LEAST_SHARE, skeleton
+from brushsvg.text import text_svg
+
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
+PX_PER_MM = 20
+
+
+def glyphs(font: bytes, count: int, size_mm: float) -> list:
+    """Filled elements, letter after letter, over and over."""
+    document, _ = text_svg(LETTERS, font, size_mm=size_mm)
+    elements = read_svg(document.encode()).elements
+    return [elements[k % len(elements)] for k in range(count)]
+
+
+def pixels(rings) -> np.ndarray:
+    low, high = np.vstack(rings).min(axis=0), np.vstack(rings).max(axis=0)
+    width, height = np.ceil((high - low) * PX_PER_MM).astype(int) + 4
+    mask = np.zeros((height, width), np.uint8)
+    cv2.fillPoly(mask, [np.round((ring - low) * PX_PER_MM + 2).astype(np.int32) for ring in rings], 1)
+    return mask.astype(bool)
+
+
+def ms_each(things, work) -> tuple[float, list]:
+    begin = time.perf_counter()
+    made = [work(thing) for thing in things]
+    return 1e3 * (time.perf_counter() - begin) / len(things), made
+
+
+def connected(rings):
+    areas = []
+    for ring in rings:
+        if _core.area([ring]) > 0:
+            areas.append([])
+        areas[-1].append(ring)
+    return areas
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("font", type=Path)
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--size", type=float, default=50.0, help="mm to the em")
+    options = parser.parse_args()
+    elements = glyphs(options.font.read_bytes(), options.count, options.size)
+
+    filling, shapes = ms_each(elements, filled)
+    areas = [area for shape in shapes for area in connected(shape)]
+    per_glyph = len(areas) / len(shapes)
+    axis, _ = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE))
+    joining, found = ms_each(areas, skeleton)
+    writing, _ = ms_each(
+        [each for each in found if each.pieces], lambda each: ordered(joined(each.pieces, each))
+    )
+    strokes, made = ms_each(areas, _strokes)
+    whole, _ = ms_each(shapes, outline_strokes)
+    edges = np.mean([sum(map(len, shape)) for shape in shapes])
+    count = sum(len(each) for each in made)
+    print(
+        f"{len(shapes)} glyphs of {options.font.name}, {options.size:g} mm to the em: {edges:.0f} edges and"
+    )
+    print(f"{count / len(shapes):.2f} strokes each")
+    print(f"  {'flattening and filling':<46} {filling:7.2f} ms")
+    print(f"  {'medial axis':<46} {axis * per_glyph:7.2f} ms")
+    print(f"  {'crossings, lines':<46} {(joining - axis) * per_glyph:7.2f} ms")
+    print(f"  {'direction, corners, order':<46} {writing * per_glyph:7.2f} ms")
+    print(f"  {'curves, widths, parts of the shape':<46} {(strokes - joining - writing) * per_glyph:7.2f} ms")
+    print(f"  {'all (aim: 10 ms)':<46} {filling + whole:7.2f} ms")
+    try:
+        from skimage.morphology import medial_axis
+    except ImportError:
+        print("  scikit-image is not here: no peer")
+        return
+    few = [pixels(shape) for shape in shapes[: min(len(LETTERS), len(shapes))]]
+    peer, _ = ms_each(few, lambda mask: medial_axis(mask, return_distance=True))
+    print(f"  {'peer: scikit-image, medial_axis at 20 px/mm':<46} {peer:7.2f} ms")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,31 @@
+#include "bindings.hpp"
+#include "brushsvg/medial_axis.hpp"
+
+void bind_medial_axis(py::module_& m) {
+    using namespace brushsvg;
+    py::class_<AxisBranch>(m, "AxisBranch", "A stretch of the medial axis between two nodes.")
+        .def_readonly("start", &AxisBranch::from)
+        .def_readonly("end", &AxisBranch::to)
+        .def_property_readonly("line", [](const AxisBranch& b) { return b.line; })
+        .def_readonly("part", &AxisBranch::part);
+    m.def(
+        "medial_axis",
+        [](const Rings& rings, double least_share) {
+            MedialAxis axis;
+            {
+                py::gil_scoped_release unlocked;
+                axis = medial_axis(rings, least_share);
+            }
+            Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> nodes(Eigen::Index(axis.nodes.size()), 4);
+            for (std::size_t i = 0; i < axis.nodes.size(); ++i) {
+                const AxisNode& n = axis.nodes[i];
+                nodes.row(Eigen::Index(i)) << n.x, n.y, n.radius_mm, n.corner;
+            }
+            return std::make_pair(nodes, std::move(axis.branches));
+        },
+        py::arg("rings"), py::arg("least_share"),
+        R"(Medial axis of a shape: nodes (n, 4) with x, y, distance to the outline [mm] and the largest corner dropped there
+[squares of that distance], and branches between them, each with start, end (node numbers), line (k, 3) and part (rings).
+
+rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius.)");
+}

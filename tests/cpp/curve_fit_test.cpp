@@ -1,0 +1,82 @@
+#include "brushsvg/curve_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace brushsvg;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+WideLine arc(double radius, double angle, int n) {
+    WideLine line(n, 3);
+    for (int i = 0; i < n; ++i) {
+        const double t = double(i) / (n - 1);
+        line.row(i) << radius * std::cos(angle * t), radius * std::sin(angle * t), 1.0 + t;
+    }
+    return line;
+}
+
+double farthest(const FittedLine& fitted, double radius) {
+    double most = 0.0;
+    for (Eigen::Index i = 0; i < fitted.middle_mm.rows(); ++i)
+        for (double t = 0.0; t <= 1.0; t += 0.05)
+            most = std::max(most, std::abs(point_at(fitted.middle_mm, {i, t}).norm() - radius));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("a straight line with an even taper is one cubic and two widths") {
+    WideLine line(50, 3);
+    for (int i = 0; i < 50; ++i) line.row(i) << i, 2.0 * i, 3.0 - 0.05 * i;
+    const FittedLine fitted = fit_curve(line, 0.01, false);
+    CHECK(fitted.middle_mm.rows() == 1);
+    REQUIRE(fitted.half_width.size() == 2);
+    CHECK(fitted.half_width[0].half_width_mm == doctest::Approx(3.0));
+    CHECK(fitted.half_width[1].half_width_mm == doctest::Approx(3.0 - 0.05 * 49));
+}
+
+TEST_CASE("half a circle within its tolerance, with more cubics for less") {
+    const FittedLine coarse = fit_curve(arc(20.0, kPi, 200), 0.2, false);
+    const FittedLine fine = fit_curve(arc(20.0, kPi, 200), 0.005, false);
+    CHECK(farthest(coarse, 20.0) < 0.2);
+    CHECK(farthest(fine, 20.0) < 0.005);
+    CHECK(coarse.middle_mm.rows() <= 2);
+    CHECK(fine.middle_mm.rows() > coarse.middle_mm.rows());
+}
+
+TEST_CASE("cubics meet with one tangent, round the seam of a closed line too") {
+    const FittedLine ring = fit_curve(arc(20.0, 2.0 * kPi, 400), 0.02, true);
+    const Eigen::Index n = ring.middle_mm.rows();
+    CHECK(n > 1);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Index next = (i + 1) % n;
+        CHECK((point_at(ring.middle_mm, {i, 1.0}) - point_at(ring.middle_mm, {next, 0.0})).norm() < 1e-9);
+        CHECK(tangent_at(ring.middle_mm, {i, 1.0}).dot(tangent_at(ring.middle_mm, {next, 0.0})) > 0.999);
+    }
+}
+
+TEST_CASE("noise below the tolerance costs few cubics") {
+    WideLine line(200, 3);
+    for (int i = 0; i < 200; ++i) line.row(i) << 0.25 * i, (i % 2 ? 0.01 : -0.01), 2.0 + (i % 3 ? 0.01 : -0.01);
+    const FittedLine fitted = fit_curve(line, 0.06, false);
+    CHECK(fitted.middle_mm.rows() <= 3);
+    CHECK(fitted.half_width.size() == 2);
+}
+
+TEST_CASE("a point, repeated points and a reversal end") {
+    WideLine point(3, 3);
+    point << 1, 2, 0.5, 1, 2, 0.5, 1, 2, 0.5;
+    const FittedLine dab = fit_curve(point, 0.1, false);
+    CHECK(dab.middle_mm.rows() == 1);
+    CHECK(dab.half_width.size() == 1);
+    CHECK(fit_curve(WideLine(0, 3), 0.1, false).middle_mm.rows() == 0);
+    WideLine back(21, 3);
+    for (int i = 0; i < 21; ++i) back.row(i) << (i <= 10 ? i : 20 - i), 0.0, 1.0;
+    const FittedLine there_and_back = fit_curve(back, 0.05, false);
+    CHECK(there_and_back.middle_mm.allFinite());
+    CHECK(there_and_back.middle_mm.rows() <= 20);
+}

@@ -1,0 +1,109 @@
+"""Other people's lettering: Chinese characters with their middle lines, and four fonts, fetched once by npm."""
+
+import json
+import shutil
+import subprocess
+
+import numpy as np
+from svgpathtools import Line, parse_path
+
+from brushsvg import _core
+from brushsvg.design import Element, SubPath
+from brushsvg.importers.svg import read_svg
+from brushsvg.text import text_svg
+
+PACKAGES = {
+    "hanzi-writer-data": "2.0.1",
+    "@fontsource/open-sans": "5.3.0",
+    "@fontsource/lora": "5.3.0",
+    "@fontsource/kaushan-script": "5.3.0",
+    "@fontsource/caveat-brush": "5.3.0",
+}
+FONTS = {"sans": "open-sans", "serif": "lora", "script": "kaushan-script", "brush": "caveat-brush"}
+CHARACTER_MM = 100.0
+MM_PER_UNIT = CHARACTER_MM / 1024
+
+
+class UnavailableError(Exception):
+    """The lettering cannot be had here; the text says why."""
+
+
+class Lettering:
+    """Fetches what is not in the folder yet, and reads it."""
+
+    def __init__(self, folder):
+        self.modules = folder / "node_modules"
+        missing = [f"{name}@{version}" for name, version in PACKAGES.items() if not self._has(name, version)]
+        if not missing:
+            return
+        if not shutil.which("npm"):
+            raise UnavailableError("npm is missing: apt-get install --no-install-recommends nodejs npm")
+        options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
+        words = ["npm", "install", "--prefix", str(folder), *options]
+        everything = [
+            f"{name}@{version}" for name, version in PACKAGES.items()
+        ]  # what is left out, npm removes
+        try:
+            done = subprocess.run(
+                [*words, *everything], cwd=folder, capture_output=True, text=True, timeout=600
+            )
+        except subprocess.TimeoutExpired:
+            raise UnavailableError("npm did not fetch the lettering within 600 s") from None
+        if done.returncode or not all(self._has(*each) for each in PACKAGES.items()):
+            raise UnavailableError(f"npm could not fetch {' '.join(missing)}: {done.stderr[-200:]}")
+
+    def _has(self, name: str, version: str) -> bool:
+        about = self.modules / name / "package.json"
+        return about.exists() and json.loads(about.read_text(encoding="utf-8"))["version"] == version
+
+    def characters(self, count: int, seed: int) -> list[tuple[str, dict]]:
+        """Characters drawn at random: (character, {"strokes": path data, "medians": polylines})."""
+        files = sorted(f for f in (self.modules / "hanzi-writer-data").glob("*.json") if len(f.stem) == 1)
+        chosen = np.random.default_rng(seed).choice(len(files), count, replace=False)
+        return [(files[k].stem, json.loads(files[k].read_text(encoding="utf-8"))) for k in chosen]
+
+    def font(self, kind: str) -> bytes:
+        name = FONTS[kind]
+        return (self.modules / "@fontsource" / name / "files" / f"{name}-latin-400-normal.woff").read_bytes()
+
+
+def outline(name: str, path_data: str) -> Element:
+    """One stroke of a character as a filled element, 100 mm to the box."""
+    subpaths = []
+    for line in parse_path(path_data).continuous_subpaths():
+        rows = [each.bpoints() for each in line]
+        cubics = [
+            (p[0], p[0] + (p[1] - p[0]) / 3, p[0] + (p[1] - p[0]) * 2 / 3, p[1])
+            if isinstance(each, Line)
+            else (p[0], p[0] + (p[1] - p[0]) * 2 / 3, p[2] + (p[1] - p[2]) * 2 / 3, p[2])
+            if len(p) == 3
+            else p
+            for each, p in zip(line, rows, strict=True)
+        ]
+        points = np.array(cubics) * MM_PER_UNIT
+        subpaths.append(SubPath(np.stack([points.real, points.imag], axis=-1), True))
+    return Element(name, tuple(subpaths), 0.0, fill_rule="nonzero")
+
+
+def letter(font: bytes, text: str, size_mm: float = 60.0):
+    """A drawing of a text in a font."""
+    document, _ = text_svg(text, font, size_mm=size_mm)
+    return read_svg(document.encode())
+
+
+def swept(strokes) -> list[np.ndarray]:
+    """What a disc of the found width paints along the found lines, their own outlines aside."""
+    bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in strokes]
+    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.02)])
+
+
+def covered(paint, shape) -> float:
+    """Share of a shape that is painted."""
+    return (_core.area(paint) + _core.area(shape) - _core.area(_core.unite([*paint, *shape]))) / _core.area(
+        shape
+    )
+
+
+def evenly(line: np.ndarray, count: int = 64) -> np.ndarray:
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+    return np.column_stack([np.interp(np.linspace(0, at[-1], count), at, line[:, k]) for k in (0, 1)])

@@ -1,0 +1,167 @@
+"""Filled letters become brush strokes: how well on lettering that others drew, as strokes and as paint.
+
+The figures below each assertion are what was reached when it was written; -s prints today's.
+"""
+
+import string
+
+import numpy as np
+import pytest
+from lettering import (
+    CHARACTER_MM,
+    MM_PER_UNIT,
+    Lettering,
+    UnavailableError,
+    covered,
+    evenly,
+    letter,
+    outline,
+    swept,
+)
+
+from brushsvg import _core, find_brush
+from brushsvg.design import Design
+from brushsvg.outlines import filled
+from brushsvg.reach import within_reach
+from brushsvg.strokes import strokes
+
+SEED = 20260
+CHARACTERS = 300
+PAINTED = 40  # of them
+STROKES_OF = dict(
+    A={3}, B={2, 3}, C={1}, D={2}, E={3, 4}, F={2, 3}, G={1, 2}, H={3}, I={1, 2, 3}, J={1, 2}, K={2, 3}, L={1, 2},
+    M={2, 3, 4}, N={2, 3}, O={1}, P={2}, Q={2}, R={2, 3}, S={1}, T={2}, U={1}, V={1, 2}, W={2, 3, 4}, X={2},
+    Y={2, 3}, Z={1, 2, 3},
+)  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def lettering(request):
+    try:
+        return Lettering(request.config.cache.mkdir("lettering"))
+    except UnavailableError as reason:
+        pytest.skip(f"lettering: {reason}")
+
+
+@pytest.fixture(scope="session")
+def characters(lettering):
+    print(f"seed {SEED}")
+    return lettering.characters(CHARACTERS, SEED)
+
+
+@pytest.fixture(scope="session")
+def found(characters):
+    """(strokes found, shape, middle line given) of every stroke of every character."""
+    rows = []
+    for _, each in characters:
+        for path_data, middle in zip(each["strokes"], each["medians"], strict=True):
+            element = outline("s", path_data)
+            made, _ = strokes(Design((CHARACTER_MM, CHARACTER_MM), (element,)))
+            rows.append((made, filled(element), np.array(middle) * MM_PER_UNIT))
+    return rows
+
+
+def test_an_outline_of_one_stroke_is_one_stroke(found):
+    single = np.mean([len(made) == 1 for made, _, _ in found])
+    print(f"{len(found)} outlines, one stroke each: {single:.4f}")
+    assert single >= 0.95  # 0.974
+
+
+def test_a_disc_swept_along_it_paints_the_outline(found):
+    overlaps = [_core.overlap(swept(made), shape) for made, shape, _ in found if len(made) == 1]
+    print(f"overlap: mean {np.mean(overlaps):.4f}, 5th percentile {np.percentile(overlaps, 5):.3f}")
+    assert np.mean(overlaps) >= 0.96  # 0.965
+
+
+def test_it_runs_the_way_one_writes(found):
+    agree = []
+    for made, _, middle in found:
+        if len(made) == 1:
+            line, given = evenly(_core.flatten(made[0], 0.05)), evenly(middle)
+            agree.append(np.abs(line - given).sum() < np.abs(line - given[::-1]).sum())
+    print(f"directions that agree: {np.mean(agree):.4f}")
+    assert np.mean(agree) >= 0.9  # 0.99
+
+
+@pytest.mark.parametrize("kind", ["sans", "serif", "script", "brush"])
+def test_letters_are_covered(lettering, kind):
+    font = lettering.font(kind)
+    shares = {}
+    for text in string.ascii_letters + string.digits:
+        drawing = letter(font, text)
+        made, _ = strokes(drawing)
+        shares[text] = covered(swept(made), filled(drawing.elements[0]))
+    print(
+        f"{kind}: covered {np.mean(list(shares.values())):.4f}, least {min(shares.items(), key=lambda x: x[1])}"
+    )
+    assert np.mean(list(shares.values())) >= 0.95
+
+
+def test_capitals_of_a_sans_have_the_strokes_one_writes(lettering):
+    font = lettering.font("sans")
+    counts = {text: len(strokes(letter(font, text))[0]) for text in string.ascii_uppercase}
+    odd = {text: count for text, count in counts.items() if count not in STROKES_OF[text]}
+    print(f"{26 - len(odd)} of 26 capitals have the strokes one writes; not {odd}")
+    assert len(odd) <= 4  # none
+
+
+def painted(design, brush, method="closed", lag_mm=None, wide="clamp") -> float:
+    """Overlap of what the brush would paint with what is wanted, on the whole drawing."""
+    made, wanted, _ = within_reach(strokes(design)[0], brush, wide)
+    plan = _core.compensate(made, brush, design.sheet_mm, method, 0.05, lag_mm).plan
+    marks = _core.simulate(plan, brush)
+    _core.trace_outlines(marks, brush)
+    shape = _core.unite([ring for stroke in wanted for ring in _core.wanted_outline(stroke, 0.02)])
+    return _core.overlap(marks.outline_mm, shape)
+
+
+def compared(designs, brush) -> dict[str, float]:
+    """Mean overlaps without compensation, with the one best constant lag, and in closed form."""
+    lags = np.arange(2.0, 10.0, 1.0).tolist()
+    constant = {lag: np.mean([painted(each, brush, "constant", lag) for each in designs]) for lag in lags}
+    best = max(constant, key=constant.get)
+    return {
+        "none": np.mean([painted(each, brush, "none") for each in designs]),
+        f"constant {best:g} mm": constant[best],
+        "closed": np.mean([painted(each, brush) for each in designs]),
+    }
+
+
+def test_characters_painted(characters):
+    brush, sheet = find_brush("round-6"), (CHARACTER_MM, CHARACTER_MM)
+    designs = [
+        Design(sheet, tuple(outline(f"s{k}", d) for k, d in enumerate(each["strokes"])))
+        for _, each in characters[:PAINTED]
+    ]
+    closed = [painted(each, brush) for each in designs]
+    print(f"closed form, {PAINTED} characters at 100 mm with round-6: {np.mean(closed):.4f}")
+    few = compared(designs[:8], brush)
+    print("8 of them: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in few.items()))
+    assert np.mean(closed) >= 0.85  # 0.942
+    assert few["closed"] == max(few.values())
+
+
+TEXT = "ABEGKMQRSaegkmnrst"
+
+
+@pytest.mark.parametrize(("kind", "em_mm"), [("sans", 100.0), ("script", 60.0)])
+def test_fonts_painted(lettering, kind, em_mm):
+    """At 100 mm the script has strokes of 14 mm, where round-6 paints 8.4: see the next test."""
+    brush = find_brush("round-6")
+    overlaps = compared([letter(lettering.font(kind), text, em_mm) for text in TEXT], brush)
+    print(
+        f"{kind} at {em_mm:g} mm: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in overlaps.items())
+    )
+    assert overlaps["closed"] >= 0.85  # 0.948, 0.949
+    assert overlaps["closed"] == max(overlaps.values())
+
+
+def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
+    brush = find_brush("round-6")
+    designs = [letter(lettering.font("script"), text, 100.0) for text in TEXT]
+    clamp, passes = (
+        np.mean([painted(each, brush, wide=wide) for each in designs]) for wide in ("clamp", "passes")
+    )
+    print(f"script at 100 mm: nearest width {clamp:.3f}, passes {passes:.3f}")
+    assert passes >= 0.9  # 0.953
+    assert passes > clamp + 0.1

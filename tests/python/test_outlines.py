@@ -1,0 +1,286 @@
+"""Filled shapes to strokes: how many, along which lines, which way, in which order, and what each should become."""
+
+import numpy as np
+import pytest
+from svg_text import read
+
+from brushsvg import _core
+from brushsvg.errors import Error
+from brushsvg.strokes import strokes
+
+BAR = "M10 20H60V26H10Z"
+
+
+def painted(body: str, **settings):
+    made, _ = strokes(read(f'<g fill="#123456" stroke="none">{body}</g>'), **settings)
+    return made
+
+
+def path(d: str, rest: str = "") -> str:
+    return f'<path id="p" d="{d}" {rest}/>'
+
+
+def ends(stroke) -> list[list[float]]:
+    """Start and end of a stroke in the drawing's frame, y down."""
+    return [[round(x, 1), round(50 - y, 1)] for x, y in (stroke.middle_mm[0, :2], stroke.middle_mm[-1, 6:])]
+
+
+def marks(made) -> list:
+    """What discs of the found widths paint along the found lines."""
+    bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
+    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
+
+
+def wanted(made) -> list:
+    return _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
+
+
+def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
+    (bar,) = painted(path(BAR))
+    assert bar.id == "p"
+    assert (bar.colour, bar.closed, len(bar.middle_mm)) == ("#123456", False, 1)
+    assert ends(bar) == [[13, 23], [57, 23]]
+    assert {round(half, 3) for _, half in bar.half_width} == {3}
+    assert _core.area(bar.wanted_mm) == pytest.approx(300)
+
+
+@pytest.mark.parametrize(
+    ("d", "start"),
+    [
+        (BAR, [13, 23]),  # to the right
+        ("M40 5V45H46V5Z", [43, 8]),  # down
+        ("M15 40L40 5L45 9L20 43Z", [41, 9]),  # down to the left
+        ("M15 5L45 36L41 40L11 9Z", [16, 10]),  # down to the right
+        ("M10 24L50 12V18L12 29Z", [13, 26]),  # flat and rising: to the right
+        ("M10 28L45 6Q52 11 46 22Z", [45, 8]),  # narrow on the left: set down wide, lifted thin
+    ],
+)
+def test_directions_are_those_of_writing(d, start):
+    (stroke,) = painted(path(d))
+    assert ends(stroke)[0] == pytest.approx(start, abs=2.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "d", "count"),
+    [
+        ("T", "M10 5H50V11H33V45H27V11H10Z", 2),
+        ("X", "M10 5H17L30 20L43 5H50L34 25L50 45H43L30 30L17 45H10L26 25Z", 2),
+        ("L", "M10 5H16V39H40V45H10Z", 1),
+        ("H", "M10 5H16V22H34V5H40V45H34V28H16V45H10Z", 3),
+        ("V", "M10 5H16L25 36L34 5H40L28 45H22Z", 2),
+        ("O", "M30 5A20 20 0 1 0 30 45A20 20 0 1 0 30 5ZM30 11A14 14 0 1 1 30 39A14 14 0 1 1 30 11Z", 1),
+        ("D", "M10 5H25A20 20 0 0 1 25 45H10ZM16 11V39H25A14 14 0 0 0 25 11Z", 2),
+        ("i", "M10 20H16V45H10ZM10 8H16V14H10Z", 2),
+    ],
+)
+def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
+    made = painted(path(d))
+    assert [stroke.id for stroke in made] == (
+        ["p"] if count == 1 else [f"p/{k}" for k in range(1, count + 1)]
+    )
+    shape = wanted(made)
+    assert _core.overlap(marks(made), shape) > 0.91
+    assert made[0].closed == (name == "O")
+    (outline,) = read(f'<g fill="red" stroke="none">{path(d)}</g>').elements
+    from brushsvg.outlines import filled
+
+    assert _core.overlap(shape, filled(outline)) > 0.999, "the parts make up the shape"
+
+
+def test_pointed_tips_can_be_painted():
+    made = painted(path("M10 20L60 24L10 28Z"))
+    halves = [half for _, half in made[0].half_width]
+    assert 0.0099 * max(halves) < min(halves) < 0.1
+    from brushsvg import find_brush
+
+    assert _core.compensate(made, find_brush("round-6"), (100, 50)).plan.passes
+
+
+def test_where_lines_cross_they_stay_straight_and_both_have_the_crossing():
+    bar, stem = painted(path("M10 5H50V11H33V45H27V11H10Z"))
+    line = _core.flatten(bar, 0.001)
+    assert np.abs(line[:, 1] - 42).max() < 0.1, "the bar does not sag towards the stem"
+    assert ends(bar) == [[13, 8], [47, 8]]
+    assert ends(stem)[0][1] < 11, "the stem begins under the bar"
+    assert _core.area(bar.wanted_mm) == pytest.approx(40 * 6, abs=1.5)
+
+
+def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
+    assert [ends(stroke)[0][0] < 20 for stroke in painted(path("M10 5H50V11H33V45H27V11H10Z"))] == [
+        True,
+        False,
+    ]
+    falling, leg = painted(path("M43 8L47 12L7 46L3 42ZM13 33L42 44L40 49L11 37Z"))
+    assert ends(falling)[0][0] > 40, "it begins farther from the upper left than the leg, which hangs on it"
+    assert ends(leg)[0][0] < 20
+    words = painted("".join(path(f"M{x} 20V40H{x + 5}V20Z").replace('"p"', f'"p{x}"') for x in (50, 10, 30)))
+    assert [stroke.id for stroke in words] == ["p50", "p10", "p30"], "elements keep the drawing's order"
+    row = painted(path("M50 20V40H55V20ZM10 22V40H15V22ZM30 18V40H35V18Z"))
+    assert [ends(stroke)[0][0] for stroke in row] == sorted(ends(stroke)[0][0] for stroke in row)
+
+
+def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
+    disc = "M{0} 25A{1} {1} 0 1 0 {2} 25A{1} {1} 0 1 0 {0} 25Z".format
+    made = painted(
+        path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"')
+    )
+    assert _core.area(wanted(made)) == pytest.approx(np.pi * (15**2 - 2 * 0.5**2), rel=0.01)
+
+
+def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a_line_that_ends_there():
+    from brushsvg.outlines import outline_strokes
+
+    square = [[4.3, 11.6], [7.1, 15.8], [2.2, 19.0], [-0.5, 14.8]]
+    slanted = [[14.7, 1.2], [2.6, 13.5], [-1.6, 9.3], [10.4, -3.0]]
+    stub = [[-1.2, 0.3], [4.5, 0.9], [4.2, 3.6], [-1.5, 3.0]]
+    shape = _core.fill([np.array(bar) for bar in (square, stub, slanted)])
+    assert _core.area(wanted(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=0.02)
+
+
+def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
+    from brushsvg.outlines import outline_strokes
+
+    random = np.random.default_rng(5)
+    for _ in range(40):
+        bars = []
+        for _ in range(random.integers(2, 8)):
+            turn, (length, width) = random.uniform(0, np.pi), random.uniform((4, 1), (20, 6))
+            corners = np.array([[-length, -width], [length, -width], [length, width], [-length, width]]) / 2
+            turned = [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+            bars.append(corners @ turned + random.uniform(0, 20, 2))
+        shape = _core.fill(bars)
+        made = outline_strokes(shape)
+        assert _core.area(wanted(made)) == pytest.approx(_core.area(shape), rel=0.03)
+        assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape)
+        assert _core.overlap(marks(made), shape) > 0.7
+
+
+def test_corners_stay_corners():
+    (ell,) = painted(path("M10 5H16V39H40V45H10Z"))
+    line = _core.flatten(ell, 0.001)
+    corner = np.hypot(line[:, 0] - 13, line[:, 1] - 8).min()
+    assert corner < 0.3
+    assert ends(ell) == [[13, 8], [37, 42]]
+
+
+def test_a_dot_is_a_dab_and_a_ring_is_closed_and_turns_left_from_the_top():
+    (dot,) = painted('<circle id="p" cx="20" cy="20" r="4"/>')
+    assert np.ptp(dot.middle_mm) == pytest.approx(10, abs=0.1), "one point, x 20, y 30"
+    assert dot.half_width[0][1] == pytest.approx(4, abs=0.05)
+    (ring,) = painted(
+        path("M30 5A20 20 0 1 0 30 45A20 20 0 1 0 30 5ZM30 11A14 14 0 1 1 30 39A14 14 0 1 1 30 11Z")
+    )
+    start, later = ring.middle_mm[0, :2], _core.flatten(ring, 0.01)[20, :2]
+    assert start[1] > 40
+    assert later[0] < start[0]
+
+
+def test_fill_and_stroke_is_the_shape_grown_by_half_the_stroke():
+    body = path(BAR, 'stroke="red" stroke-width="2"')
+    (grown,) = painted(body)
+    assert {round(half, 2) for _, half in grown.half_width} == {4}
+    assert _core.area(grown.wanted_mm) == pytest.approx(300 + 2 * 56 + np.pi, abs=0.1)
+    (line,) = painted(body, paths_as="stroke")
+    assert line.closed and line.half_width == [(0.0, 1.0)] and line.wanted_mm == []
+    (shape,) = painted(body, paths_as="outline")
+    assert {round(half, 2) for _, half in shape.half_width} == {3}
+
+
+def test_a_fill_that_does_not_show_beside_its_stroke_leaves_a_line():
+    (line,) = painted(path("M10 10L30 11L50 10", 'stroke="red" stroke-width="4"'))
+    assert line.wanted_mm == []
+    assert ends(line) == [[10, 10], [50, 10]]
+    assert len(painted(path("M10 10L30 30L50 10", 'stroke="red" stroke-width="4"'))[0].wanted_mm) == 1
+
+
+def test_hairline_contours_can_be_read_as_shapes():
+    contour = path(BAR, 'fill="none" stroke="red" stroke-width=".1"')
+    assert painted(contour)[0].half_width == [(0.0, 0.05)]
+    (shape,) = painted(contour, paths_as="outline")
+    assert {round(half, 2) for _, half in shape.half_width} == {3}
+
+
+def test_nothing_left_is_refused():
+    with pytest.raises(Error, match=r"nothing to paint.*no stroke"):
+        painted(path(BAR), paths_as="stroke")
+    with pytest.raises(Error, match=r"nothing to paint.*holds no area"):
+        painted(path("M10 10H50Z"))
+    _, notices = strokes(read(f'<g fill="red" stroke="none">{path(BAR)}<path id="thin" d="M0 0H5Z"/></g>'))
+    assert [(n.where, n.sentence) for n in notices] == [("thin", "its outline holds no area: left out")]
+
+
+def test_open_paths_are_closed_and_rules_of_filling_are_kept():
+    (bar,) = painted(path("M10 20H60V26H10"))
+    assert _core.area(bar.wanted_mm) == pytest.approx(300)
+    square = "M10 5H50V45H10ZM20 15H40V35H20Z"
+    assert _core.area(wanted(painted(path(square)))) == pytest.approx(1600)
+    assert _core.area(wanted(painted(path(square, 'fill-rule="evenodd"')))) == pytest.approx(1200)
+
+
+def test_the_same_shape_gives_the_same_strokes():
+    d = "M10 5H50V11H33V45H27V11H10Z"
+    one, two = (
+        [(s.middle_mm.tolist(), s.half_width, [r.tolist() for r in s.wanted_mm]) for s in painted(path(d))]
+        for _ in range(2)
+    )
+    assert one == two
+
+
+HOSTILE = {
+    "an eight": "M10 5L50 45H10L50 5Z",
+    "an edge there and back": "M10 10H50H10V30H12V10Z",
+    "the same contour three times": BAR * 3,
+    "a needle": "M10 10L50 10.0001L10 10.0002Z",
+    "a pixel": "M10 10h.01v.01h-.01Z",
+    "pixels in a row": "".join(f"M{10 + k * 0.01:.2f} 10h.01v.01h-.01Z" for k in range(500)),
+    "corners that touch": "M10 10H20V20H10ZM20 20H30V30H20Z",
+    "a corner on an edge": "M10 10H40V20H10ZM25 20L30 30L20 30Z",
+    "a hole that touches": "M10 10H40V40H10ZM10 25L25 15L25 35Z",
+    "nested holes": "".join(f"M{k} {k}H{49 - k}V{49 - k}H{k}Z" for k in range(1, 24, 2)),
+    "a comb": "M5 5" + "".join("h.2v30h.2v-30" for _ in range(200)) + "v-2H5Z",
+    "a loop that folds over itself": "M10 30C60 -20 -10 -20 40 30C70 60 -20 60 10 30Z",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
+def test_hostile_outlines(name, rule):
+    design = read(f'<g fill="red" stroke="none" fill-rule="{rule}">{path(HOSTILE[name])}</g>')
+    try:
+        made, _ = strokes(design)
+    except Error as refusal:
+        assert "nothing to paint" in str(refusal)
+        return
+    for stroke in made:
+        assert np.isfinite(stroke.middle_mm).all()
+        assert all(np.isfinite(knot).all() and knot[1] >= 0 for knot in stroke.half_width)
+        assert stroke.wanted_mm
+    from brushsvg.outlines import filled
+
+    shape = filled(design.elements[0])
+    assert _core.area(wanted(made)) == pytest.approx(_core.area(shape), rel=0.02, abs=1e-3)
+    if name not in ("an eight", "a loop that folds over itself", "nested holes", "a hole that touches"):
+        assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape) + 1e-3, (
+            "no paint outside"
+        )
+
+
+def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
+    points = np.random.default_rng(1).uniform(0, 50, (1000, 2)).round(2)
+    scribble = "M" + "L".join(f"{x} {y}" for x, y in points) + "Z"
+    design = read(f'<g fill="red" stroke="none">{path(scribble)}<path id="bar" d="{BAR}"/></g>')
+    made, (notice,) = strokes(design)
+    assert [stroke.id for stroke in made] == ["bar"]
+    assert notice.where == "p"
+    assert "crosses itself about" in notice.sentence and "more than 10000: left out" in notice.sentence
+    with pytest.raises(Error, match="nothing to paint: its outline crosses itself"):
+        painted(path(scribble))
+
+
+def test_a_hundred_thousand_vertices():
+    angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
+    ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])
+    from brushsvg.outlines import outline_strokes
+
+    made = outline_strokes(_core.fill([ring], "nonzero"))
+    assert len(made) == 1
