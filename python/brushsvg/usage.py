@@ -122,6 +122,7 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
     _add_layout(check)
+    _add_wide(check)
     check.add_argument(
         "--z-offset", metavar="MM", type=_height, help="default: the one that the program names"
     )
@@ -206,15 +207,19 @@ def _add_choices(command: argparse.ArgumentParser) -> None:
     add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     _add_layout(command)
-    add(
-        "--wide",
-        choices=("clamp", "passes", "refuse"),
-        help="filled outlines wider than the brush: its greatest width, several passes, or no; default: clamp",
-    )
+    _add_wide(command)
     add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
     add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
     add("--tolerance", metavar="MM", type=_tolerance, help="of the painted middle line; default: 0.05")
     add("--lenient", action="store_true", help="take what is sound of damaged geometry")
+
+
+def _add_wide(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--wide",
+        choices=("clamp", "passes", "refuse"),
+        help="filled outlines wider than the brush: its greatest width, several passes, or no; default: clamp",
+    )
 
 
 def _add_layout(command: argparse.ArgumentParser) -> None:
