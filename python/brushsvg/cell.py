@@ -257,14 +257,7 @@ def _check_paint(cell: Cell) -> None:
         where = f"station {number}"
         if names.index(station.name) != number - 1:
             raise Error(f"the name {station.name!r} is given twice", where=where)
-        top = cell.heights.safe_mm - cell.heights.clearance_mm
-        if station.rim_mm > top:
-            raise Error(
-                f"rim_mm {station.rim_mm:g} is above {top:g}, clearance_mm below the safe height", where=where
-            )
-        for point in station.wipe_mm:
-            if point[2] > cell.heights.safe_mm:
-                raise Error(f"a wipe at {point[2]:g} mm is above the safe height", where=where)
+        _check_heights_of(station, cell, where)
         if station.by_hand and (station.depth_mm or station.wipe_mm):
             raise Error("a person dips here: depth_mm and wipe_mm have no meaning", where=where)
         if (
@@ -283,6 +276,30 @@ def _check_paint(cell: Cell) -> None:
         raise Error("there is no station to reload at", where="reload")
     if cell.reload.wash and cell.reload.wash not in names:
         raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash")
+
+
+def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
+    if station.by_hand:
+        if cell.servo:
+            raise Error("a servo's brush falls while the program waits: by_hand cannot be", where=where)
+        return
+    top = cell.heights.safe_mm - cell.heights.clearance_mm
+    if not station.surface_mm <= station.rim_mm <= top:
+        raise Error(
+            f"rim_mm {station.rim_mm:g} is outside the range [{station.surface_mm:g}, {top:g}] mm, from the paint's "
+            f"surface to clearance_mm below the safe height",
+            where=where,
+        )
+    bottom = station.surface_mm - station.depth_mm
+    if bottom < cell.heights.lowest_mm:
+        raise Error(f"it dips to {bottom:g} mm, below lowest_mm {cell.heights.lowest_mm:g}", where=where)
+    for point in station.wipe_mm:
+        if not station.rim_mm <= point[2] <= cell.heights.safe_mm:
+            raise Error(
+                f"a wipe at {point[2]:g} mm is outside the range [{station.rim_mm:g}, {cell.heights.safe_mm:g}] mm, "
+                f"from the rim to the safe height",
+                where=where,
+            )
 
 
 def entries(table) -> dict[str, Entry]:

@@ -13,12 +13,17 @@ from .cell import Blending, Cell, robot_from_paper
 from .errors import Error
 from .frame import moved
 from .limits import broken_limits
-from .machine import off_sheet
+from .machine import DEFAULT_TOLERANCE_MM, off_sheet, text_of
+from .moves import Program
+from .paint import visits
+from .posts import POSTS
 from .posts.text import plain
+from .program import Job, unchecked_program
 from .readback import Readback, ReadSection, header_of
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
+STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a brush does not show it
 Problems = list[tuple[str, str]]
 
 
@@ -32,6 +37,7 @@ class Ran:
     plan: object
     marks: object
     problems: Problems
+    visits: tuple
 
 
 @dataclass(frozen=True)
@@ -44,17 +50,26 @@ class Made:
     sheet_mm: tuple[float, float] | None
     z_offset_mm: float
     first_stroke: int
+    compensation: str
+    tolerance_mm: float
+    lag_mm: float | None
 
 
 def made(text: str) -> Made:
     """Error when the header is not one of ours."""
     header = header_of(text)
+    if {"title", "cell"} <= set(header) and header["title"].startswith(("border of ", "how high the paper")):
+        raise Error("this program paints no drawing: there are no marks to compare")
     if not {"title", "brush", "cell"} <= set(header):
         raise Error("its header does not name title, brush and cell: brushsvg did not write this program")
     sheet = re.fullmatch(r"([\d.]+) x ([\d.]+) mm", header.get("sheet", ""))
     paper = re.match(r"[+-][\d.]+", header.get("paper", ""))
     resumed = re.fullmatch(r"from stroke (\d+)", header.get("resumed", ""))
+    how = re.match(r"(\w+), tolerance (\S+) mm(?:, lag (\S+) mm)?", header.get("compensation", ""))
     return Made(
+        compensation=how[1] if how else "closed",
+        tolerance_mm=float(how[2]) if how else DEFAULT_TOLERANCE_MM,
+        lag_mm=float(how[3]) if how and how[3] else None,
         title=header["title"],
         brush=header["brush"].rpartition(", ")[0] or header["brush"],
         cell=header["cell"].rpartition(", ")[0],
@@ -85,7 +100,57 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
     problems += broken_limits(plan, brush, cell, z_offset_mm) + off_sheet(marks, brush, sheet_mm)
-    return Ran(plan, marks, problems)
+    return Ran(plan, marks, problems, _visits(read, cell))
+
+
+def _visits(read: Readback, cell: Cell) -> tuple:
+    """For each stroke's section the stations that the program visits before it."""
+    by_name = {station.name: station for station in cell.stations}
+    found, waiting = [], []
+    for section in read.sections:
+        if section.title.startswith("paint: "):
+            name = _name(section)
+            if name not in by_name:
+                raise Error(f"cell {cell.name} has no station {name!r}, which the program visits")
+            waiting.append(by_name[name])
+        elif section.title.startswith("stroke "):
+            found.append(tuple(waiting))
+            waiting = []
+    return tuple(found)
+
+
+def again(ran: Ran, read: Readback, brush, cell: Cell, z_offset_mm: float) -> Program | None:
+    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch."""
+    titles = [section.title for section in read.sections if section.title.startswith("stroke ")]
+    if not titles or len(titles) != len(ran.plan.passes):
+        return None
+    first = int(re.match(r"stroke (\d+)", titles[0])[1])
+    passes = [ran.plan.passes[0]] * (first - 1) + list(ran.plan.passes)
+    plan = _core.Plan(brush.name, "", ran.plan.sheet_mm, passes)
+    stops = ((),) * (first - 1) + ran.visits
+    return unchecked_program(plan, brush, cell, (), Job(z_offset_mm, first, stops))
+
+
+def rewritten(program: Program, cell: Cell) -> str:
+    """Its text, without header."""
+    return "".join(text_of(POSTS[cell.language], program))
+
+
+def paint_problems(ran: Ran, expected, cell: Cell) -> Problems:
+    """(stroke, sentence) for the first stroke before which paint is fetched otherwise than the cell says."""
+    left: dict[str, list] = {}
+    for a_pass in expected.passes:
+        left.setdefault(_written(a_pass.stroke), []).append(a_pass)
+    names = [_written(a_pass.stroke) for a_pass in ran.plan.passes]
+    if sorted(names) != sorted(name for name, same in left.items() for _ in same):
+        return []  # told by matched(); what was painted before is not known
+    ordered = [left[name].pop(0) for name in names]
+    wanted = visits(_core.Plan("", "", ran.plan.sheet_mm, ordered), cell) or ((),) * len(ordered)
+    for a_pass, found, asked in zip(ordered, ran.visits, wanted, strict=True):
+        if found != asked:
+            told = [" and ".join(station.name for station in each) or "nothing" for each in (found, asked)]
+            return [(a_pass.stroke, f"before it the program visits {told[0]}, the cell asks for {told[1]}")]
+    return []
 
 
 @dataclass(frozen=True)
@@ -113,7 +178,7 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
         if step.centre is not None and last is not None:
             middle = moved(paper_from_robot, np.array([[*step.centre[:2], step.z]]))[0, :2]
             centres[-1] = (*middle.tolist(), step.centre[2])
-            chords = _chords(last, end, centres[-1])
+            chords = list(step.via) or _chords(last, end, centres[-1])
             points += chords
             owner += [number] * len(chords)
         points.append(end)
@@ -184,6 +249,96 @@ def _careless(section: ReadSection, track: _Track, brush, cell: Cell, here: np.n
             safe = f"the safe height {cell.heights.safe_mm:g} mm"
             yield f"line {step.line}: the tool travels at {low:.2f} mm, below {safe}"
         last = point
+
+
+def strayed(plan, expected, cell: Cell) -> Problems:
+    """(stroke, sentence) where a pass that was read does not run where the expected plan runs, by name."""
+    limit_mm = STRAY_MM + (cell.servo.step_mm if cell.servo else 0.0)
+    wanted: dict[str, list] = {}
+    for a_pass in expected.passes:
+        wanted.setdefault(_written(a_pass.stroke), []).append(a_pass)
+    problems = []
+    for a_pass in plan.passes:
+        same = wanted.get(_written(a_pass.stroke))
+        if not same:
+            continue  # told by matched()
+        meant = same.pop(0)
+        found, asked = _along(a_pass.poses_mm), _along(meant.poses_mm)
+        away_mm = max(_farthest(found, meant.poses_mm), _farthest(asked, a_pass.poses_mm))
+        if away_mm > limit_mm:
+            sentence = (
+                f"the program runs {away_mm:.2f} mm away from where the drawing asks it to: it was changed, or made "
+                "with other flags or of another drawing"
+            )
+            problems.append((a_pass.stroke, sentence))
+    return problems
+
+
+def _along(poses: np.ndarray) -> np.ndarray:
+    """Poses and the middles between them."""
+    poses = np.asarray(poses)
+    return np.vstack([poses, (poses[1:] + poses[:-1]) / 2])
+
+
+def _farthest(points: np.ndarray, path: np.ndarray) -> float:
+    """Largest distance [mm] of points (n, 3) from a path (m, 3) of straight moves."""
+    path = np.asarray(path)
+    starts, steps = path[:-1], np.diff(path, axis=0)
+    if not len(steps):
+        return float(np.linalg.norm(points - path[0], axis=1).max())
+    squares = np.maximum((steps**2).sum(axis=1), 1e-30)
+    farthest = 0.0
+    for first in range(0, len(points), 256):  # bounds the memory, nothing else
+        offset = points[first : first + 256, None] - starts
+        at = np.clip((offset * steps).sum(axis=2) / squares, 0, 1)
+        away = np.linalg.norm(offset - at[..., None] * steps, axis=2).min(axis=1)
+        farthest = max(farthest, float(away.max()))
+    return farthest
+
+
+def differing_line(text: str, written: str) -> str | None:
+    """A sentence on the first line that brushsvg would write otherwise for the same poses; None where there is none.
+
+    Numbers may differ by what rounding twice does to the last digit. The header is not looked at.
+    """
+    ours, theirs = _body(text), _body(written)
+    for k in range(max(len(ours), len(theirs))):
+        number, line = ours[k] if k < len(ours) else (0, "")
+        expected = theirs[k][1] if k < len(theirs) else ""
+        if line != expected and not _alike(line, expected):
+            if not line:
+                return f"the line {expected.strip()[:60]!r} is missing at the end"
+            instead = (
+                f"brushsvg would write {expected.strip()[:60]!r}" if expected else "nothing should follow"
+            )
+            return f"line {number}: {line.strip()[:60]!r}: for these strokes and this cell {instead}"
+    return None
+
+
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+def _body(text: str) -> list[tuple[int, str]]:
+    lines = enumerate(text.splitlines(), 1)
+    titles = r"\(?(stroke \d|paint: |border |end: )"
+    return [
+        (number, line)
+        for number, line in lines
+        if line.strip() and (re.match(titles, line) or not re.match(r"\(|  # (?!stroke|paint)", line))
+    ]
+
+
+def _alike(line: str, expected: str) -> bool:
+    if _NUMBER.sub("0", line) != _NUMBER.sub("0", expected):
+        return False
+    for found, wanted in zip(_NUMBER.findall(line), _NUMBER.findall(expected), strict=True):
+        decimals = len(wanted.partition(".")[2])
+        if (
+            len(found.partition(".")[2]) != decimals
+            or abs(float(found) - float(wanted)) > 3.1 * 10.0**-decimals
+        ):
+            return False
+    return True
 
 
 def matched(plan, strokes, resumed: bool = False) -> tuple[list, Problems]:

@@ -19,6 +19,7 @@ from .fold import folded
 from .importers import ReadOptions, read_drawing
 from .jobs import border, paper_height
 from .layout import Layout, arrange
+from .moves import duration_s
 from .posts import POSTS
 from .program import Job
 from .readback import read_program
@@ -97,27 +98,39 @@ def check_file(args) -> None:
         brush = _brush(args) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, _suffix(args.program), cell)
+    args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
     work = _prepare(args, cell, brush) if args.input else None
+    cell = machine.as_exact_as(cell, made.tolerance_mm)
     with about(args.program):
         sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
         if sheet_mm is None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
-        strokes, problems = None, ran.problems
+        again = checking.again(ran, read, brush, cell, z_offset_mm)
+        problems = ran.problems
+        if again and not cell.servo:  # whose steps of height cannot be told from the plan's
+            changed = checking.differing_line(text, checking.rewritten(again, cell))
+            problems = problems + ([("", changed)] if changed else [])
+        strokes, drawn = None, None
         if work:
+            expected = convert.in_loads(work, cell).plan
             strokes, unmatched = checking.matched(ran.plan, work.strokes, made.first_stroke > 1)
-            problems = problems + unmatched
+            problems = problems + unmatched + checking.strayed(ran.plan, expected, cell)
+            problems = problems + checking.paint_problems(ran, expected, cell)
             strokes = None if len(strokes) != len(ran.plan.passes) else strokes
+            drawn = work.strokes if made.first_stroke == 1 else None
         outlined = convert.outlined(ran.marks, brush, stage)
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
             _write({args.preview: convert.picture(_suffix(args.preview), shown, outlined)})
-        drawn = work.strokes if work and made.first_stroke == 1 else None
-        tell(convert.report_text(".json" if args.json else ".txt", shown, outlined, cell, drawn=drawn))
+        seconds = duration_s(again) if again else 0.0
+        suffix = ".json" if args.json else ".txt"
+        tell(convert.report_text(suffix, shown, outlined, cell, drawn=drawn, seconds=seconds))
     if problems:
-        raise RefusedError([(args.program, *problem) for problem in problems])
+        raise RefusedError([(args.program, *problem) for problem in folded(problems)])
     if not args.json:
-        tell(f"{args.program}: nothing forbids to run it\n")
+        known = "" if work else "; without its drawing nobody can say whether it is the right one"
+        tell(f"{args.program}: nothing forbids to run it{known}\n")
 
 
 def predict_file(args) -> None:

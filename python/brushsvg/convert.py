@@ -233,7 +233,8 @@ def _counted(stage, doing: str):
 def notes(work: Work) -> tuple[str, ...]:
     """Lines for a program's header: how it was made, and how much there is to know about it."""
     options = work.options
-    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm"
+    lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
+    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}"
     damaged = sum(notice.damaged for notice in work.notices)
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     return (made, count) if work.strokes is not None else (count,)
@@ -258,9 +259,9 @@ def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
     return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
-def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn=None) -> str:
+def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn=None, seconds=None) -> str:
     """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; drawn: see
-    report.measure."""
+    report.measure; seconds: how long it takes, where that is known better than from the plan."""
     known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
     is_drawing = work.strokes is not None
     rows, total = report.measure(work.plan, marks, work.brush, work.strokes, work.options.tolerance_mm, drawn)
@@ -271,7 +272,7 @@ def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn
         tolerance_mm=work.options.tolerance_mm if is_drawing else None,
         strokes=rows,
         total=total,
-        time_s=time_s(work.plan, work.brush, cell),
+        time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
         warnings=tuple(known),
     )
     return report.to_json(result) if suffix == ".json" else report.to_text(result)

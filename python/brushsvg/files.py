@@ -10,11 +10,20 @@ from pathlib import Path
 
 from .errors import Error
 
+LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
+
 
 def read_bytes(path: str | os.PathLike) -> bytes:
     """What a file holds. Error, with the path in `file`, when it cannot be read."""
     try:
-        return Path(path).read_bytes()
+        with open(path, "rb") as file:
+            data = file.read(LARGEST_BYTES + 1)
+        if len(data) > LARGEST_BYTES:
+            raise Error(
+                f"the file is larger than {LARGEST_BYTES // 2**20} MB, the range is [0, {LARGEST_BYTES // 2**20}] MB",
+                file=os.fspath(path),
+            )
+        return data
     except FileNotFoundError:
         sentence = "there is no such file"
     except IsADirectoryError:

@@ -9,7 +9,7 @@ import numpy as np
 from .cell import Cell, robot_from_paper
 from .errors import Error
 from .limits import workspace_problems
-from .moves import Move, Program, Section, Wait
+from .moves import Move, Program, Section, Wait, rise_over
 from .program import approach_mm_s, over
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
@@ -43,7 +43,10 @@ def border(bounds_mm, brush, cell: Cell, z_offset_mm: float = 0.0) -> Program:
         ]
         yield Section("border of the job, at safe height", (start, *steps))
 
-    return Program((), cell, robot_from_paper(cell, z_offset_mm), sections)
+    frame = robot_from_paper(cell, z_offset_mm)
+    return Program(
+        (), cell, frame, sections, height, rise_over(cell, (max(right, 0.0), max(top, 0.0)), frame)
+    )
 
 
 def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
@@ -89,7 +92,8 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
                 f"stroke {number} of {len(heights)}: first to paint means --z-offset {height:.2f}", each
             )
 
-    return Program((), cell, robot_from_paper(cell), sections)
+    frame = robot_from_paper(cell)
+    return Program((), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame))
 
 
 def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:

@@ -40,7 +40,12 @@ def broken_limits(plan, brush, cell: Cell, z_offset_mm: float = 0.0) -> list[tup
         problems += [(a_pass.stroke, sentence) for sentence in sentences]
     for station in cell.stations:
         points = station_points(station, cell)
-        problems += [(station.name, said) for said in workspace_problems(points, cell, z_offset_mm)]
+        problems += [(station.name, said) for said in _workspace(moved(frame, points), cell)]
+        problems += [(station.name, said) for said in _sheet(points, plan.sheet_mm, cell)]
+        width, height = plan.sheet_mm
+        inside = (points[:, :2] > 0).all(axis=1) & (points[:, :2] < (width, height)).all(axis=1)
+        if inside.any() and not station.by_hand:
+            problems.append((station.name, f"its place lies on the sheet of {width:g} x {height:g} mm"))
     return problems
 
 

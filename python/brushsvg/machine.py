@@ -182,14 +182,23 @@ def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
     """Lines of a header that every program has: machine, frame, time."""
     lines = [
         f"cell: {made.cell.name}, {made.cell.language}",
-        "frame: origin at the lower left corner of the sheet, mm; z 0: the brush just touches",
+        _frame_line(made),
         f"time: about {clock(duration_s(made))}",
     ]
     if job.z_offset_mm:
-        lines.append(f"paper: {job.z_offset_mm:+.2f} mm against the cell's")
+        lines.append(f"paper: {job.z_offset_mm:+.4f} mm against the cell's")
     if made.cell.paper.example:
         lines.append("caution: the paper's place is the example of the cell file; teach yours")
     return lines
+
+
+def _frame_line(made: Program) -> str:
+    paper = made.cell.paper
+    at_origin = not (paper.taught_mm or any(paper.origin_mm) or any(paper.rotation_deg))
+    if at_origin or not POSTS[made.cell.language].in_robot_frame:
+        return "frame: the sheet's lower left corner, mm; z 0 touches"
+    x, y, z = made.robot_from_frame[:3, 3]
+    return f"frame: the machine's, mm; sheet's corner at {x:.1f} {y:.1f} {z:.1f}"
 
 
 def text_of(post: Post, made: Program) -> Iterator[str]:

@@ -62,12 +62,23 @@ class Section:
 @dataclass(frozen=True)
 class Program:
     """header: lines for the reader, each beginning with a word of ours. sections() yields them one by one: a page of
-    strokes is never held twice. robot_from_frame: (4, 4), the frame of all points, in the robot's."""
+    strokes is never held twice. robot_from_frame: (4, 4), the frame of all points, in the robot's. rise_mm: how high
+    the tool is over everything, where it goes first; rise_in_robot_mm: the same in the robot's frame."""
 
     header: tuple[str, ...]
     cell: Cell
     robot_from_frame: np.ndarray
     sections: Callable[[], Iterator[Section]]
+    rise_mm: float
+    rise_in_robot_mm: float
+
+
+def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
+    """The height, in the frame that the paper's frame is given in, of the safe height's highest place [mm]."""
+    margin = cell.workspace.margin_mm
+    x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
+    corners = np.array([(a, b, cell.heights.safe_mm) for a in x for b in y])
+    return float(moved(frame, corners)[:, 2].max())
 
 
 def in_robot_frame(program: Program) -> Program:
@@ -80,7 +91,7 @@ def in_robot_frame(program: Program) -> Program:
         for section in program.sections():
             yield Section(section.title, tuple(_turned(step, frame) for step in section.steps))
 
-    return replace(program, robot_from_frame=np.eye(4), sections=sections)
+    return replace(program, robot_from_frame=np.eye(4), sections=sections, rise_mm=program.rise_in_robot_mm)
 
 
 def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:

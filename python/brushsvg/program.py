@@ -11,7 +11,7 @@ from .blends import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .cell import Cell, Station, robot_from_paper
 from .errors import Error
 from .limits import broken_limits
-from .moves import Arc, Move, Program, Section, Wait
+from .moves import Arc, Move, Program, Section, Wait, rise_over
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
@@ -55,7 +55,8 @@ def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job
             yield from (visit(station, brush, cell) for station in visits)
             yield Section(f"stroke {number} of {count}: {a_pass.stroke}", _moves(a_pass, brush, cell))
 
-    return Program(header, cell, robot_from_paper(cell, job.z_offset_mm), sections)
+    frame = robot_from_paper(cell, job.z_offset_mm)
+    return Program(header, cell, frame, sections, cell.heights.safe_mm, rise_over(cell, plan.sheet_mm, frame))
 
 
 def over(point, height_mm: float) -> np.ndarray:

@@ -92,9 +92,30 @@ FULL = replace(
             wipe_mm=((260.0, 10.0, 3.0),),
         ),
         Station("water", (280.0, 10.0), depth_mm=12.0),
-        Station("by hand", (0.0, -20.0), by_hand=True),
+        Station("mixed", (0.0, -20.0), depth_mm=3.0),
     ),
 )
+
+
+@pytest.mark.parametrize(
+    ("station", "words"),
+    [
+        (Station("ink", (1.0, 2.0), depth_mm=25.0), "it dips to -25 mm, below lowest_mm -20"),
+        (
+            Station("ink", (1.0, 2.0), surface_mm=5.0, depth_mm=2.0),
+            "rim_mm 0 is outside the range [5, 18] mm",
+        ),
+        (
+            Station("ink", (1.0, 2.0), depth_mm=2.0, wipe_mm=((0.0, 0.0, -3.0),)),
+            "a wipe at -3 mm is outside the range [0, 20]",
+        ),
+        (Station("ink", (1.0, 2.0), by_hand=True), "a servo's brush falls while the program waits"),
+    ],
+)
+def test_a_station_that_the_tool_cannot_visit_is_refused(station, words):
+    with pytest.raises(Error) as refusal:
+        read_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
+    assert words in str(refusal.value)
 
 
 def test_what_is_written_is_read_back():
@@ -113,7 +134,7 @@ def test_what_is_written_is_read_back():
         (
             {"stations": (Station("ink", (1.0, 2.0), depth_mm=5.0, rim_mm=19.0),)},
             "station 1",
-            "rim_mm 19 is above 18",
+            "rim_mm 19 is outside the range [0, 18] mm",
         ),
         ({"servo": Servo(((0.0, 1.0), (0.0, 2.0)))}, "servo.table", "steadily rising or falling"),
         ({"servo": Servo(((0.0, 1.0), (9.0, 2.0)))}, "servo.table", "must hold lowest_mm -20 and safe_mm 20"),

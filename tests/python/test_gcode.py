@@ -1,6 +1,7 @@
 """G-code: the words LinuxCNC wants, and numbers that no controller can misread."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -131,3 +132,15 @@ def test_comments_are_ascii_closed_and_never_commands():
 
 def test_same_moves_same_bytes():
     assert text_of(*TWO) == text_of(*TWO)
+
+
+def test_the_first_rise_is_over_every_place_of_paper_that_leans():
+    cell = find_cell("linuxcnc-3axis")
+    cell = replace(cell, paper=replace(cell.paper, rotation_deg=(0.0, -2.0, 0.0)))
+    a_pass = SimpleNamespace(stroke="s", poses_mm=np.array(TWO[0][1], float), speed_mm_s=20.0, arcs=())
+    plan = SimpleNamespace(sheet_mm=(300.0, 60.0), passes=[a_pass])
+    made = program(plan, SimpleNamespace(name="b", max_speed_mm_s=25.0), cell)
+    text = "".join(POSTS["linuxcnc"].write(in_robot_frame(made)))
+    heights = [float(z) for z in re.findall(r"Z(-?[\d.]+)", text)]
+    right_edge = 330 * np.sin(np.radians(2)) + 10 * np.cos(np.radians(2))
+    assert heights[0] == pytest.approx(right_edge, abs=1e-3) and heights[0] == max(heights)

@@ -189,3 +189,15 @@ def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
         "paint: black",
     ]
     assert titles[5] == "stroke 3 of 5: long~2"
+
+
+def test_a_station_on_the_sheet_or_far_from_it_is_refused():
+    for place, words in (
+        ((40.0, 30.0), "its place lies on the sheet of 400 x 100 mm"),
+        ((-90.0, 10.0), "60.00 mm beyond the left edge of the workspace"),
+    ):
+        cell = cell_with(Reload("stroke"), Station("ink", place, depth_mm=5.0))
+        told = [
+            sentence for where, sentence in broken_limits(plan_of((9, "", "")), BRUSH, cell) if where == "ink"
+        ]
+        assert len(told) == 1 and words in told[0]

@@ -62,3 +62,12 @@ def test_only_what_grbl_knows():
 
 def test_values_follow_the_table():
     assert [value_at(CELL.servo, height) for height in (-10, -5, 0, 5, 9)] == [200, 400, 600, 800, 800]
+
+
+def test_the_output_is_never_switched_off():
+    """In laser mode grbl's output is off wherever the motion mode is not G1, at M5 and at M2."""
+    text = text_of(*TWO, cell="grbl-servo")
+    code = [line for line in text.splitlines() if line and not line.startswith("(")]
+    assert code.index("G1 F3000.0") < code.index("M3 S800")
+    assert not re.search(r"(?m)^(G0|M5|M2|M30)", text)
+    assert text.endswith("(end: the brush is held up)\n")

@@ -143,8 +143,8 @@ def test_the_brush_is_raised_before_it_goes_anywhere():
 
 def test_paint_is_waited_for():
     stations = (
-        Station("red", (150.0, 10.0), depth_mm=5.0, hold_s=0.5),
-        Station("hand", (150.0, 50.0), by_hand=True),
+        Station("red", (120.0, 10.0), depth_mm=5.0, hold_s=0.5),
+        Station("hand", (120.0, 50.0), by_hand=True),
     )
     cell = replace(CELL, reload=Reload("stroke"), stations=stations)
     robot = run(text_for(cell, visits=((stations[0],), (), (stations[1],))))

@@ -48,7 +48,7 @@ def _program(program: Program, modes: list[str], line_limit: int) -> Iterator[st
     here, feed = None, ""
     for section in program.sections():
         if here is None:  # up before going anywhere
-            yield f"G0 Z{number(section.moves[0].points_mm[0, 2], decimals)}\n"
+            yield f"G0 Z{number(program.rise_mm, decimals)}\n"
         yield "\n" + comment(section.title, line_limit)
         for step in section.steps:
             if isinstance(step, Wait):

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..cell import Servo
-from ..moves import SAFE_MEANINGS, Move, Program, Wait
+from ..moves import Move, Program, Wait
 from .gcode import GRBL_LINE_LIMIT, MODES, comment, wait
 from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
 
+SERVO_END = "end: the brush is held up"
 TOUCHING = (
     "land",
     "paint",
@@ -22,16 +23,20 @@ TOUCHING = (
 
 def grbl_servo(program: Program) -> Iterator[str]:
     """Heights become values of the servo's table, held along each line; a line is split where the height
-    changes by more than the servo's step. The machine should run in grbl's laser mode ($32=1), in which a new S
-    takes effect with the move that it stands in and does not stop it."""
+    changes by more than the servo's step. The machine must run in grbl's laser mode ($32=1), in which a new S
+    takes effect with the move that it stands in and does not stop it. There grbl switches the output off wherever
+    the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
+    to the last, and the program ends without M2, the brush held up."""
     servo, decimals = program.cell.servo, program.cell.decimals
     yield "".join(comment(line, GRBL_LINE_LIMIT) for line in program.header)
     yield comment("note: set $32=1, so that S changes along with the moves", GRBL_LINE_LIMIT)
     yield f"{MODES}\n"
-    here, feed = None, ""
+    feed = f"F{feed_mm_min(program.cell.speeds.travel_mm_s):.1f}\n"
+    yield f"G1 {feed}"
+    here = None
     for section in program.sections():
         if here is None:  # up before going anywhere
-            here = section.moves[0].points_mm[0] * (0, 0, 1)
+            here = np.array([0.0, 0.0, program.rise_mm])
             yield f"M3 S{value_at(servo, here[2])}\n"
             yield f"G4 P{number(servo.settle_s, 3)}\n" if servo.settle_s else ""
         yield "\n" + comment(section.title, GRBL_LINE_LIMIT)
@@ -40,12 +45,12 @@ def grbl_servo(program: Program) -> Iterator[str]:
                 yield wait(step, GRBL_LINE_LIMIT)
                 continue
             wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
-            if step.meaning not in SAFE_MEANINGS and wanted != feed:
+            if wanted != feed:
                 yield wanted
                 feed = wanted
             yield from _lines(step, here, servo, decimals)
             here = step.points_mm[-1]
-    yield "\nM5\nM2\n"
+    yield "\n" + comment(SERVO_END, GRBL_LINE_LIMIT)
 
 
 def value_at(servo: Servo, height_mm):
@@ -57,10 +62,9 @@ def value_at(servo: Servo, height_mm):
 def _lines(move: Move, here: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
     path = np.vstack([here, move.points_mm])
     still = np.abs(np.diff(path[:, :2], axis=0)).max(axis=1) < 0.5 * 10.0**-decimals
-    word = "G0" if move.meaning in SAFE_MEANINGS else "G1"
     for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
         if not still[run[0]]:
-            yield from _ways(path[run[0] : run[-1] + 2], word, servo, decimals)
+            yield from _ways(path[run[0] : run[-1] + 2], servo, decimals)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for k in run:
@@ -79,9 +83,9 @@ def _lift(from_mm: float, to_mm: float, speed_mm_s: float, step_mm: float, servo
         yield f"G4 P{number(servo.settle_s, 3)}\n"
 
 
-def _ways(path: np.ndarray, word: str, servo: Servo, decimals: int) -> Iterator[str]:
+def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
     """Straight lines, each in parts on which the height is the one half way along the part."""
-    pattern = f"{word} X%.{decimals}f Y%.{decimals}f S%d"
+    pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
     for first in range(0, len(path) - 1, ROWS_AT_ONCE):
         part = path[first : first + ROWS_AT_ONCE + 1]
         way = np.diff(part, axis=0)

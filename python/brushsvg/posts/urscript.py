@@ -38,7 +38,7 @@ def urscript(program: Program) -> Iterator[str]:
                 yield _wait(step)
                 continue
             if not risen:  # straight up before going anywhere
-                yield from _rise(step.points_mm[0, 2], step.speed_mm_s, acceleration, decimals)
+                yield from _rise(program.rise_mm, step.speed_mm_s, acceleration, decimals)
                 risen = True
             yield from _lines(step, acceleration, decimals)
     yield "end\n"

@@ -17,7 +17,8 @@ class Step(NamedTuple):
     """One move to a point [mm], in the frame of the program; NaN is a coordinate that was never named.
 
     line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
-    blend_mm: how far before the point the next move may begin.
+    blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
+    frame of the program, which is the paper's where there is one.
     """
 
     line: int
@@ -28,6 +29,7 @@ class Step(NamedTuple):
     speed_mm_s: float
     blend_mm: float = 0.0
     centre: tuple[float, float, int] | None = None
+    via: tuple = ()
 
 
 @dataclass

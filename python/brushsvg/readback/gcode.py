@@ -9,12 +9,14 @@ import numpy as np
 
 from ..cell import Cell
 from ..errors import Error
+from ..posts.gcode_servo import SERVO_END
 from . import Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
 _CODE = re.compile(r"(?:[A-Z]-?\d+(?:\.\d+)?(?: |$))+")
 _WORD = re.compile(r"([A-Z])(-?\d+(?:\.\d+)?)")
 MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61"}
+ALONE = {"G0", "G1", "G2", "G3", "G4", "G64", "G61", "M0", "M2", "M3"}  # no other word of command beside them
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
@@ -35,7 +37,9 @@ class _Reader:
 
     def read(self, text: str) -> Readback:
         for number, line in enumerate(text.splitlines(), 1):
-            if comment := _COMMENT.fullmatch(line):
+            if self.servo and line == f"({SERVO_END})":
+                self.ended = True
+            elif comment := _COMMENT.fullmatch(line):
                 self.out.comment(comment[1])
             elif line:
                 self._line(number, line)
@@ -43,7 +47,8 @@ class _Reader:
             if mode not in self.seen:
                 raise Error(f"{mode} is missing: nothing says that its numbers are {meaning}")
         if not self.ended:
-            raise Error("M2 is missing: the program has no end, or half of it was lost")
+            end = f"({SERVO_END})" if self.servo else "M2"
+            raise Error(f"{end} is missing: the program has no end, or half of it was lost")
         return self.out
 
     def _line(self, number: int, line: str) -> None:
@@ -53,6 +58,8 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         words = [(letter, value) for letter, value in _WORD.findall(line)]
         codes = [letter + value for letter, value in words if letter in "GM"]
+        if len(codes) > 1 and (set(codes) & ALONE):
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         values = {letter: float(value) for letter, value in words if letter not in "GM"}
         if len(values) + len(codes) != len(words) or not set(values) <= set("XYZIJFPS"):
             raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
@@ -66,7 +73,7 @@ class _Reader:
             self._lift(number, values)
         elif codes[0] == "M2":
             self.ended = True
-        elif not set(codes) <= MODES | set(NEEDED) | {"M0", "M5"}:
+        elif not set(codes) <= MODES | set(NEEDED) | {"M0"}:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         self.seen |= set(codes)
 

@@ -70,4 +70,4 @@ def _circle(out: Readback, number: int, values: np.ndarray) -> None:
         ]
     ) / (2 * cross)
     turn = 1 if cross > 0 else -1
-    steps.append(Step(number, False, *end, speed, 0.0, (float(centre[0]), float(centre[1]), turn)))
+    steps.append(Step(number, False, *end, speed, 0.0, (float(centre[0]), float(centre[1]), turn), (via,)))
