@@ -5,8 +5,7 @@ void bind_simulate(py::module_& m) {
     using namespace brushsvg;
     m.def(
         "simulate",
-        [](const Plan& plan, const Brush& brush, double tolerance_mm, bool for_outlines,
-           const py::object& progress) {
+        [](const Plan& plan, const Brush& brush, double tolerance_mm, bool for_outlines, const py::object& progress) {
             Marks marks;
             marks.passes.resize(plan.passes.size());
             in_chunks(plan.passes.size(), 64, progress, [&](std::size_t i) {

@@ -263,26 +263,39 @@ def strayed(plan, expected, cell: Cell) -> Problems:
         if not same:
             continue  # told by matched()
         meant = same.pop(0)
-        found, asked = _along(a_pass.poses_mm), _along(meant.poses_mm)
-        away_mm = max(_farthest(found, meant.poses_mm), _farthest(asked, a_pass.poses_mm))
+        found, asked = _round(a_pass), _round(meant)
+        away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
         if away_mm > limit_mm:
             sentence = (
                 f"the program runs {away_mm:.2f} mm away from where the drawing asks it to: it was changed, or made "
                 "with other flags or of another drawing"
             )
             problems.append((a_pass.stroke, sentence))
+        if abs(a_pass.speed_mm_s - meant.speed_mm_s) > 0.1:
+            asked = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
+            sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked}"
+            problems.append((a_pass.stroke, sentence))
     return problems
+
+
+def _round(a_pass) -> np.ndarray:
+    """The poses, those on a circle with chords between them."""
+    poses = np.asarray(a_pass.poses_mm)
+    centres = {k: (*arc.centre_mm, arc.direction) for arc in a_pass.arcs for k in range(arc.first, arc.last)}
+    points = [poses[0]]
+    for k in range(len(poses) - 1):
+        points += _chords(poses[k], poses[k + 1], centres[k]) if k in centres else []
+        points.append(poses[k + 1])
+    return np.array(points)
 
 
 def _along(poses: np.ndarray) -> np.ndarray:
     """Poses and the middles between them."""
-    poses = np.asarray(poses)
     return np.vstack([poses, (poses[1:] + poses[:-1]) / 2])
 
 
 def _farthest(points: np.ndarray, path: np.ndarray) -> float:
     """Largest distance [mm] of points (n, 3) from a path (m, 3) of straight moves."""
-    path = np.asarray(path)
     starts, steps = path[:-1], np.diff(path, axis=0)
     if not len(steps):
         return float(np.linalg.norm(points - path[0], axis=1).max())

@@ -183,3 +183,60 @@ def test_a_stroke_in_parts_is_one_stroke_of_the_drawing(desk, capsys):
     assert (status, err) == (0, [])
     assert re.search(r"(?m)^curve~2 +- ", out)
     assert re.search(r"(?m)^all +0\.9[67]\d ", out)
+
+
+CHANGED = {
+    ".ngc": [
+        (edited(r"(?m)^G64.*\n", ""), "for these strokes and this cell brushsvg would write 'G64 P0.0100'"),
+        (edited(r"G64 P\S+", "G64 P5.0000"), "would write 'G64 P0.0100'"),
+        (edited(r"(?m)^(\(stroke 2.*\n)", r"\1G0 X5000.0000 Y5000.0000 Z10.0000\n"), "line \\d+: 'G0 X5000"),
+        (edited(r"(?m)^G0 Z10.*\n", ""), "would write 'G0 Z10.0000'"),
+        (edited("F1500.0", "F99999.0"), "would write 'F1500.0'"),
+        (edited("F1200.0", "F600.0", 0), "painted at 10.0 mm/s, the drawing asks for 20.0 mm/s"),
+        (edited(r"Y(\d)", r"Y1\1", 0), "away from where the drawing asks it to"),
+        (
+            lambda text: re.sub(r"Z-(\d)\.5", r"Z-\1.6", text),
+            "runs 0.10 mm away from where the drawing asks it to",
+        ),
+        (
+            lambda text: "\n".join(text.splitlines()[:40] + text.splitlines()[46:]) + "\n",
+            "mm away from where",
+        ),
+        (edited("(?m)^G3 ", "G2 "), "away from where the drawing asks it to"),
+    ],
+    ".script": [
+        (edited(r"(?m)^  set_tcp.*\n", ""), "would write 'set_tcp"),
+        (edited(r"paper = p\[-0\.15", "paper = p[-0.25"), "would write 'paper = p"),
+        (edited("3.1415927", "0.0000000"), "would write 'return pose_trans"),
+        (edited("a=0.5000", "a=9.5000"), "for these strokes and this cell"),
+        (edited(r"r=0\.0", "r=0.1"), "for these strokes and this cell"),
+        (edited(r"(?m)^  if here.*\n.*\n  end\n", ""), "for these strokes and this cell"),
+    ],
+}
+
+
+@pytest.mark.parametrize("suffix", CHANGED)
+def test_whatever_was_changed_is_told(desk, capsys, suffix):
+    """Seen by comparing with the drawing's own plan, and with what would be written for the same strokes."""
+    cell = ("--cell", "ur5e") if suffix == ".script" else ()
+    drawing = DRAWING.replace("h-12", "h-12 l12 2")  # a corner too sharp for anything but a turn in place
+    (desk / "two.svg").write_text(drawing)
+    assert call(capsys, "convert", "two.svg", f"two{suffix}", *cell)[0] == 0
+    text = (desk / f"two{suffix}").read_text()
+    assert call(capsys, "check", f"two{suffix}", "two.svg")[0] == 0
+    for edit, words in CHANGED[suffix]:
+        (desk / f"two{suffix}").write_text(edit(text))
+        status, _, err = call(capsys, "check", f"two{suffix}", "two.svg")
+        assert (status, any(re.search(words, line) for line in err)) == (1, True), (words, err)
+
+
+def test_paint_fetched_otherwise_is_told(desk, capsys):
+    paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "ink"\nplace_mm = [-10, 10]\ndepth_mm = 5\n'
+    (desk / "painter.toml").write_text((SHIPPED / "linuxcnc-3axis.toml").read_text() + paint)
+    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "painter.toml")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    parts = re.split(r"(?m)^(?=\((?:paint|stroke))", text)
+    (desk / "two.ngc").write_text("".join(part for k, part in enumerate(parts) if k != 3))
+    status, _, err = call(capsys, "check", "two.ngc", "two.svg", "--cell", "painter.toml")
+    assert status == 1
+    assert any("before it the program visits nothing, the cell asks for ink" in line for line in err), err
