@@ -4,7 +4,8 @@ import pytest
 from svg_text import lines, read, sentences
 
 from brushsvg import Error
-from brushsvg.importers import svg_element
+from brushsvg.importers import ReadOptions, svg_element
+from brushsvg.importers.svg import read_svg
 
 LINE = '<path id="l" d="M0 0H4"/>'
 
@@ -240,3 +241,13 @@ def test_settings_that_make_no_sense_stop_convert(setting, sentence):
     (notice,) = design.notices
     assert sentence in notice.sentence and notice.damaged
     assert not design.elements[0].settings
+
+
+def test_the_advice_for_illustrator_is_of_the_drawing_whatever_the_sheet():
+    text = (
+        '<!-- Generator: Adobe Illustrator 27.0 --><svg xmlns="http://www.w3.org/2000/svg" width="283.5px" '
+        'height="198.4px" viewBox="0 0 283.5 198.4"><path fill="none" stroke="#000" d="M50 60h100"/></svg>'
+    )
+    for sheet_mm in (None, (200.0, 150.0)):
+        (notice,) = read_svg(text.encode(), ReadOptions(sheet_mm=sheet_mm)).notices
+        assert 'width="283.5pt" height="198.4pt"' in notice.sentence

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+
 from ..design import Design, Notice
 from ..errors import Error
 from ..units import MM_PER
@@ -33,7 +35,7 @@ def _read(document: Document, options: ReadOptions) -> Design:
         raise Error(f"the root element is <{local(root)[:40]}>, not <svg>")
     page = read_page(root.attrib, options.sheet_mm)
     chosen = selected(root, options.select) if options.select else None
-    walk = Walk(root, page, chosen, _beside(document, page))
+    walk = Walk(root, page, chosen, _beside(document, root, page))
     walk.run()
     if not walk.elements:
         raise nothing_to_paint(walk.notices, walk.left_out)
@@ -42,14 +44,15 @@ def _read(document: Document, options: ReadOptions) -> Design:
     return Design(page.sheet_mm, tuple(walk.elements), tuple(walk.notices), name, walk.layers)
 
 
-def _beside(document: Document, page: Page) -> list[Notice]:
+def _beside(document: Document, root: ET.Element, page: Page) -> list[Notice]:
     """What is to be told of what stands beside the tree."""
     notices = []
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
         notices.append(Notice("xml-stylesheet", sentence))
     if any("Adobe Illustrator" in comment for comment in document.comments) and page.in_px:
-        w, h = page.sheet_mm
+        own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
+        w, h = own.sheet_mm
         sentence = (
             "written by Adobe Illustrator, which counts 72 px to the inch: if it has "
             f"{w * 96 / 72:.4g} x {h * 96 / 72:.4g} mm there, give its svg "

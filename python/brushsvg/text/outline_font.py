@@ -18,7 +18,7 @@ from ..errors import Error
 from .setting import Placed, Setting
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
-_NOTICE = "its letters are outlines: they come as filled shapes, not as lines to follow"
+_NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
 
 def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
