@@ -1,3 +1,4 @@
+#include "angles.hpp"
 #include "bindings.hpp"
 #include "law_fit.hpp"
 
@@ -23,4 +24,20 @@ void bind_fit(py::module_& m) {
         .def_readonly("held", &LawFit::held);
     m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"), unlocked,
           "Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals.");
+    py::enum_<Lines>(m, "Lines").value("plain", Lines::plain).value("total", Lines::total);
+    m.def(
+        "from_angles",
+        [](double alpha0, std::vector<double> s_mm, std::vector<double> alpha, std::vector<double> beta, Lines lines) {
+            const FromAngles out = from_angles({alpha0, std::move(s_mm), std::move(alpha), std::move(beta)}, lines);
+            py::dict d;
+            d["lag_mm"] = out.lag_mm;
+            d["lag_rmse_mm"] = out.lag_rmse_mm;
+            d["tip_gap_mm"] = out.tip_gap_mm;
+            d["tip_gap_rmse_mm"] = out.tip_gap_rmse_mm;
+            d["left_out"] = out.left_out;
+            return d;
+        },
+        py::arg("alpha0"), py::arg("s_mm"), py::arg("alpha"), py::arg("beta") = std::vector<double>{},
+        py::arg("lines") = Lines::plain,
+        "Lag and tip gap [mm] from angles [rad] after distances s [mm] of a straight drag (article (19) to (23)).");
 }

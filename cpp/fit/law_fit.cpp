@@ -22,6 +22,8 @@ using Eigen::VectorXd;
 // tells apart, far above rounding.
 constexpr double kLeastResidualMm = 1e-9;
 constexpr int kMostReweightings = 500;
+constexpr double kEdgeMm = 1e-6;  // nearer to its floor a law counts as on it: the solver stops within 1e-9
+constexpr double kHeld = 1e6;     // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
 constexpr double kLeastPositiveMm = 0.01;  // of a law that must stay above 0: a lever of no length has no heading
 
 struct Problem {
@@ -83,27 +85,58 @@ bool keeps(const std::vector<double>& c, const LawShape& shape) {
     return !shape.rising || (value(c, lo) >= 0.0 && least(slope_of(c)) >= -1e-12);
 }
 
-/// weight * (max(floor, A x) - y), and bends * x: what Ceres minimises under bounds on x.
-class Residuals : public ceres::CostFunction {
+/// min |A x - y| over x >= 0 by Lawson and Hanson's active sets: exact after finitely many steps. (Ceres' bounds, which
+/// project each step, stall far from the optimum on columns as alike as these.)
+VectorXd least_squares_above_zero(const MatrixXd& a, const VectorXd& y) {
+    const Index n = a.cols();
+    VectorXd x = VectorXd::Zero(n);
+    std::vector<Index> in;
+    const double tiny = 1e-12 * a.norm() * y.norm();
+    for (Index step = 0; step < 10 * n; ++step) {
+        VectorXd pull = a.transpose() * (y - a * x);
+        for (Index i : in) pull[i] = 0.0;
+        Index best = 0;
+        if (!(pull.maxCoeff(&best) > tiny)) break;
+        in.push_back(best);
+        while (!in.empty()) {
+            const VectorXd s = a(Eigen::all, in).colPivHouseholderQr().solve(y);
+            double reach = 1.0;
+            for (std::size_t k = 0; k < in.size(); ++k)
+                if (s[Index(k)] <= 0.0) reach = std::min(reach, x[in[k]] / (x[in[k]] - s[Index(k)]));
+            std::vector<Index> left;
+            for (std::size_t k = 0; k < in.size(); ++k) {
+                x[in[k]] += reach * (s[Index(k)] - x[in[k]]);
+                if (reach < 1.0 && s[Index(k)] <= 0.0 && x[in[k]] <= 1e-14 * (1.0 - s[Index(k)]))
+                    x[in[k]] = 0.0;
+                else
+                    left.push_back(in[k]);
+            }
+            const bool whole = left.size() == in.size();
+            in = left;
+            if (whole) break;
+        }
+    }
+    return x;
+}
+
+/// weight * (max(floor, A x) - y), which has a kink and so needs a solver of non-linear problems.
+class Floored : public ceres::CostFunction {
  public:
-    Residuals(const MatrixXd& a, const VectorXd& y, const VectorXd& weight, double floor, const MatrixXd& bends)
-        : a_(a), y_(y), weight_(weight), floor_(floor), bends_(bends) {
-        set_num_residuals(int(a.rows() + bends.rows()));
+    Floored(const MatrixXd& a, const VectorXd& y, const VectorXd& weight, double floor)
+        : a_(a), y_(y), weight_(weight), floor_(floor) {
+        set_num_residuals(int(a.rows()));
         mutable_parameter_block_sizes()->push_back(int(a.cols()));
     }
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
         const Eigen::Map<const VectorXd> x(parameters[0], a_.cols());
-        Eigen::Map<VectorXd> out(residuals, num_residuals());
         const VectorXd p = a_ * x;
-        out.head(a_.rows()) = weight_.cwiseProduct(p.cwiseMax(floor_) - y_);
-        out.tail(bends_.rows()) = bends_ * x;
+        Eigen::Map<VectorXd>(residuals, a_.rows()) = weight_.cwiseProduct(p.cwiseMax(floor_) - y_);
         if (jacobians && jacobians[0]) {
             using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-            Eigen::Map<RowMajor> slope(jacobians[0], num_residuals(), a_.cols());
-            slope.topRows(a_.rows()) = weight_.asDiagonal() * a_;
+            Eigen::Map<RowMajor> slope(jacobians[0], a_.rows(), a_.cols());
+            slope = weight_.asDiagonal() * a_;
             for (Index i = 0; i < a_.rows(); ++i)
                 if (p[i] < floor_) slope.row(i).setZero();
-            slope.bottomRows(bends_.rows()) = bends_;
         }
         return true;
     }
@@ -112,57 +145,76 @@ class Residuals : public ceres::CostFunction {
     MatrixXd a_;
     VectorXd y_, weight_;
     double floor_;
-    MatrixXd bends_;
 };
 
-/// Least squares over control points x that keep the shape: all at least kLeastPositiveMm, or each step up at least 0.
-VectorXd solve_held(const Problem& problem, const VectorXd& weight, bool bound) {
-    const LawShape& shape = problem.shape;
-    const auto [lo, hi] = shape.range_mm;
-    const int n = shape.degree;
-    MatrixXd from_x = powers_from_controls(n, lo, hi);
-    if (shape.rising)  // x: the first control point, then the steps
-        from_x = from_x * MatrixXd(MatrixXd::Ones(n + 1, n + 1).triangularView<Eigen::Lower>());
-    LawShape whole = shape;
-    whole.through_zero = false;
-    const MatrixXd a = powers(problem.depth, whole) * from_x;
-    MatrixXd bends = MatrixXd::Zero(std::max(0, n - 1), n + 1);
-    for (Index i = 0; i < bends.rows(); ++i) {
-        if (shape.rising)
-            bends.row(i).segment(i + 1, 2) << -1.0, 1.0;
-        else
-            bends.row(i).segment(i, 3) << 1.0, -2.0, 1.0;
-    }
-    bends *= shape.smoothing;
-    VectorXd x = VectorXd::Constant(n + 1, shape.rising ? problem.value.cwiseAbs().maxCoeff() / (n + 1)
-                                                        : std::max(kLeastPositiveMm, problem.value.mean()));
-    if (shape.through_zero) x[0] = 0.0;
+VectorXd solve_floored(const MatrixXd& a, const VectorXd& y, const VectorXd& weight, double floor) {
+    // begins as if there were no floor, on the values above it
+    const VectorXd above = (y.array() > floor).cast<double>().matrix().cwiseProduct(weight);
+    VectorXd x = (above.asDiagonal() * a).colPivHouseholderQr().solve(above.cwiseProduct(y));
     ceres::Problem solver;
-    solver.AddParameterBlock(x.data(), n + 1);
-    solver.AddResidualBlock(new Residuals(a, problem.value, weight, shape.floor, bends), nullptr, x.data());
-    if (shape.through_zero) solver.SetManifold(x.data(), new ceres::SubsetManifold(n + 1, {0}));
-    for (int i = shape.through_zero ? 1 : 0; bound && i <= n; ++i)
-        if (shape.rising || shape.positive)
-            solver.SetParameterLowerBound(x.data(), i, shape.rising ? 0.0 : kLeastPositiveMm);
+    solver.AddResidualBlock(new Floored(a, y, weight, floor), nullptr, x.data());
     ceres::Solver::Options options;
     options.logging_type = ceres::SILENT;
     options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = 1000;
-    options.function_tolerance = 1e-16;
-    options.gradient_tolerance = 1e-14;
-    options.parameter_tolerance = 1e-14;
+    options.max_num_iterations = 500;
+    options.function_tolerance = 1e-15;
+    options.parameter_tolerance = 1e-13;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &solver, &summary);
-    if (!summary.IsSolutionUsable()) throw Error("no law of this shape could be fitted: " + summary.message);
+    if (!summary.IsSolutionUsable()) throw Error("no law with a floor could be fitted: " + summary.message);
+    // A value below the floor pulls the law down to the floor and no further. The slope jumps there, and the solver
+    // stops on such an edge; the best place along it is found by holding the law to the floor at that depth.
+    const VectorXd p = a * x;
+    MatrixXd rows = weight.asDiagonal() * a;
+    VectorXd wanted = weight.cwiseProduct(y);
+    for (Index i = 0; i < p.size(); ++i) {
+        const bool edge = std::abs(p[i] - floor) < kEdgeMm;
+        const double scale = edge ? kHeld : p[i] < floor ? 0.0 : 1.0;
+        wanted[i] = scale * weight[i] * (edge ? floor : y[i]);
+        rows.row(i) *= scale;
+    }
+    const VectorXd along = rows.colPivHouseholderQr().solve(wanted);
+    const auto cost = [&](const VectorXd& at) {
+        return weight.cwiseProduct((a * at).cwiseMax(floor) - y).squaredNorm();
+    };
+    return cost(along) < cost(x) ? along : x;
+}
+
+/// Over the values of the law's control points on the range: all at least kLeastPositiveMm, or none below the one
+/// before.
+VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool held) {
+    const LawShape& shape = problem.shape;
+    const int n = shape.degree;
+    const Index first = shape.through_zero ? 1 : 0;
+    MatrixXd from_x = powers_from_controls(n, shape.range_mm[0], shape.range_mm[1]);
+    MatrixXd bends = MatrixXd::Zero(std::max(0, n - 1), n + 1);
+    for (Index i = 0; i < bends.rows(); ++i) bends.row(i).segment(i, 3) << 1.0, -2.0, 1.0;
+    if (shape.rising) {  // x: the first control point, then the steps up
+        const MatrixXd sums = MatrixXd::Ones(n + 1, n + 1).triangularView<Eigen::Lower>();
+        from_x = from_x * sums;
+        bends = bends * sums;
+    }
+    LawShape whole = shape;
+    whole.through_zero = false;
+    const Index rows = problem.depth.size();
+    MatrixXd a(rows + bends.rows(), n + 1);
+    a << weight.asDiagonal() * powers(problem.depth, whole) * from_x, shape.smoothing * bends;
+    VectorXd y = VectorXd::Zero(a.rows());
+    y.head(rows) = weight.cwiseProduct(problem.value);
+    VectorXd x = VectorXd::Constant(n + 1, held && !shape.rising ? kLeastPositiveMm : 0.0);
+    if (first) x[0] = 0.0;
+    y -= a * x;
+    const MatrixXd free = a.rightCols(n + 1 - first);
+    x.tail(n + 1 - first) += held ? least_squares_above_zero(free, y) : VectorXd(free.colPivHouseholderQr().solve(y));
     const VectorXd c = from_x * x;
-    return shape.through_zero ? VectorXd(c.tail(n)) : c;
+    return c.tail(n + 1 - first);
 }
 
 /// Free coefficients for given weights. `held`: under the bounds of the shape.
 VectorXd solve(const Problem& problem, const VectorXd& weight, bool held) {
-    if (held || std::isfinite(problem.shape.floor) || problem.shape.smoothing > 0.0)
-        return solve_held(problem, weight, held);
+    if (held || problem.shape.smoothing > 0.0) return solve_controls(problem, weight, held);
     const MatrixXd a = powers(problem.depth, problem.shape);
+    if (std::isfinite(problem.shape.floor)) return solve_floored(a, problem.value, weight, problem.shape.floor);
     return (weight.asDiagonal() * a).colPivHouseholderQr().solve(weight.cwiseProduct(problem.value));
 }
 
@@ -217,6 +269,8 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
             throw Error("value " + std::to_string(i + 1) + " or its depth is not a finite number");
     if (shape.degree < 0 || shape.degree > kMaxLawDegree)
         throw Error("a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
+    if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
+        throw Error("a law with a floor cannot be held to a shape as well");
     if (shape.smoothing > 0.0) return;  // which decides where the data leave it open
     const std::size_t terms = std::size_t(shape.degree) + (shape.through_zero ? 0 : 1);
     std::set<double> different(depth.begin(), depth.end());

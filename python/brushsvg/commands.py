@@ -282,6 +282,24 @@ def brush_check(args) -> None:
     tell(f"{args.input}: brush {brush.name} can be used\n")
 
 
+def calibrate_file(args) -> None:
+    from .calibrate import calibrate
+    from .fit_report import report, report_picture
+    from .measurements import read_measurements
+
+    _check_places(args.output, args.plot)
+    with about(args.input):
+        measured = read_measurements(read_bytes(args.input), _suffix(args.input))
+        name = os.path.splitext(os.path.basename(args.output))[0]
+        made = calibrate(measured, measured.name or name, args.norm == "absolute", args.total)
+        files = {args.output: write_brush(made.brush)}
+        if args.plot:
+            files[args.plot] = report_picture(made, _suffix(args.plot))
+    _write(files)
+    warn(args.output, remarks(made.brush))
+    tell(report(made))
+
+
 def brush_new(args) -> None:
     from .new_brush import new_brush, read_widths
 

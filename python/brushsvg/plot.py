@@ -15,14 +15,19 @@ INK, QUIET, BAND = "#2b3a67", "#767a82", "#3f8fd9"
 SHADES = ("#b9c3de", "#2b3a67")  # of footprints, shallow to deep
 
 
-def brush_picture(brush, suffix: str) -> bytes:
-    """.svg or .png; Error with the command to run where matplotlib is not installed."""
+def brush_picture(brush, suffix: str, data: dict | None = None) -> bytes:
+    """.svg or .png. data: law -> (n, 2) depths and values [mm] that it was fitted to.
+
+    Error with the command to run where matplotlib is not installed.
+    """
     figure = _figure((11, 7.2))
     grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 1.1))
     depths = np.linspace(*brush.depth_range_mm, 201)
     for number, (name, meaning) in enumerate(LAWS):
         axes = figure.add_subplot(grid[number // 2, number % 2])
         _law(axes, depths, name, meaning, getattr(brush, name), law_band(brush, name, depths))
+        if data and name in data:
+            axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6)
     _footprints(figure.add_subplot(grid[:, 2]), brush)
     figure.suptitle(_plain(brush.name))
     return encoded(figure, suffix)

@@ -136,6 +136,18 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--json", action="store_true", help="as JSON")
     report.set_defaults(run="report_file", parser=report)
 
+    fit = commands.add_parser("calibrate", help="make a brush of what was measured")
+    fit.add_argument("input", metavar="MEASUREMENTS", help="what was measured (.json .csv)")
+    fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
+    fit.add_argument(
+        "--norm", choices=("squares", "absolute"), default="squares", help="what is least; default: squares"
+    )
+    fit.add_argument(
+        "--total", action="store_true", help="total least squares for series of angles; else plain ones"
+    )
+    fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
+    fit.set_defaults(run="calibrate_file", parser=fit)
+
     for kind, about, told, file in (
         ("brush", "look at brushes", "laws and ranges", "brush.json"),
         ("cell", "look at cells: machines and their limits", "heights, speeds and limits", "cell.toml"),
@@ -380,6 +392,14 @@ def _check_operands(args) -> None:
         args.parser.error(f"--taught is given {len(args.taught)} times, not three or four")
     if args.run == "brush_new" and not (args.width_at or args.widths):
         args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
+    if args.run == "calibrate_file":
+        _check_extension(args, args.input, (".json", ".csv"))
+        _check_extension(args, args.output, (".json",))
+        if args.plot:
+            _check_extension(args, args.plot, PREVIEWS)
+        if len({os.path.realpath(path) for path in (args.input, args.output, args.plot or "/")}) < 3:
+            args.parser.error("two of the files are the same")
+        return
     if args.run == "brush_plot":
         _check_extension(args, args.output, PREVIEWS)
     if args.run.startswith(("brush_", "cell_")):

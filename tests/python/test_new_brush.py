@@ -114,7 +114,7 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
         ("brush new round-6 --lag 5 --width-at 3=2", 1, "comes along: give yours another name"),
         ("brush new mine --lag 5 --widths none.csv", 1, "none.csv: there is no such file"),
         ("brush new mine --lag 5 --width-at 3=7 --width-at 8=2", 1, "must not fall with depth"),
-        ("brush plot round-6 out.pdf", 2, ".svg or .png"),
+        ("brush plot round-6 out.pdf", 2, ".png or .svg"),
     ],
 )
 def test_wrong_use(typed, status, said, tmp_path, monkeypatch, capsys):
