@@ -1,5 +1,6 @@
 """Calibration gives back the brush that made the measurements; these come from the slow stepping simulator."""
 
+import itertools
 import json
 from functools import cache
 
@@ -40,24 +41,23 @@ WIDTHS = values(DEPTHS, 2 * HALF * DEPTHS)
 
 
 @cache
-def corner(depth, method="rope"):
-    """TCP along +x to (0, 0), settled, then along +y; rows every 0.5 mm: TCP, contact. Steps of 0.001 mm after the corner."""
-    poses = [[-80.0, 0.0, -depth], [0.0, 0.0, -depth]] + [[0.0, 0.5 * k, -depth] for k in range(1, 17)]
-    poses = np.array([[-80.0, 0.0, 0.0], *poses])
-    contact = oracle.step_all([poses[:2], poses[1:3]][1:], [law("round")], 1000, method)[0]
-    settled = contact[-1]
-    assert np.hypot(*settled) == pytest.approx(lag(depth), abs=1e-3), "the patch trails by the lag"
-    out = [settled]
-    tcp = poses[2:]
-    for k in range(1, len(tcp)):  # pulled step by step from where it settled
-        p, r = out[-1], lag(depth)
+def corner(depth):
+    """TCP along +x to (0, 0), settled, then 8 mm along +y at one depth: TCP and contact (17, 2), every 0.5 mm.
+
+    The patch is pulled to within r of the TCP, nothing more, in steps of 0.001 mm after the corner.
+    """
+    start = np.array([[[-80.0, 0.0, -depth], [0.0, 0.0, -depth]]])
+    tcp = np.array([[0.0, 0.5 * k] for k in range(17)])
+    contact = [oracle.step_all(start, [law("round")], 4000, "rope")[0, -1]]
+    for q0, q1 in itertools.pairwise(tcp):
+        p = contact[-1]
         for t in np.linspace(0, 1, 501)[1:]:
-            q = tcp[k - 1, :2] + t * (tcp[k, :2] - tcp[k - 1, :2])
-            lever = q - p
+            lever = q0 + t * (q1 - q0) - p
             reach = np.hypot(*lever)
-            p = p if reach <= r else q - r * lever / reach
-        out.append(p)
-    return tcp[:, :2], np.array(out)
+            p = p if reach <= lag(depth) else p + lever * (1 - lag(depth) / reach)
+        contact.append(p)
+    assert np.hypot(*contact[0]) == pytest.approx(lag(depth), abs=1e-3), "the patch trails by the lag"
+    return tcp, np.array(contact)
 
 
 def series(depth, rng=None, noise_deg=0.0):

@@ -1,15 +1,17 @@
 """brushsvg calibrate: files in, a brush that can be used and a report out; nothing where it cannot be used."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from brushsvg import find_brush
+from brushsvg import _core, find_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.measurements import read_measurements
 
+ROOT = Path(__file__).parents[2]
 TABLE = "kind,depth_mm,value_mm\n" + "".join(
     f"lag,{d},{5 + d + 0.1 * (-1) ** d}\nwidth,{d},{0.8 * d}\ntip_gap,{d},{0.5 * d + 0.02 * (d % 3)}\n"
     for d in range(1, 8)
@@ -94,3 +96,16 @@ def test_json_that_is_none(content, where):
     with pytest.raises(Error) as refusal:
         read_measurements(text.encode(), ".json")
     assert refusal.value.where == where
+
+
+def test_the_example_of_the_documents_is_read():
+    """Its angles are those of r = 7.4 and b = 1.5 mm, to the tenth of a degree that is printed."""
+    text = (ROOT / "docs" / "calibration.md").read_text(encoding="utf-8")
+    example = text[text.index('    {"format"') :].split("\n\n")[0].replace(", ...]", "]")
+    measured = read_measurements(example.encode(), ".json")
+    assert measured.name == "mine" and set(measured.rows) == {"width", "angles", "straight"}
+    row = measured.rows["angles"][0].numbers
+    s, *angles = (row[name] for name in ("s_mm", "alpha_deg", "beta_deg"))
+    found = _core.from_angles(np.pi / 2, s, *(np.radians(each) for each in angles))
+    assert found["lag_mm"] == pytest.approx(7.4, abs=0.03)
+    assert found["tip_gap_mm"] == pytest.approx(1.5, abs=0.03)
