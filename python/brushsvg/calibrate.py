@@ -10,16 +10,17 @@ import numpy as np
 from . import _core, shapes
 from .errors import Error
 from .measurements import Measurements, Row
+from .new_brush import GAP_PER_HALF, WIDEST_PER_HALF, need_fits, outlines_assumed
 
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
 # The article's laws: r quartic, b linear through 0, x_w cubic with floor 0; the width, of which it prints none, rises
 # from 0 as a parabola.
 DEGREES = {"lag": 4, "tip_gap": 1, "tip_to_widest": 3, "half_width": 2}
 FROM_ZERO = ("tip_gap", "half_width")
-# What is assumed of a round brush where nothing was measured, in half widths; as in new_brush.
+# What is assumed of a round brush where nothing was measured, in half widths from the tip.
 ASSUMED = {
-    "tip_gap": (1.2, "The centre of friction is taken to lie 1.2 half widths from the tip."),
-    "tip_to_widest": (1.8, "The widest section is taken to lie 1.8 half widths from the tip."),
+    "tip_gap": (GAP_PER_HALF, "The centre of friction"),
+    "tip_to_widest": (WIDEST_PER_HALF, "The widest section"),
 }
 FLOOR_PER_HALF = 0.3  # nearer to the tip the widest section is not drawn: the flanks would fold into a line
 SUMS = ("angular", "straight", "side_view")  # these say how long r + b is, and nothing of either
@@ -59,6 +60,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
 
     Raises Error where the measurements leave a law open, or give a brush that cannot be used.
     """
+    need_fits()
     maker = _Maker(measured, absolute)
     points, remarks = _direct(measured, total)
     maker.fit("half_width", points)
@@ -259,7 +261,8 @@ class _Maker:
     def _law(self, law: str) -> _core.Profile:
         half = self.done["half_width"].fit.law
         if law not in self.done:
-            share, source = ASSUMED[law]
+            share, what = ASSUMED[law]
+            source = f"{what} is taken to lie {share:g} half widths from the tip."
             return _core.Profile([share * c for c in half.coefficients], source=source, assumed=True)
         profile = self.done[law].fit.law
         kinds = sorted({point.where.split("[")[0] for point in self.done[law].points})
@@ -285,6 +288,7 @@ class _Maker:
             self._widen(brush, covariance)
         depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
         brush.footprints = _core.FootprintTable([_outline(brush, depth) for depth in depths])
+        brush.extra = outlines_assumed("drops whose widest section and width are those of the laws.")
         _core.check(brush)
         return brush
 

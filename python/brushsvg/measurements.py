@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from .errors import Error
@@ -54,7 +55,10 @@ class Measurements:
 def read_measurements(data: bytes, suffix: str) -> Measurements:
     """Error names the row or key. suffix: .json or .csv."""
     text = data.decode("utf-8-sig", "replace")
-    found = _read_table(text) if suffix == ".csv" else _read_json(text)
+    try:
+        found = _read_table(text) if suffix == ".csv" else _read_json(text)
+    except csv.Error as problem:
+        raise Error(f"this is not a table: {problem}") from None
     depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
     if not depths:
         raise Error("there is no measurement in it")
@@ -92,7 +96,9 @@ def _read_table(text: str) -> Measurements:
 
 def _read_json(text: str) -> Measurements:
     try:
-        content = json.loads(text)
+        content = json.loads(text, object_pairs_hook=_once)
+    except Error:
+        raise
     except (ValueError, RecursionError) as problem:
         raise Error(f"this is not valid JSON: {problem}") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
@@ -155,6 +161,16 @@ def _row(kind: str, row: dict, where: str) -> Row:
 
 
 def _number(value, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise Error(f"{value!r:.24} is not a finite number", where)
-    return float(value)
+    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
+        with suppress(OverflowError):  # an integer beyond all floats
+            return float(value)
+    raise Error(f"{value!r:.24} is not a finite number", where)
+
+
+def _once(pairs: list[tuple[str, object]]) -> dict:
+    """An object; Error for a key that stands twice, of which one would be lost."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise Error("the key stands twice", next(name for name in names if names.count(name) > 1))
+    return found

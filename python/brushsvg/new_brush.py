@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
+from collections.abc import Iterator
 
 from . import _core, shapes
 from .errors import Error
@@ -32,6 +34,7 @@ def new_brush(
     widths_mm: (depth, width) pairs, in any order; depth_max_mm: how deep it may be pressed, the deepest width by
     default. A lag of 0 makes a pen with a round nib. Raises Error for numbers that no brush can have.
     """
+    need_fits()
     widths = _sound(widths_mm)
     deepest = widths[-1][0] if depth_max_mm is None else depth_max_mm
     if not widths[-1][0] <= deepest <= LONGEST_MM:
@@ -58,20 +61,38 @@ def new_brush(
     brush.footprints = _core.FootprintTable(
         [_outline(brush, deepest * k / DEPTHS) for k in range(1, DEPTHS + 1)]
     )
+    what = "Drops" if lag_mm > 0 else "Discs"
+    brush.extra = outlines_assumed(f"{what} as wide as half_width says; the same when pressed straight down.")
     _core.check(brush)
     return brush
 
 
+def outlines_assumed(source: str) -> str:
+    """What a brush file says beside its laws when nobody measured its outlines, as JSON."""
+    return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})
+
+
+def need_fits() -> None:
+    """Error where the library was built without Ceres."""
+    if not hasattr(_core, "fit_law"):
+        raise Error("this brushsvg was built without fits; build it with Ceres (libceres-dev)")
+
+
 def read_widths(text: str) -> list[tuple[float, float]]:
     """(depth, width) pairs in mm of a table with the columns depth_mm and width_mm. Error names the line."""
-    rows = csv.DictReader(io.StringIO(text.removeprefix("\ufeff")))
+    try:
+        return list(_width_rows(csv.DictReader(io.StringIO(text.removeprefix("\ufeff")))))
+    except csv.Error as problem:
+        raise Error(f"this is not a table: {problem}") from None
+
+
+def _width_rows(rows: csv.DictReader) -> Iterator[tuple[float, float]]:
     columns = [name.strip() for name in rows.fieldnames or ()]
     if missing := {"depth_mm", "width_mm"} - set(columns):
         raise Error(
             f"the table needs a first line with depth_mm,width_mm; it lacks {' and '.join(sorted(missing))}"
         )
     rows.fieldnames = columns
-    pairs = []
     for row in rows:
         pair = []
         for name in ("depth_mm", "width_mm"):
@@ -79,8 +100,7 @@ def read_widths(text: str) -> list[tuple[float, float]]:
                 pair.append(float(row[name]))
             except (TypeError, ValueError):
                 raise Error(f"{row[name] or ''!r} is not a number", f"line {rows.line_num}, {name}") from None
-        pairs.append(tuple(pair))
-    return pairs
+        yield tuple(pair)
 
 
 def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -85,6 +85,12 @@ def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
     [
         ("{", ""),
         ("[]", "format"),
+        ('{"format": "brushsvg/measurements", "version": 1, "lag": [], "lag": []}', "lag"),
+        (
+            '{"format": "brushsvg/measurements", "version": 1, "max_speed_mm_s": 1' + "0" * 400 + "}",
+            "max_speed_mm_s",
+        ),
+        ("[" * 100_000, ""),
         ({"format": "brushsvg/brush", "version": 1}, "format"),
         ({"format": "brushsvg/measurements", "version": 2}, "version"),
         ({"format": "brushsvg/measurements", "version": 1, "lag": {}}, "lag"),

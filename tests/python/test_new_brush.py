@@ -46,6 +46,13 @@ def test_what_is_assumed_says_so():
     assert "2.5 mm at depth 3 mm, 7 mm at depth 8 mm" in brush.half_width.source
     assert tuple(brush.half_width.calibrated_mm) == (3, 8)
     assert new_brush("mine", 5.0, [(3, 2.5)]).half_width.assumed
+    assert json.loads(brush.extra)["footprints"]["assumed"] is True
+
+
+def test_a_build_without_fits_says_so(monkeypatch):
+    monkeypatch.delattr(_core, "fit_law")
+    with pytest.raises(Error, match="built without fits; build it with Ceres"):
+        new_brush("mine", 5.0, [(3, 2.5)])
 
 
 def test_no_lag_is_a_pen():
