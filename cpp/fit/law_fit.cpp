@@ -186,7 +186,7 @@ VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool hel
     const LawShape& shape = problem.shape;
     const int n = shape.degree;
     const Index first = shape.through_zero ? 1 : 0;
-    MatrixXd from_x = powers_from_controls(n, shape.range_mm[0], shape.range_mm[1]);
+    MatrixXd from_x = powers_from_controls(n, first ? 0.0 : shape.range_mm[0], shape.range_mm[1]);
     MatrixXd bends = MatrixXd::Zero(std::max(0, n - 1), n + 1);
     for (Index i = 0; i < bends.rows(); ++i) bends.row(i).segment(i, 3) << 1.0, -2.0, 1.0;
     if (shape.rising) {  // x: the first control point, then the steps up

@@ -74,6 +74,19 @@ def test_a_shape_is_held_and_said():
     np.testing.assert_allclose([fit.law(d) for d in depth], steps[:, 1:] @ best.x, atol=1e-6)
 
 
+def test_a_law_through_zero_goes_through_zero_where_the_range_begins_later():
+    """Control points began at the range's first depth once: the law held there was off by millimetres."""
+    depth = np.array([2.0, 4, 6, 8])
+    value = np.array([2.0, 3.0, 3.4, 3.3])
+    fits = [
+        _core.fit_law(depth, value, _core.LawShape(span, 3, through_zero=True, rising=True))
+        for span in ((0, 8), (2, 8))
+    ]
+    assert all(fit.held for fit in fits)
+    np.testing.assert_allclose(fits[1].residual_mm, fits[0].residual_mm, atol=1e-9)
+    assert np.abs(fits[1].residual_mm).max() < 0.2
+
+
 def test_a_lever_stays_positive():
     depth = np.array([1.0, 2, 3, 4])
     fit = _core.fit_law(depth, depth - 1.5, _core.LawShape(RANGE, 1, positive=True))
@@ -94,7 +107,10 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
     squares = np.sum((floored(depth, *best) - value) ** 2)
     assert np.sum(np.square(fit.residual_mm)) <= squares * (1 + 1e-9)
     np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
-    np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.3)
+    if (
+        np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
+    ):  # else the slope has a step just there
+        np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.01)
     assert fit.law(0.1) == 0
 
 
