@@ -8,7 +8,7 @@ SHELL := /bin/bash
 PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
-SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libboost-dev nlohmann-json3-dev python3 python3-dev python3-venv
+SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev python3 python3-dev python3-venv
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 

@@ -6,12 +6,12 @@ The same numbers give the same bytes; a test holds the shipped files against wha
 from __future__ import annotations
 
 import json
-import math
 import sys
 from pathlib import Path
 
 from brushsvg import _core
 from brushsvg.files import write_files
+from brushsvg.shapes import disc, drop
 
 SHIPPED = Path(__file__).parents[1] / "python" / "brushsvg" / "data" / "brushes"
 
@@ -23,35 +23,15 @@ ROUND_WIDEST = [-2.35, 2.75, -0.42, 0.024]
 ROUND_HALF_WIDTH_PER_DEPTH = 0.42
 ROUND_FLOOR_PER_DEPTH = 0.126
 ROUND_DIP_MM = 7.0
-ROUND_VERTICES = 65
 
 PEN_HALF_WIDTH_MM = 0.5
-PEN_VERTICES = 64
-
-
-def rounded(points: list[tuple[float, float]]) -> list[list[float]]:
-    """Points to 1e-4 mm, without -0."""
-    return [[round(x, 4) + 0.0, round(y, 4) + 0.0] for x, y in points]
 
 
 def round_outline(depth: float) -> list[list[float]]:
-    """Drop at a depth [mm]: tip, straight flanks to the widest section, half an ellipse in front of it."""
+    """Drop at a depth [mm], as long in all as the paint where the widest section leaves room for that."""
     half = ROUND_HALF_WIDTH_PER_DEPTH * depth
     widest = max(sum(c * depth**i for i, c in enumerate(ROUND_WIDEST)), ROUND_FLOOR_PER_DEPTH * depth)
-    front = min(half, max(ROUND_DIP_MM - widest, 0.25 * half))
-    count = ROUND_VERTICES - 1  # along the half ellipse, both ends on the widest section
-    right = []
-    for i in range(count // 2):
-        angle = math.pi * i / (count - 1)
-        right.append((widest + front * math.sin(angle), -half * math.cos(angle)))
-    left = [(x, -y) for x, y in reversed(right)]
-    return rounded([(0.0, 0.0), *right, *left])
-
-
-def pen_outline() -> list[list[float]]:
-    """A disc whose tip is the point of its rim farthest from where it is going."""
-    turns = [2.0 * math.pi * i / PEN_VERTICES for i in range(PEN_VERTICES)]
-    return rounded([(PEN_HALF_WIDTH_MM * (1 - math.cos(t)), -PEN_HALF_WIDTH_MM * math.sin(t)) for t in turns])
+    return drop(half, widest, min(half, max(ROUND_DIP_MM - widest, 0.25 * half)))
 
 
 def round_6() -> dict:
@@ -114,7 +94,7 @@ def round_6() -> dict:
 def rigid() -> dict:
     """A felt pen of 1 mm: no lag, the contact is the disc under the TCP."""
     to_centre = {"coefficients": [PEN_HALF_WIDTH_MM], "source": "Radius of the nib.", "assumed": False}
-    outline = pen_outline()
+    outline = disc(PEN_HALF_WIDTH_MM)
     return {
         "format": "brushsvg/brush",
         "version": 1,

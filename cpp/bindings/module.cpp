@@ -33,4 +33,7 @@ PYBIND11_MODULE(_core, m) {
     bind_compensate(m);
     bind_interrupt(m);
     bind_io(m);
+#ifdef BRUSHSVG_FIT
+    bind_fit(m);
+#endif
 }

@@ -20,7 +20,9 @@ constexpr double kDeepestMm = 1000.0;   // no brush is longer, and plans grow wi
 constexpr double kRigidLeverMm = 0.05;  // what a rigid pen's widest section may be off unseen: the usual tolerance
 constexpr double kLargestLawMm = 1000.0;
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
-constexpr double kLawAgainstOutlineMm = 0.5;             // outlines rule the mark, laws the inverse; they must agree
+constexpr double kOddMm = 0.05;   // less is within the usual tolerance and nothing to wonder about
+constexpr double kPoorFit = 0.3;  // RMSE by the law's size; the article's worst, its angles' tip gap, has 0.6
+constexpr double kLawAgainstOutlineMm = 0.5;  // outlines rule the mark, laws the inverse; they must agree
 
 std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
     return {{{&brush.lag, "lag"},
@@ -260,6 +262,27 @@ std::vector<Warning> remarks(const Brush& brush) {
                            "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
                            "so the brush is pressed down on the spot before it runs"});
         if (!gap) out.push_back({"tip_gap", "the centre of friction lies outside the footprint at some depths"});
+        const double shorter = least(brush.lag, lo, hi).value - brush.lag(lo);
+        if (shorter < -kOddMm)
+            out.push_back({"lag", format("the lag is up to %.2f mm shorter than at depth %.2f mm: bristles that are "
+                                         "pressed deeper usually trail farther",
+                                         -shorter, lo)});
+        for (const Footprint& shape : brush.footprints.dragged) {
+            const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
+            if (!(shape.depth_mm <= hi && contact > front + kOddMm)) continue;
+            out.push_back({"tip_gap", format("at depth %.2f mm the centre of friction lies %.2f mm from the tip, "
+                                             "beyond the footprint, which is %.2f mm long",
+                                             shape.depth_mm, contact, front)});
+            break;
+        }
+    }
+    for (const auto& [profile, where] : laws(brush)) {
+        const double largest = std::max(std::abs((*profile)(lo)), std::abs((*profile)(hi)));
+        if (profile->rmse_mm && *profile->rmse_mm > kPoorFit * largest)
+            out.push_back(
+                {where, format("what was measured scatters by %.2f mm about a law of at most %.2f mm: measure "
+                               "again, or more often",
+                               *profile->rmse_mm, largest)});
     }
     if (!brush.width_follows_depth())
         out.push_back(

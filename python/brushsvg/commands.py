@@ -6,12 +6,12 @@ import os
 from dataclasses import replace
 
 from . import checking, convert, machine
-from ._core import remarks
+from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
 from .cell_file import DEFAULT_CELL, cell_names, find_cell, read_cell, write_cell
 from .console import RefusedError, about, clear_stage, say, stage, tell, warn
-from .describe import cell_page, one_line, page
+from .describe import LAWS, cell_page, one_line, page, reach
 from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
@@ -295,6 +295,56 @@ def brush_check(args) -> None:
         odd = remarks(brush)
     warn(args.input, odd)
     tell(f"{args.input}: brush {brush.name} can be used\n")
+
+
+def calibrate_file(args) -> None:
+    from .calibrate import calibrate
+    from .fit_report import report, report_picture
+    from .measurements import read_measurements
+
+    _check_places(args.output, args.plot)
+    with about(args.input):
+        measured = read_measurements(read_bytes(args.input), _suffix(args.input))
+        name = os.path.splitext(os.path.basename(args.output))[0]
+        made = calibrate(measured, measured.name or name, args.norm == "absolute", args.total)
+        files = {args.output: write_brush(made.brush)}
+        if args.plot:
+            files[args.plot] = report_picture(made, _suffix(args.plot))
+    _write(files)
+    warn(args.output, remarks(made.brush))
+    tell(report(made))
+
+
+def brush_new(args) -> None:
+    from .new_brush import new_brush, read_widths
+
+    path = args.name if _suffix(args.name) == ".json" else f"{args.name}.json"
+    name = os.path.splitext(os.path.basename(path))[0]
+    _check_places(path)
+    if os.path.exists(path):
+        raise RefusedError([(path, "", "the file is there already: it might be somebody's brush")])
+    widths = list(args.width_at)
+    if args.widths:
+        with about(args.widths):
+            widths += read_widths(read_bytes(args.widths).decode("utf-8", "replace"))
+    with about(path):
+        if name in brush_names():
+            raise Error(f"a brush named {name} comes along: give yours another name", "name")
+        brush = new_brush(name, args.lag, widths, args.depth_max, args.speed)
+        text = write_brush(brush)
+    _write({path: text})
+    tell(f"{path}: {reach(brush)}\n")
+    assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
+    tell(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
+
+
+def brush_plot(args) -> None:
+    from .plot import brush_picture
+
+    _check_places(args.output)
+    with about(args.input):
+        picture = brush_picture(find_brush(args.input), _suffix(args.output))
+    _write({args.output: picture})
 
 
 def cell_list(_args) -> None:

@@ -52,9 +52,9 @@ def page(brush) -> str:
 
 
 def _law(name: str, meaning: str, law) -> list[str]:
-    formula = _polynomial(law.coefficients)
+    formula = polynomial(law.coefficients)
     if math.isfinite(law.floor):
-        formula = f"max({_polynomial([law.floor, law.floor_slope])}, {formula})"
+        formula = f"max({polynomial([law.floor, law.floor_slope])}, {formula})"
     known = ["assumed"] if law.assumed else []
     if law.calibrated_mm:
         known.append("measured at depths {:g} to {:g} mm".format(*law.calibrated_mm))
@@ -65,7 +65,8 @@ def _law(name: str, meaning: str, law) -> list[str]:
     return lines + textwrap.wrap(source, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
 
 
-def _polynomial(coefficients) -> str:
+def polynomial(coefficients) -> str:
+    """In words of d, the press depth: 3.1 + 0.86 d."""
     text = ""
     for power, c in enumerate(coefficients):
         if c == 0:

@@ -137,6 +137,18 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--json", action="store_true", help="as JSON")
     report.set_defaults(run="report_file", parser=report)
 
+    fit = commands.add_parser("calibrate", help="make a brush of what was measured")
+    fit.add_argument("input", metavar="MEASUREMENTS", help="what was measured (.json .csv)")
+    fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
+    fit.add_argument(
+        "--norm", choices=("squares", "absolute"), default="squares", help="what is least; default: squares"
+    )
+    fit.add_argument(
+        "--total", action="store_true", help="total least squares for series of angles; else plain ones"
+    )
+    fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
+    fit.set_defaults(run="calibrate_file", parser=fit)
+
     for kind, about, told, file in (
         ("brush", "look at brushes", "laws and ranges", "brush.json"),
         ("cell", "look at cells: machines and their limits", "heights, speeds and limits", "cell.toml"),
@@ -149,9 +161,32 @@ def _parser() -> argparse.ArgumentParser:
         check = whats.add_parser("check", help=f"say whether a {kind} file can be used")
         check.add_argument("input", metavar="FILE", help=f"a {file}")
         check.set_defaults(run=f"{kind}_check")
-        if kind == "cell":
-            _add_cell_new(whats)
+        (_add_cell_new if kind == "cell" else _add_brush_new)(whats)
     return parser
+
+
+def _add_brush_new(whats) -> None:
+    new = whats.add_parser("new", help="write a brush file from a few numbers")
+    new.add_argument("name", metavar="NAME", help="of the brush; writes NAME.json, or the path given")
+    new.add_argument(
+        "--lag", metavar="MM", type=_lag, required=True, help="how far it trails the tool; 0 for a pen"
+    )
+    new.add_argument(
+        "--width-at",
+        metavar="DEPTH=WIDTH",
+        action="append",
+        type=_width_at,
+        default=[],
+        help="how wide it paints when pressed so deep, in mm; as often as measured",
+    )
+    new.add_argument("--widths", metavar="FILE", help="the same as a table, depth_mm,width_mm (.csv)")
+    new.add_argument("--depth-max", metavar="MM", type=_width, help="default: that of the deepest width")
+    new.add_argument("--speed", metavar="MM/S", type=_speed, default=25.0, help="at most; default: 25")
+    new.set_defaults(run="brush_new", parser=new)
+    plot = whats.add_parser("plot", help="draw the laws, how sure they are, and the footprints")
+    plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
+    plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
+    plot.set_defaults(run="brush_plot", parser=plot)
 
 
 def _add_cell_new(whats) -> None:
@@ -288,6 +323,15 @@ def _count(text: str) -> int:
     return int(text)
 
 
+def _width_at(text: str) -> tuple[float, float]:
+    depth, equals, width = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(
+            f"{text[:24]!r} is not a depth and its width; write for example 3=2.5"
+        )
+    return _width(depth), _width(width)
+
+
 def _width(text: str) -> float:
     return _length(text, 0.001, 1000.0)
 
@@ -362,6 +406,18 @@ def _check_operands(args) -> None:
         args.parser.error(f"{args.output} does not end in .toml")
     if args.run == "cell_new" and len(args.taught or ()) not in (0, 3, 4):
         args.parser.error(f"--taught is given {len(args.taught)} times, not three or four")
+    if args.run == "brush_new" and not (args.width_at or args.widths):
+        args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
+    if args.run == "calibrate_file":
+        _check_extension(args, args.input, (".json", ".csv"))
+        _check_extension(args, args.output, (".json",))
+        if args.plot:
+            _check_extension(args, args.plot, PREVIEWS)
+        if len({os.path.realpath(path) for path in (args.input, args.output, args.plot or "/")}) < 3:
+            args.parser.error("two of the files are the same")
+        return
+    if args.run == "brush_plot":
+        _check_extension(args, args.output, PREVIEWS)
     if args.run.startswith(("brush_", "cell_")):
         return
     if args.run == "height_file":

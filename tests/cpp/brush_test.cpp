@@ -103,3 +103,21 @@ TEST_CASE("a steeper half-width law with a floor inverts too") {
     const double d = brush.depth_for_half_width(1.5, "");
     CHECK(brush.half_width(d) == doctest::Approx(1.5));
 }
+
+TEST_CASE("what is odd about a brush is said in words") {
+    const auto says = [](const Brush& brush, const char* where, const char* words) {
+        for (const Warning& w : remarks(brush))
+            if (w.where == where && w.sentence.find(words) != std::string::npos) return true;
+        return false;
+    };
+    Brush brush = shipped("round-6");
+    CHECK(!says(brush, "lag", "shorter"));
+    CHECK(!says(brush, "tip_gap", "beyond the footprint"));
+    CHECK(!says(brush, "tip_gap", "scatters"));
+    brush.lag.coefficients = {8.0, -0.4};
+    CHECK(says(brush, "lag", "up to 4.00 mm shorter than at depth 0.00 mm"));
+    brush.tip_gap.coefficients = {0.0, 1.1};
+    CHECK(says(brush, "tip_gap", "at depth 1.00 mm the centre of friction lies 1.10 mm from the tip"));
+    brush.tip_gap.rmse_mm = 4.0;
+    CHECK(says(brush, "tip_gap", "scatters by 4.00 mm about a law of at most 11.00 mm"));
+}

@@ -314,7 +314,11 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "report a.svg extra",
         "report a.txt",
         "brush",
-        "brush plot round-6 out.svg",
+        "brush plot round-6 out.pdf",
+        "calibrate m.csv",
+        "calibrate m.csv -o out.svg",
+        "calibrate m.svg -o out.json",
+        "calibrate m.json -o m.json",
         "brush show",
     ],
 )

@@ -1,0 +1,80 @@
+#include "angles.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "brushsvg/error.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// k of y = k x through the origin.
+double slope(const VectorXd& x, const VectorXd& y, Lines lines) {
+    const double plain = x.dot(y) / x.squaredNorm();
+    if (lines == Lines::plain) return plain;
+    const double scale = y.norm() / x.norm();  // F counts e-foldings, s millimetres
+    MatrixXd both(x.size(), 2);
+    both << scale * x, y;
+    const Eigen::Vector2d across = both.jacobiSvd(Eigen::ComputeFullV).matrixV().col(1);
+    return -scale * across[0] / across[1];
+}
+
+double rmse(const VectorXd& left) {
+    return left.size() > 1 ? std::sqrt(left.squaredNorm() / double(left.size() - 1)) : 0.0;
+}
+
+}  // namespace
+
+FromAngles from_angles(const AngleSeries& series, Lines lines) {
+    const std::size_t n = series.s_mm.size();
+    if (series.alpha.size() != n || !(series.beta.empty() || series.beta.size() == n))
+        throw Error("there are " + std::to_string(n) + " distances and " + std::to_string(series.alpha.size()) +
+                    " angles; each distance needs its angles");
+    if (!(series.alpha0 > 0.0 && series.alpha0 < M_PI))
+        throw Error("the first angle must lie between 0 and 180 degrees", "alpha0", series.alpha0 * 180.0 / M_PI);
+    FromAngles out{0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0};
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!std::isfinite(series.s_mm[i]) || !std::isfinite(series.alpha[i]))
+            throw Error("reading " + std::to_string(i + 1) + " is not a finite number");
+        if (series.s_mm[i] > 0.0 && series.alpha[i] > 0.0 && series.alpha[i] < series.alpha0)
+            used.push_back(i);
+        else
+            ++out.left_out;
+    }
+    if (used.empty())
+        throw Error("no reading can be used: the angle must fall from the first one towards 0 as the brush is dragged");
+    const auto log_cot_half = [](double a) { return -std::log(std::tan(0.5 * a)); };
+    const Eigen::Index m = Eigen::Index(used.size());
+    VectorXd s(m), f(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+        s[i] = series.s_mm[used[i]];
+        f[i] = log_cot_half(series.alpha0) - log_cot_half(series.alpha[used[i]]);  // (19)
+    }
+    out.lag_mm = -slope(f, s, lines);  // (20)
+    out.lag_rmse_mm = rmse(s + out.lag_mm * f);
+    if (series.beta.empty()) return out;
+
+    // The integrals of (21) in closed form, from (10): int sin^2 ds = r (cos a1 - cos a0),
+    // int sin cos ds = r (sin a0 - sin a1)
+    VectorXd integral(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+        const double a1 = series.alpha[used[i]], beta = series.beta[used[i]];
+        if (!(beta > 0.0 && beta < M_PI))
+            throw Error("the direction of the tip's displacement must lie between 0 and 180 degrees", "beta",
+                        beta * 180.0 / M_PI);
+        integral[i] = out.lag_mm * (std::cos(a1) - std::cos(series.alpha0) +
+                                    (std::sin(series.alpha0) - std::sin(a1)) / std::tan(beta));
+    }
+    const double mu = slope(integral, s, lines);  // (22)
+    out.tip_gap_mm = (mu - 1.0) * out.lag_mm;     // (23)
+    out.tip_gap_rmse_mm = rmse(s - mu * integral);
+    return out;
+}
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,298 @@
+"""Measurements to a brush: each law fitted to what speaks of it, with its covariance, and a report in words."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import _core, shapes
+from .errors import Error
+from .measurements import Measurements, Row
+from .new_brush import GAP_PER_HALF, WIDEST_PER_HALF, need_fits, outlines_assumed
+
+LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
+# The article's laws: r quartic, b linear through 0, x_w cubic with floor 0; the width, of which it prints none, rises
+# from 0 as a parabola.
+DEGREES = {"lag": 4, "tip_gap": 1, "tip_to_widest": 3, "half_width": 2}
+FROM_ZERO = ("tip_gap", "half_width")
+# What is assumed of a round brush where nothing was measured, in half widths from the tip.
+ASSUMED = {
+    "tip_gap": (GAP_PER_HALF, "The centre of friction"),
+    "tip_to_widest": (WIDEST_PER_HALF, "The widest section"),
+}
+FLOOR_PER_HALF = 0.3  # nearer to the tip the widest section is not drawn: the flanks would fold into a line
+SUMS = ("angular", "straight", "side_view")  # these say how long r + b is, and nothing of either
+OUTLINES = 10
+
+
+@dataclass(frozen=True)
+class Point:
+    """A law's value at a depth [mm], and the measurement it comes from."""
+
+    where: str
+    depth_mm: float
+    value_mm: float
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """One law: its points and fit, None where it is assumed; remarks in sentences."""
+
+    name: str
+    points: tuple[Point, ...]
+    fit: object
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A brush that can be used, and how each law came about."""
+
+    brush: _core.Brush
+    laws: tuple[Fitted, ...]
+    remarks: tuple[str, ...]
+
+
+def calibrate(measured: Measurements, name: str, absolute: bool = False, total: bool = False) -> Calibration:
+    """Fit a brush. absolute: least absolute residuals; total: total least squares for angle series.
+
+    Raises Error where the measurements leave a law open, or give a brush that cannot be used.
+    """
+    need_fits()
+    maker = _Maker(measured, absolute)
+    points, remarks = _direct(measured, total)
+    maker.fit("half_width", points)
+    if "half_width" not in maker.done:
+        raise Error("no width was measured: add half_width or width, one row per depth", "half_width")
+    maker.fit("tip_to_widest", points)
+    maker.fit("tip_gap", points)
+    maker.fit("lag", points)
+    maker.fit_sums(points)
+    if "lag" not in maker.done:
+        raise Error("no lag was measured: add lag, angles or angular, one row per depth", "lag")
+    brush = maker.brush(name or measured.name or "measured")
+    laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
+    return Calibration(brush, laws, tuple([*remarks, *maker.remarks]))
+
+
+def _direct(measured: Measurements, total: bool) -> tuple[dict[str, list[Point]], list[str]]:
+    """Values of single laws, those of angle series included."""
+    points: dict[str, list[Point]] = {law: [] for law in LAWS}
+    remarks = []
+    for law in LAWS:
+        points[law] = [Point(r.where, r.depth_mm, r.numbers["value_mm"]) for r in measured.rows.get(law, [])]
+    for row in measured.rows.get("width", []):
+        points["half_width"].append(Point(row.where, row.depth_mm, row.numbers["value_mm"] / 2))
+    for row in measured.rows.get("angles", []):
+        found = _of_angles(row, total)
+        points["lag"].append(Point(row.where, row.depth_mm, found["lag_mm"]))
+        if math.isfinite(found["tip_gap_mm"]):
+            points["tip_gap"].append(Point(row.where, row.depth_mm, found["tip_gap_mm"]))
+        if found["left_out"]:
+            sentence = (
+                f"{found['left_out']} readings left out: their angle is not between 0 and the first one"
+            )
+            remarks.append(f"{row.where}: {sentence}")
+    return points, remarks
+
+
+def _of_angles(row: Row, total: bool) -> dict:
+    degrees = math.radians(1.0)
+    try:
+        return _core.from_angles(
+            row.numbers["alpha0_deg"] * degrees,
+            row.numbers["s_mm"],
+            [a * degrees for a in row.numbers["alpha_deg"]],
+            [b * degrees for b in row.numbers["beta_deg"]],
+            _core.Lines.total if total else _core.Lines.plain,
+        )
+    except Error as refusal:
+        raise Error(str(refusal), row.where, refusal.value) from None
+
+
+class _Maker:
+    def __init__(self, measured: Measurements, absolute: bool):
+        self.measured = measured
+        self.range_mm = measured.depth_range_mm or (0.0, measured.depths_mm[-1])
+        self.norm = _core.Norm.absolute if absolute else _core.Norm.squares
+        self.done: dict[str, Fitted] = {}
+        self.remarks: list[str] = []
+        self.corrected = ""  # the law that was found from sums
+        self.pulls: dict[
+            str, np.ndarray
+        ] = {}  # law it was corrected by -> change of coefficients per change of those
+
+    def fit(self, law: str, points: dict[str, list[Point]]) -> None:
+        if points[law]:
+            self._fit(law, points[law])
+
+    def fit_sums(self, points: dict[str, list[Point]]) -> None:
+        """r from r + b where b is known, else b from r + b where r is."""
+        rows = [row for kind in SUMS for row in self.measured.rows.get(kind, [])]
+        if not rows:
+            return
+        if "tip_gap" not in self.done and "lag" not in self.done:
+            raise Error(
+                "angular, straight and side_view all measure the sum of lag and tip gap, so the two cannot be told "
+                "apart: add angles, or rows of lag or tip_gap",
+                SUMS[0],
+            )
+        wanted, known = ("lag", "tip_gap") if "tip_gap" in self.done else ("tip_gap", "lag")
+        if "lag" in self.done and "tip_gap" in self.done:
+            self.remarks.append(
+                "angular, straight and side_view are not used: lag and tip gap were measured each"
+            )
+            return
+        law = self.done[known].fit.law
+        if self.measured.rows.get("side_view") and wanted == "lag":
+            raise Error("side_view needs the lag at depth 0: add rows of lag or angles", "side_view")
+        new = [Point(row.where, row.depth_mm, self._sum(row) - law(row.depth_mm)) for row in rows]
+        self._fit(wanted, new)
+        self._carry(wanted, known, rows)
+
+    def _sum(self, row: Row) -> float:
+        """r + b at a depth. angular reads the middle of the mark, which is e = x_w - b nearer to the TCP's second line
+        than the centre of friction; straight: (17) with the lag it lacks; side_view: (18), counted from first touch.
+        """
+        if "value_mm" in row.numbers and row.where.startswith("side_view"):
+            return row.numbers["value_mm"] + self.done["lag"].fit.law(0.0)
+        if "tip_to_widest" not in self.done:
+            sentence = "this needs the widest section of the footprint: add rows of tip_to_widest"
+            raise Error(sentence, row.where)
+        widest = self.done["tip_to_widest"].fit.law(row.depth_mm)
+        if "path_mm" in row.numbers:
+            return row.numbers["path_mm"] - row.numbers["distance_mm"] + widest
+        return row.numbers["value_mm"] + widest
+
+    def _fit(self, law: str, points: list[Point]) -> None:
+        depths, values = [p.depth_mm for p in points], [p.value_mm for p in points]
+        worst = min(points, key=lambda point: point.value_mm)
+        # a short tip gap may come out below 0 once by its noise, not on the whole
+        if worst.value_mm < 0 and (
+            law in ("lag", "half_width") or (law == "tip_gap" and np.mean(values) < 0)
+        ):
+            sentence = (
+                f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative"
+            )
+            raise Error(sentence, worst.where, worst.value_mm)
+        different = len(set(depths))
+        if different < 2:
+            raise Error(
+                f"{law} was measured at depth {depths[0]:g} mm alone: measure it at two depths or more, better five",
+                points[0].where,
+            )
+        most = different if law in FROM_ZERO else different - 1
+        degree = min(DEGREES[law], most)
+        remarks = []
+        if degree < DEGREES[law]:
+            remarks.append(f"of degree {degree} instead of {DEGREES[law]}, for there are {different} depths")
+        widest = law == "tip_to_widest"
+        shape = _core.LawShape(
+            self.range_mm,
+            degree,
+            through_zero=law in FROM_ZERO,
+            positive=law in ("lag", "tip_gap"),
+            rising=law == "half_width",
+            norm=self.norm,
+            **({"floor": 0.0} if widest else {}),
+        )
+        fit = _core.fit_law(depths, values, shape)
+        if fit.held:
+            what = "falls" if law == "half_width" else "is not positive"
+            remarks.append(f"held to its shape: the law that fits best {what} somewhere in the depth range")
+        self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks))
+
+    def _carry(self, wanted: str, known: str, rows: list[Row]) -> None:
+        """What the law found from sums inherits from those it was corrected by: with sums y = S - K k + W w its
+        coefficients P y, P = (X^T X)^-1 X^T, change by -P K per change of k and by P W per change of w."""
+        depths = np.array([row.depth_mm for row in rows])
+        size, first = len(self.done[wanted].fit.law.coefficients), int(wanted in FROM_ZERO)
+        inverse = np.linalg.pinv(np.vander(depths, size, increasing=True)[:, first:])
+
+        def pull(law: str, rate: np.ndarray) -> None:
+            self.pulls[law] = np.zeros((size, rate.shape[1]))
+            self.pulls[law][first:] = inverse @ rate
+
+        seen_aside = np.array([row.where.startswith("side_view") for row in rows])
+        rate = -np.vander(depths, len(self.done[known].fit.law.coefficients), increasing=True)
+        rate[seen_aside, 0] = 0.0  # r(d) - r(0)
+        self.corrected = wanted
+        pull(known, rate)
+        if "tip_to_widest" in self.done:
+            law = self.done["tip_to_widest"].fit.law
+            rate = np.vander(depths, len(law.coefficients), increasing=True)
+            rate[seen_aside | (rate @ law.coefficients < 0.0)] = 0.0  # on its floor the law does not move
+            pull("tip_to_widest", rate)
+
+    def covariance(self) -> np.ndarray | None:
+        """Over all coefficients in the order of the laws; None where a fitted law has no value to spare."""
+        sizes = [len(self._law(law).coefficients) for law in LAWS]
+        starts = dict(zip(LAWS, np.cumsum([0, *sizes]).tolist()[:-1], strict=True))
+        out = np.zeros((sum(sizes), sum(sizes)))
+        for law, fitted in self.done.items():
+            block = np.array(fitted.fit.covariance)
+            if not block.size:
+                return None
+            at = slice(starts[law], starts[law] + len(block))
+            out[at, at] = block
+        place = {law: slice(starts[law], starts[law] + size) for law, size in zip(LAWS, sizes, strict=True)}
+        for law, pull in self.pulls.items():
+            a, b = place[self.corrected], place[law]
+            out[a, a] += pull @ out[b, b] @ pull.T
+            out[a, b] = pull @ out[b, b]
+            out[b, a] = out[a, b].T
+        return out
+
+    def _widen(self, brush: _core.Brush, covariance: np.ndarray) -> None:
+        """The intervals of a law that was found from sums, with what it inherits."""
+        if not self.corrected:
+            return
+        first = 0
+        for law in LAWS[: LAWS.index(self.corrected)]:
+            first += len(getattr(brush, law).coefficients)
+        profile = getattr(brush, self.corrected)
+        alone = np.sqrt(np.diag(self.done[self.corrected].fit.covariance))
+        whole = np.sqrt(np.diag(covariance)[first : first + len(alone)])
+        share = np.divide(whole, alone, out=np.ones_like(whole), where=alone > 0)
+        profile.half_interval_95 = (np.array(profile.half_interval_95) * share).tolist()
+
+    def _law(self, law: str) -> _core.Profile:
+        half = self.done["half_width"].fit.law
+        if law not in self.done:
+            share, what = ASSUMED[law]
+            source = f"{what} is taken to lie {share:g} half widths from the tip."
+            return _core.Profile([share * c for c in half.coefficients], source=source, assumed=True)
+        profile = self.done[law].fit.law
+        kinds = sorted({point.where.split("[")[0] for point in self.done[law].points})
+        read = "a table" if kinds[0].startswith("line") else " and ".join(kinds)
+        profile.source = f"Fitted to {len(self.done[law].points)} values from {read}."
+        if law == "tip_to_widest":
+            deepest = self.range_mm[1]
+            profile.floor, profile.floor_slope = 0.0, FLOOR_PER_HALF * half(deepest) / deepest
+        return profile
+
+    def brush(self, name: str) -> _core.Brush:
+        brush = _core.Brush()
+        brush.name, brush.kind = name, "round"
+        brush.depth_range_mm = self.range_mm
+        brush.max_speed_mm_s = self.measured.max_speed_mm_s
+        least, deepest = self.range_mm
+        brush.paint_depth_mm = (least + deepest) / 2
+        for law in LAWS:
+            setattr(brush, law, self._law(law))
+        covariance = self.covariance()
+        if covariance is not None:
+            brush.covariance = covariance.tolist()
+            self._widen(brush, covariance)
+        depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
+        brush.footprints = _core.FootprintTable([_outline(brush, depth) for depth in depths])
+        brush.extra = outlines_assumed("drops whose widest section and width are those of the laws.")
+        _core.check(brush)
+        return brush
+
+
+def _outline(brush: _core.Brush, depth: float) -> _core.Footprint:
+    half = brush.half_width(depth)
+    return _core.Footprint(depth, shapes.drop(half, brush.tip_to_widest(depth), half))

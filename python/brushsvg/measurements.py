@@ -1,0 +1,176 @@
+"""Measurements of a brush, from JSON or a table: see docs/calibration.md. Lengths in mm, angles in degrees."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from .errors import Error
+
+FORMAT = "brushsvg/measurements"
+LONGEST_MM = 1000.0
+SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
+# Kind -> the numbers of one row, beside depth_mm. Those in _READINGS can stand in a table as value_mm.
+KINDS = {
+    "lag": ("value_mm",),
+    "tip_gap": ("value_mm",),
+    "tip_to_widest": ("value_mm",),
+    "half_width": ("value_mm",),
+    "width": ("value_mm",),
+    "angular": ("value_mm",),
+    "side_view": ("value_mm",),
+    "straight": ("path_mm", "distance_mm"),
+    "angles": ("alpha0_deg",),
+}
+_SERIES = ("s_mm", "alpha_deg", "beta_deg")
+_TABLE = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
+_ABOUT = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measurement at a depth: its numbers by name, series as tuples; where it stands in the file."""
+
+    where: str
+    depth_mm: float
+    numbers: dict
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """What was measured, by kind; name, depth range and speed where the file says them."""
+
+    rows: dict[str, list[Row]]
+    name: str = ""
+    about: str = ""
+    depth_range_mm: tuple[float, float] | None = None
+    max_speed_mm_s: float = 25.0
+    depths_mm: list[float] = field(default_factory=list)
+
+
+def read_measurements(data: bytes, suffix: str) -> Measurements:
+    """Error names the row or key. suffix: .json or .csv."""
+    text = data.decode("utf-8-sig", "replace")
+    try:
+        found = _read_table(text) if suffix == ".csv" else _read_json(text)
+    except csv.Error as problem:
+        raise Error(f"this is not a table: {problem}") from None
+    depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
+    if not depths:
+        raise Error("there is no measurement in it")
+    if depths[-1] <= SHALLOWEST_MM:
+        raise Error(
+            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres", "depth_mm"
+        )
+    found.depths_mm.extend(depths)
+    return found
+
+
+def _read_table(text: str) -> Measurements:
+    table = csv.DictReader(io.StringIO(text))
+    table.fieldnames = [name.strip() for name in table.fieldnames or ()]
+    if missing := [name for name in ("kind", "depth_mm", "value_mm") if name not in table.fieldnames]:
+        raise Error(
+            f"the table needs a first line with kind,depth_mm,value_mm; it lacks {' and '.join(missing)}"
+        )
+    rows: dict[str, list[Row]] = {}
+    for line in table:
+        where, kind = f"line {table.line_num}", (line["kind"] or "").strip()
+        if kind not in _TABLE:
+            raise Error(
+                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}", where
+            )
+        numbers = {}
+        for name in ("depth_mm", "value_mm"):
+            try:
+                numbers[name] = float(line[name])
+            except (TypeError, ValueError):
+                raise Error(f"{line[name] or ''!r} is not a number", f"{where}, {name}") from None
+        rows.setdefault(kind, []).append(_row(kind, numbers, where))
+    return Measurements(rows)
+
+
+def _read_json(text: str) -> Measurements:
+    try:
+        content = json.loads(text, object_pairs_hook=_once)
+    except Error:
+        raise
+    except (ValueError, RecursionError) as problem:
+        raise Error(f"this is not valid JSON: {problem}") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise Error(f'the file does not say "format": "{FORMAT}"', "format")
+    if content.get("version") != 1:
+        raise Error(f"version {content.get('version')} of {FORMAT} is not known; known is 1", "version")
+    if unknown := [key for key in content if key not in _ABOUT]:
+        raise Error(f"this is not known; known are {', '.join(KINDS)}", unknown[0])
+    rows = {}
+    for kind in KINDS:
+        listed = content.get(kind, [])
+        if not isinstance(listed, list) or not all(isinstance(row, dict) for row in listed):
+            raise Error("this must be a list of objects", kind)
+        if listed:
+            rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
+    name, about = content.get("name", ""), content.get("about", "")
+    if not isinstance(name, str) or not isinstance(about, str):
+        raise Error("name and about must be text", "name")
+    span = content.get("depth_range_mm")
+    if span is not None:
+        if not isinstance(span, list) or len(span) != 2:
+            raise Error("this must be two numbers, the least and the greatest depth", "depth_range_mm")
+        span = tuple(_number(value, "depth_range_mm") for value in span)
+        if not 0 <= span[0] < span[1] <= LONGEST_MM:
+            raise Error(
+                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
+            )
+    return Measurements(
+        rows, name, about, span, _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    )
+
+
+def _row(kind: str, row: dict, where: str) -> Row:
+    names = ("depth_mm", *KINDS[kind])
+    series = _SERIES if kind == "angles" else ()
+    if unknown := [key for key in row if key not in (*names, *series, "note")]:
+        raise Error(
+            f"this is not known here; known are {', '.join((*names, *series, 'note'))}",
+            f"{where}.{unknown[0]}",
+        )
+    numbers = {}
+    for name in names:
+        if name not in row:
+            raise Error(f"the key {name} is missing", where)
+        numbers[name] = _number(row[name], f"{where}.{name}")
+    for name in series:
+        values = row.get(name, [] if name == "beta_deg" else None)
+        if not isinstance(values, list):
+            raise Error("this must be a list of numbers", f"{where}.{name}")
+        numbers[name] = tuple(_number(value, f"{where}.{name}[{i}]") for i, value in enumerate(values))
+    depth = numbers.pop("depth_mm")
+    if not 0 < depth <= LONGEST_MM:
+        raise Error(f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, depth)
+    for name, value in numbers.items():
+        if name.endswith("_mm") and not isinstance(value, tuple) and abs(value) > LONGEST_MM:
+            raise Error(
+                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
+            )
+    return Row(where, depth, numbers)
+
+
+def _number(value, where: str) -> float:
+    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
+        with suppress(OverflowError):  # an integer beyond all floats
+            return float(value)
+    raise Error(f"{value!r:.24} is not a finite number", where)
+
+
+def _once(pairs: list[tuple[str, object]]) -> dict:
+    """An object; Error for a key that stands twice, of which one would be lost."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise Error("the key stands twice", next(name for name in names if names.count(name) > 1))
+    return found

@@ -1,0 +1,33 @@
+"""Outlines of footprints that are assumed where none was measured: tip at (0, 0), x towards the TCP."""
+
+from __future__ import annotations
+
+import math
+
+VERTICES = 65
+
+
+def drop(half_mm: float, widest_mm: float, front_mm: float, vertices: int = VERTICES) -> list[list[float]]:
+    """Straight flanks from the tip to the widest section, half an ellipse in front of it; counter-clockwise.
+
+    half_mm: half of the greatest width; widest_mm: from the tip to the widest section; front_mm: how far the
+    ellipse reaches beyond it. vertices: odd.
+    """
+    count = vertices - 1  # along the half ellipse, both ends on the widest section
+    right = []
+    for i in range(count // 2):
+        angle = math.pi * i / (count - 1)
+        right.append((widest_mm + front_mm * math.sin(angle), -half_mm * math.cos(angle)))
+    left = [(x, -y) for x, y in reversed(right)]
+    return _rounded([(0.0, 0.0), *right, *left])
+
+
+def disc(half_mm: float, vertices: int = 64) -> list[list[float]]:
+    """A disc whose tip is the point of its rim farthest from where it is going."""
+    turns = [2.0 * math.pi * i / vertices for i in range(vertices)]
+    return _rounded([(half_mm * (1 - math.cos(t)), -half_mm * math.sin(t)) for t in turns])
+
+
+def _rounded(points: list[tuple[float, float]]) -> list[list[float]]:
+    """Points to 1e-4 mm, without -0."""
+    return [[round(x, 4) + 0.0, round(y, 4) + 0.0] for x, y in points]

@@ -1,0 +1,48 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "brushsvg/error.hpp"
+#include "law_fit.hpp"
+
+using namespace brushsvg;
+using namespace brushsvg::fit;
+
+TEST_CASE("exact data give the law that made them") {
+    const std::vector<double> law{3.1, 0.86, 0.31, -0.05, 0.0021};
+    std::vector<double> depth, value;
+    for (int i = 0; i < 40; ++i) {
+        const double d = 0.25 * (i + 1);
+        depth.push_back(d);
+        value.push_back(law[0] + d * (law[1] + d * (law[2] + d * (law[3] + d * law[4]))));
+    }
+    for (const Norm norm : {Norm::squares, Norm::absolute}) {
+        LawShape shape;
+        shape.degree = 4;
+        shape.positive = true;
+        shape.norm = norm;
+        const LawFit fit = fit_law(depth, value, shape);
+        for (int i = 0; i < 5; ++i) CHECK(fit.law.coefficients[i] == doctest::Approx(law[i]).epsilon(1e-6));
+        CHECK(fit.r_squared == doctest::Approx(1.0));
+        CHECK(!fit.held);
+    }
+}
+
+TEST_CASE("a line through zero, by hand") {
+    LawShape shape;
+    shape.through_zero = true;
+    const LawFit fit = fit_law({1, 2, 3}, {1, 1, 2}, shape);  // sum d v / sum d^2 = 9 / 14
+    CHECK(fit.law.coefficients[1] == doctest::Approx(9.0 / 14.0));
+    const double squares = 6.0 - 81.0 / 14.0;
+    CHECK(*fit.law.rmse_mm == doctest::Approx(std::sqrt(squares / 2.0)));
+    CHECK(fit.covariance[1][1] == doctest::Approx(squares / 2.0 / 14.0));
+    CHECK(fit.law.half_interval_95[1] == doctest::Approx(4.30265 * std::sqrt(squares / 28.0)).epsilon(1e-5));
+}
+
+TEST_CASE("one depth says nothing of a slope") {
+    LawShape shape;
+    CHECK_THROWS_WITH_AS(fit_law({3, 3, 3}, {1, 2, 3}, shape),
+                         "a law of degree 1 needs values at 2 different depths, there are 1: measure at more depths, "
+                         "or ask for a lower degree",
+                         Error);
+}

@@ -1,0 +1,273 @@
+"""Calibration gives back the brush that made the measurements; these come from the slow stepping simulator."""
+
+import itertools
+import json
+from functools import cache
+
+import numpy as np
+import oracle
+import pytest
+from conftest import law
+
+from brushsvg import _core
+from brushsvg.calibrate import calibrate
+from brushsvg.errors import Error
+from brushsvg.measurements import read_measurements
+
+DEPTHS = np.arange(1.0, 11.0)
+LAG = np.array([3.1, 0.86, 0.31, -5.0e-2, 2.1e-3])
+GAP, HALF = 0.52, 0.42
+WIDEST = np.array([0.1, 1.1, -0.06, 0.002])
+
+
+def widest(depth):
+    return np.polynomial.polynomial.polyval(depth, WIDEST)
+
+
+def lag(depth):
+    return np.polynomial.polynomial.polyval(depth, LAG)
+
+
+def from_dict(**rows):
+    head = {"format": "brushsvg/measurements", "version": 1, "depth_range_mm": [0, 10]}
+    return read_measurements(json.dumps(head | rows).encode(), ".json")
+
+
+def values(depths, numbers):
+    return [{"depth_mm": float(d), "value_mm": float(v)} for d, v in zip(depths, numbers, strict=True)]
+
+
+WIDTHS = values(DEPTHS, 2 * HALF * DEPTHS)
+
+
+@cache
+def corner(depth):
+    """TCP along +x to (0, 0), settled, then 8 mm along +y at one depth: TCP and contact (17, 2), every 0.5 mm.
+
+    The patch is pulled to within r of the TCP, nothing more, in steps of 0.001 mm after the corner.
+    """
+    start = np.array([[[-80.0, 0.0, -depth], [0.0, 0.0, -depth]]])
+    tcp = np.array([[0.0, 0.5 * k] for k in range(17)])
+    contact = [oracle.step_all(start, [law("round")], 4000, "rope")[0, -1]]
+    for q0, q1 in itertools.pairwise(tcp):
+        p = contact[-1]
+        for t in np.linspace(0, 1, 501)[1:]:
+            lever = q0 + t * (q1 - q0) - p
+            reach = np.hypot(*lever)
+            p = p if reach <= lag(depth) else p + lever * (1 - lag(depth) / reach)
+        contact.append(p)
+    assert np.hypot(*contact[0]) == pytest.approx(lag(depth), abs=1e-3), "the patch trails by the lag"
+    return tcp, np.array(contact)
+
+
+def series(depth, rng=None, noise_deg=0.0):
+    """What a camera under the glass sees of it: angles between motion and heading, and where the tip went."""
+    tcp, contact = corner(depth)
+    heading = tcp - contact
+    heading /= np.hypot(*heading.T)[:, None]
+    tip = contact - GAP * depth * heading
+    alpha = np.degrees(
+        np.arctan2(heading[:, 0], heading[:, 1])
+    )  # from +y, positive on the side it comes from
+    moved = tip[1:] - tip[0]
+    beta = np.degrees(np.arctan2(moved[:, 0], moved[:, 1]))
+    if rng is not None:
+        alpha, beta = (
+            alpha + rng.normal(0, noise_deg, alpha.shape),
+            beta + rng.normal(0, noise_deg, beta.shape),
+        )
+    s = tcp[1:, 1]
+    return {
+        "depth_mm": float(depth),
+        "alpha0_deg": float(alpha[0]),
+        "s_mm": s.tolist(),
+        "alpha_deg": alpha[1:].tolist(),
+        "beta_deg": beta.tolist(),
+    }
+
+
+def test_angle_series_give_lag_and_tip_gap():
+    made = calibrate(from_dict(angles=[series(d) for d in DEPTHS], width=WIDTHS), "b")
+    for depth in np.linspace(1, 10, 19):
+        assert made.brush.lag(depth) == pytest.approx(lag(depth), rel=0.003)
+        assert made.brush.tip_gap(depth) == pytest.approx(GAP * depth, rel=0.01)
+
+
+def test_angle_series_with_a_degree_of_noise():
+    rng = np.random.default_rng(5)
+    rows = [series(d, rng, 1.0) for d in np.repeat(DEPTHS, 3)]
+    for total in (False, True):
+        made = calibrate(from_dict(angles=rows, width=WIDTHS), "b", total=total)
+        left = [made.brush.lag(d) - lag(d) for d in DEPTHS]
+        assert np.sqrt(np.mean(np.square(left))) < 0.5
+
+
+def test_the_angular_stroke_is_read_with_e():
+    """The middle of the mark starts to turn r - e from the TCP's second line."""
+    readings = []
+    for depth in DEPTHS:
+        _, contact = corner(depth)
+        e = widest(depth) - GAP * depth
+        readings.append(-(contact[0, 0] + e))  # the widest section's centre when the TCP turns
+    rows = {"tip_to_widest": values(DEPTHS, widest(DEPTHS)), "tip_gap": values(DEPTHS, GAP * DEPTHS)}
+    made = calibrate(from_dict(angular=values(DEPTHS, readings), width=WIDTHS, **rows), "b")
+    np.testing.assert_allclose([made.brush.lag(d) for d in DEPTHS], lag(DEPTHS), atol=0.005)
+    # taken for the lag itself, as the article reads it, it is short by e
+    as_printed = calibrate(from_dict(lag=values(DEPTHS, readings), width=WIDTHS, **rows), "b")
+    assert lag(10) - as_printed.brush.lag(10) == pytest.approx(widest(10) - GAP * 10, abs=0.01)
+
+
+def test_side_view_and_straight_stroke_give_the_tip_gap():
+    """(18) counts from first touch; (17) as printed lacks the lag. A straight slow landing: the tip begins to mark at
+    0 and lies r + b behind the TCP, which has gone s_L; D is from the mark's start to its widest place."""
+    known = {
+        "lag": values(DEPTHS, lag(DEPTHS)),
+        "tip_to_widest": values(DEPTHS, widest(DEPTHS)),
+        "width": WIDTHS,
+    }
+    side = values(DEPTHS, lag(DEPTHS) + GAP * DEPTHS - lag(0.0))
+    made = calibrate(from_dict(side_view=side, **known), "b")
+    assert made.brush.tip_gap.coefficients == pytest.approx([0, GAP], abs=1e-6)
+    path = 60.0
+    straight = [
+        {"depth_mm": d, "path_mm": path, "distance_mm": path - lag(d) - GAP * d + widest(d)}
+        for d in DEPTHS.tolist()
+    ]
+    made = calibrate(from_dict(straight=straight, **known), "b")
+    assert made.brush.tip_gap.coefficients == pytest.approx([0, GAP], abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["angular", "side_view"])
+def test_intervals_cover_the_truth_through_corrections(kind):
+    """What a law inherits from those it was corrected by is part of its interval."""
+    rng = np.random.default_rng(11)
+    depths = np.repeat(DEPTHS, 2)
+    covered = []
+    for _ in range(300):
+        scale = rng.uniform(0.8, 1.5)
+        rows = {
+            "tip_to_widest": values(depths, widest(depths) + rng.normal(0, 0.1, depths.size)),
+            "width": WIDTHS,
+        }
+        if kind == "angular":  # the lag from the sum, corrected by a tip gap that is badly known
+            rows["tip_gap"] = values(depths, GAP * depths + rng.normal(0, 0.6, depths.size))
+            sums = scale * lag(depths) + GAP * depths - widest(depths)
+            law_name, truth = "lag", scale * LAG
+        else:
+            rows["lag"] = values(depths, scale * lag(depths) + rng.normal(0, 0.15, depths.size))
+            sums = scale * lag(depths) + GAP * depths - scale * lag(0.0)
+            law_name, truth = "tip_gap", np.array([0, GAP])
+        rows[kind] = values(depths, sums + rng.normal(0, 0.2, depths.size))
+        made = calibrate(from_dict(**rows), "b")
+        assert not any(
+            "held" in remark for fitted in made.laws for remark in fitted.remarks if fitted.name == "lag"
+        )
+        profile = getattr(made.brush, law_name)
+        off = np.abs(np.array(profile.coefficients) - truth)
+        covered.append(off <= profile.half_interval_95)
+    first = 1 if law_name == "tip_gap" else 0
+    assert 0.92 <= np.mean(np.array(covered)[:, first:]) <= 0.985
+
+
+def test_the_covariance_is_that_of_repeated_calibrations():
+    """Against the scatter of 600 calibrations, correlations between laws included."""
+    rng = np.random.default_rng(2)
+    depths = np.repeat(DEPTHS, 2)
+    found, told = [], []
+    for _ in range(600):
+        rows = {
+            "tip_to_widest": values(depths, widest(depths) + rng.normal(0, 0.3, depths.size)),
+            "width": WIDTHS,
+        }
+        rows["tip_gap"] = values(depths, GAP * depths + rng.normal(0, 0.15, depths.size))
+        sums = lag(depths) + GAP * depths - widest(depths) + rng.normal(0, 0.2, depths.size)
+        made = calibrate(from_dict(angular=values(depths, sums), **rows), "b")
+        laws = [made.brush.lag, made.brush.tip_gap, made.brush.tip_to_widest]
+        found.append(np.concatenate([each.coefficients for each in laws]))
+        told.append(np.array(made.brush.covariance)[:11, :11])
+    told, seen = np.mean(told, axis=0), np.cov(np.array(found).T)
+    # of the laws' values at depths, not of coefficients, whose sizes differ by thousands
+    at = np.array([2.0, 5.0, 9.0])
+    values_of = np.zeros((9, 11))
+    for k, (first, count) in enumerate(((0, 5), (5, 2), (7, 4))):
+        values_of[3 * k : 3 * k + 3, first : first + count] = np.vander(at, count, increasing=True)
+    told, seen = (values_of @ c @ values_of.T for c in (told, seen))
+    size = np.sqrt(np.outer(np.diag(seen), np.diag(seen)))
+    np.testing.assert_allclose(told / size, seen / size, atol=0.15)
+
+
+@pytest.mark.parametrize("total", [False, True])
+def test_check_values_of_the_model(total):
+    """The page of check values: r = 3, b = 1, alpha0 = 90 degrees."""
+    s = [0.3, 1, 3, 6, 12]
+    alpha = [1.470962578, 1.243469712, 0.705026844, 0.269035991, 0.036627182]
+    beta = [2.942418246, 2.502940052, 1.603727440, 0.940211420, 0.448761937]
+    lines = _core.Lines.total if total else _core.Lines.plain
+    found = _core.from_angles(np.pi / 2, s, alpha, beta, lines)
+    assert found["lag_mm"] == pytest.approx(3, abs=1e-6)
+    assert found["tip_gap_mm"] == pytest.approx(1, abs=1e-6)
+    assert found["lag_rmse_mm"] < 1e-6 and found["left_out"] == 0
+
+
+def test_plain_and_total_lines_are_those_of_numpy():
+    rng = np.random.default_rng(7)
+    s = np.arange(1, 7.0)
+    alpha = 2 * np.arctan(np.exp(-s / 5.0)) + rng.normal(0, 0.05, 6)
+    e_foldings = np.log(np.tan(alpha / 2))  # (19) with alpha0 = 90 degrees: log cot 45 degrees = 0
+    plain = -(np.linalg.pinv(e_foldings[:, None]) @ s)[0]
+    assert _core.from_angles(np.pi / 2, s, alpha)["lag_mm"] == pytest.approx(plain, rel=1e-12)
+    scale = np.linalg.norm(s) / np.linalg.norm(e_foldings)
+    gram = np.array([scale * e_foldings, s]) @ np.array([scale * e_foldings, s]).T
+    _, vectors = np.linalg.eigh(gram)
+    total = scale * vectors[0, 0] / vectors[1, 0]
+    assert _core.from_angles(np.pi / 2, s, alpha, [], _core.Lines.total)["lag_mm"] == pytest.approx(
+        total, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "where", "said"),
+    [
+        ({"width": WIDTHS}, "lag", "no lag was measured: add lag, angles or angular"),
+        ({"lag": values(DEPTHS, lag(DEPTHS))}, "half_width", "no width was measured"),
+        (
+            {"lag": values([3, 3, 3], [7, 7, 7.1]), "width": WIDTHS},
+            "lag[0]",
+            "at depth 3 mm alone: measure it at two",
+        ),
+        (
+            {"angular": values(DEPTHS, lag(DEPTHS)), "width": WIDTHS},
+            "angular",
+            "all measure the sum of lag and tip gap, so the two cannot be told apart",
+        ),
+        ({"lag": values(DEPTHS, -lag(DEPTHS)), "width": WIDTHS}, "lag[9]", "it cannot be negative"),
+        (
+            {"lag": values(DEPTHS / 1000, lag(DEPTHS) / 1000), "width": values(DEPTHS / 1000, DEPTHS / 1000)},
+            "depth_mm",
+            "depths and values count in millimetres",
+        ),
+        (
+            {
+                "angles": [{"depth_mm": 3, "alpha0_deg": 90, "s_mm": [1, 2], "alpha_deg": [95, 99]}],
+                "width": WIDTHS,
+            },
+            "angles[0]",
+            "the angle must fall from the first one towards 0",
+        ),
+        ({"lag": [{"depth_mm": 3}], "width": WIDTHS}, "lag[0]", "the key value_mm is missing"),
+        ({"lag": [{"depth_mm": 3, "value_mm": None}]}, "lag[0].value_mm", "None is not a finite number"),
+        (
+            {"lag": [{"depth_mm": 3, "value_mm": float("nan")}]},
+            "lag[0].value_mm",
+            "nan is not a finite number",
+        ),
+        ({"lags": []}, "lags", "this is not known; known are lag, tip_gap"),
+        ({"lag": [{"depth": 3}]}, "lag[0].depth", "this is not known here"),
+        ({}, "", "there is no measurement in it"),
+    ],
+)
+def test_what_cannot_be_calibrated_says_what_to_do(rows, where, said):
+    with pytest.raises(Error) as refusal:
+        calibrate(from_dict(**rows), "b")
+    assert said in str(refusal.value)
+    assert refusal.value.where == where

@@ -1,0 +1,148 @@
+"""Fitted laws held against numpy and scipy, which know nothing of them."""
+
+import numpy as np
+import pytest
+from scipy.optimize import curve_fit, linprog, lsq_linear
+
+from brushsvg import _core
+from brushsvg.errors import Error
+
+TRUTH = np.polynomial.Polynomial([3.1, 0.86, 0.31, -0.05, 0.0021])
+RANGE = (0.0, 10.0)
+
+
+def measured(seed=1, noise=0.5, repeats=3):
+    rng = np.random.default_rng(seed)
+    depth = np.repeat(np.arange(1, 11.0), repeats)
+    return depth, TRUTH(depth) + rng.normal(0, noise, depth.size)
+
+
+def test_least_squares_is_numpys():
+    depth, value = measured()
+    fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 4, positive=True))
+    coefficients, covariance = np.polyfit(depth, value, 4, cov=True)
+    np.testing.assert_allclose(fit.law.coefficients, coefficients[::-1], atol=1e-10)
+    np.testing.assert_allclose(fit.covariance, covariance[::-1, ::-1], rtol=1e-7)
+    left = value - np.polyval(coefficients, depth)
+    np.testing.assert_allclose(fit.residual_mm, left, atol=1e-10)
+    assert fit.law.rmse_mm == pytest.approx(np.sqrt(left @ left / 25))
+    assert fit.r_squared == pytest.approx(1 - left @ left / np.sum((value - value.mean()) ** 2))
+    # 2.0595 is Student's t for 25 degrees of freedom at 97.5 %, from printed tables
+    np.testing.assert_allclose(
+        fit.law.half_interval_95, 2.0595 * np.sqrt(np.diag(covariance))[::-1], rtol=1e-4
+    )
+    assert not fit.held and tuple(fit.law.calibrated_mm) == (1, 10)
+
+
+def test_a_line_through_zero_is_scipys():
+    depth, value = measured()
+    fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 1, through_zero=True))
+    slope, covariance = curve_fit(lambda d, k: k * d, depth, value)
+    assert fit.law.coefficients == pytest.approx([0, slope[0]], abs=1e-7)
+    np.testing.assert_allclose(fit.covariance, [[0, 0], [0, covariance[0, 0]]], rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_least_absolute_residuals_is_the_linear_programme(seed):
+    depth, value = measured(seed)
+    value[::7] += 5.0
+    fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 4, norm=_core.Norm.absolute))
+    powers, one = np.vander(depth, 5, increasing=True), np.eye(depth.size)
+    best = linprog(
+        np.r_[np.zeros(5), np.ones(depth.size)],
+        A_ub=np.block([[powers, -one], [-powers, -one]]),
+        b_ub=np.r_[value, -value],
+        bounds=[(None, None)] * 5 + [(0, None)] * depth.size,
+    )
+    assert np.abs(fit.residual_mm).sum() == pytest.approx(best.fun, rel=1e-6)
+    np.testing.assert_allclose(np.polyval(fit.law.coefficients[::-1], depth), powers @ best.x[:5], atol=1e-3)
+
+
+def test_a_shape_is_held_and_said():
+    depth = np.array([1.0, 2, 3, 4, 5, 6, 8, 10])
+    value = np.array([0.5, 1.2, 1.8, 2.6, 2.8, 2.9, 2.7, 2.5])  # narrower again: the ruler lay askew
+    shape = _core.LawShape(RANGE, 3, through_zero=True, rising=True)
+    fit = _core.fit_law(depth, value, shape)
+    assert fit.held and not _core.fit_law(depth, value, _core.LawShape(RANGE, 3, through_zero=True)).held
+    at = np.linspace(0, 10, 1000)
+    assert np.all(np.diff([fit.law(d) for d in at]) > -1e-9)
+    # scipy's bounded least squares over steps between Bernstein control points
+    t = depth / 10
+    bernstein = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
+    steps = bernstein @ np.tril(np.ones((4, 4)))
+    best = lsq_linear(steps[:, 1:], value, bounds=(0, np.inf), tol=1e-14)
+    np.testing.assert_allclose([fit.law(d) for d in depth], steps[:, 1:] @ best.x, atol=1e-6)
+
+
+def test_a_law_through_zero_goes_through_zero_where_the_range_begins_later():
+    """Control points began at the range's first depth once: the law held there was off by millimetres."""
+    depth = np.array([2.0, 4, 6, 8])
+    value = np.array([2.0, 3.0, 3.4, 3.3])
+    fits = [
+        _core.fit_law(depth, value, _core.LawShape(span, 3, through_zero=True, rising=True))
+        for span in ((0, 8), (2, 8))
+    ]
+    assert all(fit.held for fit in fits)
+    np.testing.assert_allclose(fits[1].residual_mm, fits[0].residual_mm, atol=1e-9)
+    assert np.abs(fits[1].residual_mm).max() < 0.2
+
+
+def test_a_lever_stays_positive():
+    depth = np.array([1.0, 2, 3, 4])
+    fit = _core.fit_law(depth, depth - 1.5, _core.LawShape(RANGE, 1, positive=True))
+    assert fit.held and min(fit.law(d) for d in np.linspace(0, 10, 100)) >= 0.01 - 1e-9
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
+    depth = np.repeat(np.arange(0.25, 10.1, 0.25), 2)
+    law = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
+    value = np.maximum(0, law(depth)) + np.random.default_rng(seed).normal(0, 0.1, depth.size)
+    fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 3, floor=0.0))
+
+    def floored(d, *c):
+        return np.maximum(0, np.polynomial.polynomial.polyval(d, c))
+
+    best, covariance = curve_fit(floored, depth, value, p0=law.coef)
+    squares = np.sum((floored(depth, *best) - value) ** 2)
+    assert np.sum(np.square(fit.residual_mm)) <= squares * (1 + 1e-9)
+    np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
+    if (
+        np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
+    ):  # else the slope has a step just there
+        np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.01)
+    assert fit.law(0.1) == 0
+
+
+@pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
+def test_intervals_cover_the_truth(norm):
+    covered = []
+    for seed in range(400):
+        depth, value = measured(seed, repeats=6)
+        if norm == _core.Norm.absolute:
+            value[seed % 12 :: 12] += 8.0  # wild ones
+        fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 4, norm=norm))
+        covered.append(np.abs(fit.law.coefficients - TRUTH.coef) <= fit.law.half_interval_95)
+    assert 0.93 <= np.mean(covered) <= 0.975
+    assert np.all(np.abs(np.mean(covered, axis=0) - 0.95) < 0.04)
+
+
+@pytest.mark.parametrize(
+    ("depth", "value", "said"),
+    [
+        ([3, 3, 3, 3, 3], [1, 2, 1, 2, 1], "at 3 different depths, there are 1: measure at more depths"),
+        ([], [], "there are 0"),
+        ([1, 2, float("nan")], [1, 2, 3], "value 3 or its depth is not a finite number"),
+        ([1, 2, 3], [1, 2], "3 depths and 2 values"),
+    ],
+)
+def test_what_cannot_be_fitted_is_said(depth, value, said):
+    with pytest.raises(Error, match=said):
+        _core.fit_law(depth, value, _core.LawShape(RANGE, 2))
+
+
+def test_as_many_values_as_coefficients_leave_nothing_to_judge_by():
+    fit = _core.fit_law([1, 2, 3], [1, 4, 9], _core.LawShape(RANGE, 2))
+    assert fit.law.coefficients == pytest.approx([0, 0, 1], abs=1e-12)
+    assert fit.degrees_of_freedom == 0 and fit.law.rmse_mm is None
+    assert fit.covariance == [] and fit.law.half_interval_95 == []

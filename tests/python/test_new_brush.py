@@ -1,0 +1,139 @@
+"""A brush from a few numbers paints what was typed in, says what it assumes, and is refused when it cannot be."""
+
+import json
+
+import numpy as np
+import pytest
+
+from brushsvg import _core, compensate, find_brush, read_drawing, strokes
+from brushsvg.cli import main
+from brushsvg.errors import Error
+from brushsvg.new_brush import new_brush, read_widths
+
+
+@pytest.mark.parametrize(
+    "widths",
+    [
+        [(3, 2.5), (8, 7)],
+        [(3, 5), (8, 7)],  # a parabola through these and 0 would fall before depth 8
+        [(8, 7), (3, 5), (1, 2)],
+        [(0.1, 0.3), (0.5, 1.1)],
+        [(4, 5)],
+    ],
+)
+def test_the_widths_are_those_typed_in(widths):
+    brush = new_brush("mine", 5.0, widths)
+    depths = np.linspace(0, brush.depth_range_mm[1], 500)
+    halves = np.array([brush.half_width(d) for d in depths])
+    assert halves[0] == 0 and np.all(np.diff(halves) >= -1e-12)
+    assert brush.depth_range_mm[1] == max(d for d, _ in widths)
+    for depth, width in widths:
+        assert 2 * brush.half_width(depth) == pytest.approx(width, abs=0.1)
+        seen = _core.footprint_at(brush.footprints, depth, 1.0)
+        assert np.ptp(seen[:, 1]) == pytest.approx(width, abs=0.15), "outlines and laws say the same"
+    assert brush.lag.coefficients == [5.0]
+
+
+def test_what_is_assumed_says_so():
+    brush = new_brush("mine", 5.0, [(3, 2.5), (8, 7)], 10)
+    assert [getattr(brush, law).assumed for law in ("lag", "tip_gap", "tip_to_widest", "half_width")] == [
+        True,
+        True,
+        True,
+        False,
+    ]
+    assert "5 mm as typed in" in brush.lag.source
+    assert "2.5 mm at depth 3 mm, 7 mm at depth 8 mm" in brush.half_width.source
+    assert tuple(brush.half_width.calibrated_mm) == (3, 8)
+    assert new_brush("mine", 5.0, [(3, 2.5)]).half_width.assumed
+    assert json.loads(brush.extra)["footprints"]["assumed"] is True
+
+
+def test_a_build_without_fits_says_so(monkeypatch):
+    monkeypatch.delattr(_core, "fit_law")
+    with pytest.raises(Error, match="built without fits; build it with Ceres"):
+        new_brush("mine", 5.0, [(3, 2.5)])
+
+
+def test_no_lag_is_a_pen():
+    pen = new_brush("pen", 0.0, [(0.2, 1.0)])
+    assert pen.is_rigid() and pen.kind == "pen" and not pen.width_follows_depth()
+    assert pen.half_width(0.01) == 0.5
+
+
+@pytest.mark.parametrize(
+    ("widths", "deepest", "said"),
+    [
+        ([], None, "there is no width"),
+        ([(3, 7), (8, 2)], None, "widths must not fall with depth"),
+        ([(3, -1)], None, "the width -1 mm is outside the range"),
+        ([(0, 1)], None, "the depth 0 mm of a width is outside the range"),
+        ([(3, float("nan"))], None, "the width nan mm"),
+        ([(3, 2)], 2, "the greatest depth 2 mm is outside the range"),
+    ],
+)
+def test_what_no_brush_can_have_is_refused(widths, deepest, said):
+    with pytest.raises(Error, match=said):
+        new_brush("mine", 5.0, widths, deepest)
+
+
+def test_a_table_of_widths():
+    assert read_widths("\ufeffdepth_mm, width_mm,note\n3, 2.5,a\n8,7,b\n") == [(3, 2.5), (8, 7)]
+    for text, where, said in [
+        ("3,2.5\n", "", "depth_mm,width_mm"),
+        ("", "", "depth_mm,width_mm"),
+        ("depth_mm,width_mm\n3,wide\n", "line 2, width_mm", "'wide' is not a number"),
+        ("depth_mm,width_mm\n3\n", "line 2, width_mm", "'' is not a number"),
+    ]:
+        with pytest.raises(Error, match=said) as refusal:
+            read_widths(text)
+        assert refusal.value.where == where
+
+
+def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "w.csv").write_text("depth_mm,width_mm\n3,2.5\n8,7\n")
+    assert main("brush new mine --lag 5 --width-at 3=2.5 --width-at 8=7 --depth-max 10".split()) == 0
+    assert "assumed: lag, tip_gap, tip_to_widest and the footprints" in capsys.readouterr().out
+    assert main("brush new sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()) == 1
+    assert "its directory does not exist" in capsys.readouterr().err
+    assert main("brush new ./table.json --lag 5 --widths w.csv --depth-max 10 --speed 12".split()) == 0
+    mine, table = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("mine", "table"))
+    assert mine.pop("name") == "mine" and table.pop("name") == "table"
+    assert mine.pop("max_speed_mm_s") == 25 and table.pop("max_speed_mm_s") == 12
+    assert mine == table
+    drawing = tmp_path / "line.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+        '<path d="M20,30 C40,10 60,50 80,30" fill="none" stroke="#000" stroke-width="4"/></svg>'
+    )
+    read = read_drawing(drawing)
+    done = compensate(strokes(read)[0], find_brush(tmp_path / "mine.json"), read.sheet_mm)
+    assert done.misses[0].largest_mm < 0.05
+
+
+@pytest.mark.parametrize(
+    ("typed", "status", "said"),
+    [
+        ("brush new mine --lag 5", 2, "at least one width"),
+        ("brush new mine --lag 5 --width-at 3", 2, "3=2.5"),
+        ("brush new mine --width-at 3=2", 2, "--lag"),
+        ("brush new round-6 --lag 5 --width-at 3=2", 1, "comes along: give yours another name"),
+        ("brush new mine --lag 5 --widths none.csv", 1, "none.csv: there is no such file"),
+        ("brush new mine --lag 5 --width-at 3=7 --width-at 8=2", 1, "must not fall with depth"),
+        ("brush plot round-6 out.pdf", 2, ".png or .svg"),
+    ],
+)
+def test_wrong_use(typed, status, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(typed.split()) == status
+    assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_brush_is_not_written_over(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.json").write_text("somebody's")
+    assert main("brush new mine --lag 5 --width-at 3=2".split()) == 1
+    assert "there already" in capsys.readouterr().err
+    assert (tmp_path / "mine.json").read_text() == "somebody's"

@@ -1,0 +1,41 @@
+"""Pictures of brushes: bands from the covariance where there is one, and a sentence without matplotlib."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from brushsvg import find_brush
+from brushsvg.cli import main
+from brushsvg.plot import brush_picture, law_band
+
+
+@pytest.mark.parametrize("name", ["round-6", "rigid"])
+def test_both_kinds_of_picture_are_the_same_twice(name):
+    brush = find_brush(name)
+    for suffix, start in ((".svg", b"<?xml"), (".png", b"\x89PNG")):
+        picture = brush_picture(brush, suffix)
+        assert picture.startswith(start)
+        assert picture == brush_picture(brush, suffix)
+
+
+def test_bands():
+    brush, depths = find_brush("round-6"), np.linspace(0, 10, 7)
+    half, what = law_band(brush, "lag", depths)
+    assert np.all(half == 0.58) and "RMSE" in what
+    assert law_band(brush, "half_width", depths) is None
+    # by hand: of the 13 coefficients only c0 and c1 of tip_gap vary, together
+    covariance = np.zeros((13, 13))
+    covariance[5:7, 5:7] = [[0.04, -0.01], [-0.01, 0.01]]
+    brush.covariance = covariance.tolist()
+    half, what = law_band(brush, "tip_gap", depths)
+    np.testing.assert_allclose(half, 1.96 * np.sqrt(0.04 - 0.02 * depths + 0.01 * depths**2))
+    assert "95 %" in what
+    assert "RMSE" in law_band(brush, "lag", depths)[1]
+
+
+def test_without_matplotlib_the_command_to_run_is_said(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main(["brush", "plot", "round-6", str(tmp_path / "out.svg")]) == 1
+    assert "pip install 'brushsvg[plot]'" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
