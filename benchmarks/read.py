@@ -18,7 +18,7 @@ from xml.parsers import expat
 import numpy as np
 
 from brushsvg import units
-from brushsvg.importers import svg_colour, svg_frame, svg_rules, svg_shapes, svg_style
+from brushsvg.importers import svg_colour, svg_frame, svg_rules, svg_shapes, svg_style, svg_transform
 from brushsvg.importers.svg import read_svg
 from brushsvg.importers.svg_trace import trace
 from brushsvg.importers.svg_xml import parse_xml
@@ -107,7 +107,7 @@ def styles(root) -> None:
 def stages(data: bytes, rounds: int) -> dict[str, float]:
     root = parse_xml(data).root
     page = svg_frame.read_page(root.attrib)
-    scale = svg_frame.scales(page.paper_from_user)[0]
+    scale = svg_transform.scales(page.paper_from_user)[0]
     shapes = [
         (tag, node.attrib) for node in root.iter() if (tag := node.tag.rpartition("}")[2]) in svg_shapes.TAGS
     ]

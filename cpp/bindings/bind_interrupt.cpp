@@ -13,6 +13,6 @@ void bind_interrupt(py::module_& m) {
         R"(A pass in parts, between which the brush is lifted to fetch paint.
 
 first_mm: path of the TCP that the paint on the brush still lasts; every_mm: that it lasts after each visit; each part
-begins backtrack_mm back in the mark of the one before, so that no gap shows. Parts are named stroke, stroke~2, ...
+begins backtrack_mm back in the mark of the one before, so that no gap shows. Parts are named stroke, stroke+2, ...
 Error for a paint that lasts no more than twice the backtrack.)");
 }

@@ -70,7 +70,7 @@ Pass part(const Pass& pass, const Brush& brush, const Place* from, const Place* 
     for (const Arc& arc : pass.arcs)
         if (arc.first >= first && arc.last <= last)
             out.arcs.push_back({at[arc.first - first], at[arc.last - first], arc.centre_mm, arc.direction});
-    if (number > 1) out.stroke += "~" + std::to_string(number);
+    if (number > 1) out.stroke += "+" + std::to_string(number);
     return out;
 }
 

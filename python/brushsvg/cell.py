@@ -175,6 +175,7 @@ TABLES = {
     "reload": Reload,
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload")
+NEEDED_BY = {"grbl-servo": "servo", "urscript": "tool"}
 RELOADS = ("length", "stroke", "layer")
 
 
@@ -200,6 +201,8 @@ def check(cell: Cell) -> None:
             f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}",
             where="heights.clearance_mm",
         )
+    if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
+        raise Error(f"language {cell.language!r} needs a table {table}", where=table)
     _check_paper(cell)
     _check_workspace(cell)
     if cell.servo:
@@ -234,6 +237,10 @@ def _check_workspace(cell: Cell) -> None:
 
 
 def _check_servo(cell: Cell) -> None:
+    frame = robot_from_paper(cell)
+    lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
+    if NEEDED_BY.get(cell.language) == "servo" and not lies_level:
+        raise Error("a servo's heights are those over the paper: it must lie level, at z 0", where="paper")
     table = np.array(cell.servo.table)
     steps = np.diff(table, axis=0)
     if len(table) < 2 or not ((steps[:, 0] > 0).all() or (steps[:, 0] < 0).all()):

@@ -364,7 +364,7 @@ def matched(plan, strokes, resumed: bool = False) -> tuple[list, Problems]:
     for stroke in strokes:
         left.setdefault(_written(stroke.id), []).append(stroke)
     names = [_written(a_pass.stroke) for a_pass in plan.passes]
-    in_parts = {_whole(name) for name in names if _whole(name) != name}
+    in_parts = {_whole(name) for name in names if name not in left and _whole(name) != name}
     found, problems = [], []
     for name in names:
         key = _whole(name) if name not in left else name
@@ -384,7 +384,7 @@ def matched(plan, strokes, resumed: bool = False) -> tuple[list, Problems]:
 
 
 def _whole(name: str) -> str:
-    return re.sub(r"~\d+$", "", name)
+    return re.sub(r"\+\d+$", "", name)
 
 
 def _written(name: str) -> str:

@@ -38,6 +38,8 @@ def broken_limits(plan, brush, cell: Cell, z_offset_mm: float = 0.0) -> list[tup
         if not 0 < speed <= limit:
             sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
         problems += [(a_pass.stroke, sentence) for sentence in sentences]
+    if cell.servo:
+        problems += [("", said) for said in _servo(plan, cell, z_offset_mm)]
     for station in cell.stations:
         points = station_points(station, cell)
         problems += [(station.name, said) for said in _workspace(moved(frame, points), cell)]
@@ -69,6 +71,17 @@ def _heights(poses: np.ndarray, cell: Cell) -> Iterator[str]:
         yield f"height {highest:.3f} mm inside a pass is above the paper: a pass stays at z <= 0"
     elif lowest < cell.heights.lowest_mm:
         yield f"height {lowest:.1f} mm is outside the range [{cell.heights.lowest_mm:.1f}, 0.0] mm of cell {cell.name}"
+
+
+def _servo(plan, cell: Cell, z_offset_mm: float) -> Iterator[str]:
+    """A height beyond the table would silently become its end."""
+    low, high = np.array(cell.servo.table)[:, 0].min(), np.array(cell.servo.table)[:, 0].max()
+    lowest = min(
+        (float(np.min(a_pass.poses_mm[:, 2])) for a_pass in plan.passes if len(a_pass.poses_mm)), default=0.0
+    )
+    for height in (lowest + z_offset_mm, cell.heights.safe_mm + z_offset_mm):
+        if not low - ROUNDING_MM <= height <= high + ROUNDING_MM:
+            yield f"height {height:.1f} mm is outside the range [{low:g}, {high:g}] mm of the servo of cell {cell.name}"
 
 
 def _sheet(poses: np.ndarray, sheet_mm, cell: Cell) -> Iterator[str]:

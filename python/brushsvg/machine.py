@@ -20,6 +20,9 @@ from .moves import Program, duration_s, in_robot_frame
 from .paint import in_loads, painted_mm, visits
 from .posts import POSTS, Post
 from .program import WHOLE_JOB, Job, program, unchecked_program
+from .report import clock
+
+DEFAULT_TOLERANCE_MM = 0.05
 
 
 def problems(
@@ -206,13 +209,6 @@ def text_of(post: Post, made: Program) -> Iterator[str]:
     return post.write(in_robot_frame(made) if post.in_robot_frame else made)
 
 
-def clock(seconds: float) -> str:
-    """A time for people."""
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s" if minutes else f"{rest} s"
-
-
 def whole_program(plan, brush, cell: Cell) -> Program:
     """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
     return unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell)))
@@ -233,6 +229,3 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
         raise Error(sentence, where=where)
     write_files({path: encode(suffix, plan, brush, title, cell=cell)})
-
-
-DEFAULT_TOLERANCE_MM = 0.05

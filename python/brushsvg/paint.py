@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from .errors import Error
 
 
 def in_loads(plan, brush, cell: Cell):
-    """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke~2, ...
+    """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
     The same plan for cells that do not count the length, and for strokes whose setting reload is false.
     """
@@ -62,8 +61,8 @@ def painted_mm(a_pass) -> float:
 
 
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
-    if re.fullmatch(rf"{re.escape(last.stroke.partition('~')[0])}~\d+", a_pass.stroke):
-        return True  # a part of the same stroke
+    if part_goes_on(last.stroke, a_pass.stroke):
+        return True
     asked = _asked(a_pass)
     if asked is not None:
         return asked
@@ -72,6 +71,12 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
     if cell.reload.when == "layer":
         return a_pass.layer != last.layer
     return used_mm > cell.reload.every_mm
+
+
+def part_goes_on(before: str, name: str) -> bool:
+    """Whether a pass of this name is the next part of the stroke that the pass before it paints: s, s+2, s+3 ..."""
+    stroke, _, part = name.rpartition("+")
+    return part.isdecimal() and before == (stroke if part == "2" else f"{stroke}+{int(part) - 1}")
 
 
 def _asked(a_pass) -> bool | None:

@@ -234,7 +234,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
         "of the widest point from the middle line. Painted: path of the TCP on the paper.",
-        f"Time, with the acceleration of the machine: {_clock(report.time_s)}",
+        f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.warnings:
         lines += ["", f"Warnings: {len(report.warnings)}"]
@@ -274,6 +274,10 @@ def _short(name: str) -> str:
     return name if len(name) <= 24 else name[:21] + "..."
 
 
-def _clock(seconds: float) -> str:
+def clock(seconds: float) -> str:
+    """A time for people."""
     minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return (
+        f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
+    )

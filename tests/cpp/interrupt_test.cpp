@@ -66,7 +66,7 @@ TEST_CASE("parts are no longer than the paint lasts, named and complete") {
     const double lift = 7.0;  // comes back over its own patch
     CHECK(length(parts[0]) < 15.0 + lift);
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (k > 0) CHECK(parts[k].stroke == "wave~" + std::to_string(k + 1));
+        if (k > 0) CHECK(parts[k].stroke == "wave+" + std::to_string(k + 1));
         if (k > 0) CHECK(length(parts[k]) < 40.0 + lift);
         CHECK(parts[k].poses_mm(0, 2) == 0.0);
         CHECK(parts[k].poses_mm(parts[k].poses_mm.rows() - 1, 2) == 0.0);

@@ -178,10 +178,10 @@ def test_a_stroke_in_parts_is_one_stroke_of_the_drawing(desk, capsys):
     paint = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\nplace_mm = [-10, 10]\ndepth_mm = 5\n'
     (desk / "painter.toml").write_text((SHIPPED / "linuxcnc-3axis.toml").read_text() + paint)
     assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "painter.toml")[0] == 0
-    assert "curve~2)" in (desk / "two.ngc").read_text()
+    assert "curve+2)" in (desk / "two.ngc").read_text()
     status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--cell", "painter.toml")
     assert (status, err) == (0, [])
-    assert re.search(r"(?m)^curve~2 +- ", out)
+    assert re.search(r"(?m)^curve\+2 +- ", out)
     assert re.search(r"(?m)^all +0\.9[67]\d ", out)
 
 

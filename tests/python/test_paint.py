@@ -159,8 +159,8 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     assert [a_pass.stroke for a_pass in plan.passes] == [
         "short",
         "long",
-        "long~2",
-        "long~3",
+        "long+2",
+        "long+3",
         "last",
     ]
     assert names(visits(plan, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
@@ -188,7 +188,7 @@ def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
         "stroke 2 of 5: long",
         "paint: black",
     ]
-    assert titles[5] == "stroke 3 of 5: long~2"
+    assert titles[5] == "stroke 3 of 5: long+2"
 
 
 def test_a_station_on_the_sheet_or_far_from_it_is_refused():

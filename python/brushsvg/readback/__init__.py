@@ -42,14 +42,13 @@ class ReadSection:
 
 @dataclass
 class Readback:
-    """joint_mm: how far every corner may be cut. wait_s: in all.
+    """joint_mm: how far every corner may be cut.
 
     in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
     """
 
     sections: list[ReadSection] = field(default_factory=list)
     joint_mm: float = 0.0
-    wait_s: float = 0.0
     in_paper_frame: bool = False
     paper: tuple[float, ...] = ()
 

@@ -30,7 +30,7 @@ class _Reader:
         self.out = Readback()
         self.servo = sorted(cell.servo.table, key=lambda row: row[1]) if cell.servo else None
         self.at = {axis: math.nan for axis in "XYZ"}
-        self.feed_mm_s = self.rapid_mm_s = 0.0
+        self.feed_mm_s = 0.0
         self.rapid_mm_s = cell.speeds.travel_mm_s
         self.seen: set[str] = set()
         self.ended = False
@@ -65,15 +65,13 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
         if not codes or codes[0] in ("G0", "G1", "G2", "G3"):
             self._move(number, line, codes, values)
-        elif codes[0] == "G4":
-            self.out.wait_s += values.get("P", 0.0)
         elif codes[0] == "G64":
             self.out.joint_mm = values.get("P", math.inf)
         elif codes[0] == "M3" and self.servo:
             self._lift(number, values)
         elif codes[0] == "M2":
             self.ended = True
-        elif not set(codes) <= MODES | set(NEEDED) | {"M0"}:
+        elif not set(codes) <= MODES | set(NEEDED) | {"M0", "G4"}:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         self.seen |= set(codes)
 

@@ -14,7 +14,6 @@ _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
 _MOVE = re.compile(rf"  (movel|movep)\({_POINT}, a={_N}, v=({_N})(?:, r=({_N}))?\)")
 _CIRCLE = re.compile(rf"  movec\({_POINT}, {_POINT}, a={_N}, v=({_N}), r=0\.0, mode=1\)")
 _PAPER = re.compile(rf"  paper = p\[({_N}(?:, {_N}){{5}})\]")
-_WAIT = re.compile(rf"  sleep\(({_N})\)")
 _OTHER = re.compile(  # the frame around the moves
     rf"def brushsvg\(\):|end|brushsvg\(\)|  set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|  def on_paper\(x, y, z\):"
     rf"|    return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)|  end"
@@ -22,6 +21,7 @@ _OTHER = re.compile(  # the frame around the moves
     rf"|  if here\[2\] < {_N}:"
     rf"|    movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\), "
     rf"a={_N}, v={_N}\)"
+    rf"|  sleep\({_N}\)"
     r'|  popup\("[^"\\]*", "brushsvg", False, False, blocking=True\)'
 )
 
@@ -40,8 +40,6 @@ def read_urscript(text: str) -> Readback:
             _circle(out, number, np.array([float(value) * 1e3 for value in found.groups()]))
         elif found := _PAPER.fullmatch(line):
             out.paper = tuple(float(value) for value in found[1].split(", "))
-        elif found := _WAIT.fullmatch(line):
-            out.wait_s += float(found[1])
         elif line and not _OTHER.fullmatch(line):
             raise Error(f"line {number}: {line.strip()[:60]!r} is not a line that brushsvg writes")
     if not out.paper:
