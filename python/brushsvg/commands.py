@@ -16,7 +16,7 @@ from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
 from .fold import folded
-from .importers import ReadOptions, read_drawing
+from .importers import ReadOptions, read_drawing, settings_in
 from .jobs import border, paper_height
 from .layout import Layout, arrange
 from .posts import POSTS
@@ -27,6 +27,7 @@ from .strokes import strokes as strokes_of
 
 def convert_file(args) -> None:
     _check_places(args.output, args.preview, args.report)
+    _settle(args)
     cell = _cell(args)
     work = _prepare(args, cell)
     cell = machine.as_exact_as(cell, work.options.tolerance_mm)
@@ -65,6 +66,7 @@ def _warn_of_example(args, cell: Cell) -> None:
 
 def border_file(args) -> None:
     _check_places(args.output)
+    _settle(args)
     cell = _cell(args)
     work, marks, _ = _look(args, cell, outlines=False)
     with about(args.input):
@@ -122,6 +124,7 @@ def check_file(args) -> None:
 
 def predict_file(args) -> None:
     _check_places(args.output)
+    _settle(args)
     work, marks, _ = _look(args, _cell(args), outlines=_suffix(args.output) != ".png")
     with about(args.input):
         picture = convert.picture(_suffix(args.output), work, marks)
@@ -130,6 +133,7 @@ def predict_file(args) -> None:
 
 def animate_file(args) -> None:
     _check_places(args.output)
+    _settle(args)
     cell = _cell(args)
     work, marks, _ = _look(args, cell, outlines=True, in_loads=True)
     with about(args.input):
@@ -172,6 +176,7 @@ def text_file(args) -> None:
 
 
 def report_file(args) -> None:
+    _settle(args)
     cell = _cell(args)
     work, marks, warnings = _look(args, cell, outlines=True)
     with about(args.input):
@@ -209,6 +214,19 @@ def _prepare(args, cell: Cell, brush=None) -> convert.Work:
     )
     with about(args.input):
         return convert.prepare(args.input, options, stage)
+
+
+def _settle(args) -> None:
+    """What was not typed is as the drawing says. It can only name what comes along: it reads no other file."""
+    with about(args.input):
+        said = settings_in(args.input)
+        if args.brush is None and said.get("brush") not in brush_names():
+            said.pop("brush", None)  # the strokes that ask for it are warned of
+        if args.cell is None and said.get("cell", DEFAULT_CELL) not in cell_names():
+            raise Error(f"the drawing asks for cell {said['cell']}, which does not come along: give --cell")
+    for name, value in said.items():
+        if getattr(args, name) is None:
+            setattr(args, name, value)
 
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin")

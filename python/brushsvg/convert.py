@@ -241,7 +241,10 @@ def picture(suffix: str, work: Work, marks) -> bytes:
 
     colours = [a_pass.colour for a_pass in work.plan.passes]
     if suffix == ".svg":
-        return render.marks_svg(marks, work.plan.sheet_mm, colours, work.title).encode()
+        how = "" if work.strokes is None else f", {work.options.compensation}"
+        made = f"{work.plan.brush}{how}"
+        text = render.marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made)
+        return text.encode()
     return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
 
 

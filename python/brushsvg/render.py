@@ -26,21 +26,35 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_svg(marks, sheet_mm: tuple[float, float], colours: list[str], title: str = "") -> str:
-    """One path per pass in its colour, in millimetres of the sheet. marks: with outlines."""
+def marks_svg(
+    marks, sheet_mm: tuple[float, float], colours: list[str], title: str = "", misses=(), made: str = ""
+) -> str:
+    """One path per pass in its colour, in millimetres of the sheet.
+
+    marks: with outlines; misses: of the passes, if known; made: how, in words.
+    """
     width, height = sheet_mm
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
-        f'viewBox="0 0 {width:g} {height:g}">',
+        f'viewBox="0 0 {width:g} {height:g}"'
+        + (f" data-made={quoteattr(_printable(made))}" if made else "")
+        + ">",
         f"<title>{escape(_printable(title))}</title>",
     ]
-    for trace, colour in zip(marks.passes, colours, strict=True):
+    misses = misses or [None] * len(colours)
+    for trace, colour, miss in zip(marks.passes, colours, misses, strict=True):
         if trace.outline_mm:
             stroke = quoteattr(_printable(trace.stroke))
-            lines.append(f'<path data-stroke={stroke} fill="{_known(colour)}" d="')
+            lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{_known(colour)}" d="')
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
     return "\n".join([*lines, "</svg>", ""])
+
+
+def _missed(miss) -> str:
+    if miss is None:
+        return ""
+    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * (not miss.within_tolerance)
 
 
 def _known(colour: str) -> str:

@@ -133,7 +133,7 @@ class Walk:
 
     def _inside(self, node: ET.Element, context: Context, style: Style, problems) -> Context | None:
         """What a node hands to what it holds; None if nothing of it can be painted."""
-        settings, invalid = own_settings(node.attrib)
+        settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
         if is_zero(style.own["opacity"]):
             self.notes.add(node, context, "it is fully transparent: left out")
