@@ -45,7 +45,7 @@ def _escaped(text: str) -> str:
 
 
 def remove_layer(root, name: str) -> None:
-    for old in root.xpath("//*[@id=$name]", name=name):
+    for old in [node for node in root.iter() if node.get("id") == name]:
         old.getparent().remove(old)
 
 

@@ -178,27 +178,32 @@ def text_file(args) -> None:
 def report_file(args) -> None:
     _settle(args)
     cell = _cell(args)
-    work, marks, warnings = _look(args, cell, outlines=True)
+    work, marks, warnings = _look(args, cell, outlines=True, partly=True)
     with about(args.input):
         text = convert.report_text(".json" if args.json else ".txt", work, marks, cell, warnings)
-    tell(text)
+    if work.plan.passes or args.json:
+        tell(text)
+    if work.refused:
+        refused = folded((notice.where, notice.sentence) for notice in work.refused)
+        raise RefusedError([(args.input, *each) for each in refused])
 
 
-def _look(args, cell: Cell, outlines: bool, in_loads: bool = False):
+def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False):
     """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
-    work = _prepare(args, cell)
+    work = _prepare(args, cell, partly=partly)
     with about(args.input):
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
         if in_loads:
             work = convert.in_loads(work, cell)
         marks = convert.predict(work, outlines, stage)
         warnings = [(n.where, n.sentence) for n in work.notices]
-        warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+        if work.plan.passes or not work.refused:
+            warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
     warn(args.input, warnings)
     return work, marks, warnings
 
 
-def _prepare(args, cell: Cell, brush=None) -> convert.Work:
+def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
     if _suffix(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "compensation", "lag", "tolerance"):
             if getattr(args, flag) is not None:
@@ -213,7 +218,7 @@ def _prepare(args, cell: Cell, brush=None) -> convert.Work:
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
     with about(args.input):
-        return convert.prepare(args.input, options, stage)
+        return convert.prepare(args.input, options, stage, partly)
 
 
 def _settle(args) -> None:

@@ -43,7 +43,7 @@ class Options:
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
-    misses: one per pass of the plan, () for a plan read from a file.
+    misses: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
     """
 
     title: str
@@ -53,32 +53,62 @@ class Work:
     misses: tuple
     options: Options
     notices: tuple[Notice, ...]
+    refused: tuple[Notice, ...] = ()
 
 
-def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda text: None) -> Work:
-    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted."""
+def prepare(
+    path: str | os.PathLike, options: Options = Options(), stage=lambda text: None, partly: bool = False
+) -> Work:
+    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted; partly: strokes
+    that are refused are left out."""
     if Path(path).suffix.lower() == ".json":
         return _prepare_plan(path, options)
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     design = layout.arrange(importers.read_drawing(path, options.reading), options.layout)
     strokes, notices = strokes_of(design)
-    done = _core.compensate(
-        strokes,
-        brush,
-        design.sheet_mm,
-        options.compensation,
-        options.tolerance_mm,
-        options.lag_mm,
-        options.speed_mm_s,
-        progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
-    )
+
+    def compensated(some):
+        return _core.compensate(
+            some,
+            brush,
+            design.sheet_mm,
+            options.compensation,
+            options.tolerance_mm,
+            options.lag_mm,
+            options.speed_mm_s,
+            progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
+        )
+
+    refused = []
+    try:
+        done = compensated(strokes)
+    except Error:
+        if not partly:
+            raise
+        strokes, refused = _sorted_out(strokes, compensated)
+        done = compensated(strokes)
     plan = _with_speeds(done.plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
     notices += _other_brushes(strokes, brush)
     if options.compensation == "closed":
         notices += _misses(strokes, done.misses, options.tolerance_mm)
-    return Work(design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices))
+    return Work(
+        design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices), tuple(refused)
+    )
+
+
+def _sorted_out(strokes, compensated):
+    """Strokes that can be painted, and why the others cannot: each is tried alone."""
+    sound, refused = [], []
+    for stroke in strokes:
+        try:
+            compensated([stroke])
+        except Error as error:
+            refused.append(Notice(stroke.id, str(error)))
+        else:
+            sound.append(stroke)
+    return sound, refused
 
 
 def _widths(warnings, may_advise: bool) -> list[Notice]:
@@ -270,5 +300,6 @@ def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn
         total=total,
         time_s=time_s(work.plan, work.brush, cell),
         warnings=tuple(known),
+        refused=tuple((notice.where, notice.sentence) for notice in work.refused),
     )
     return report.to_json(result) if suffix == ".json" else report.to_text(result)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from command import COMMAND
 
+SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what lies there
 SOURCE = Path(__file__).parents[2] / "plugins" / "inkscape"
 
 
@@ -54,11 +55,10 @@ class Plugin:
 
     def script(self, name: str, drawing: Path, *words: str) -> subprocess.CompletedProcess:
         """The script as Inkscape starts it, to read what its dialog would say."""
-        return self._run(
-            ["/usr/bin/python3", str(self.installed / f"brushsvg_{name}.py"), *words, str(drawing)]
-        )
+        script = str(self.installed / f"brushsvg_{name}.py")
+        return self._run(["env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3", script, *words, str(drawing)])
 
     def _run(self, words) -> subprocess.CompletedProcess:
         return subprocess.run(
-            words, env=self.env, cwd=self.folder, capture_output=True, timeout=120, check=False
+            words, env=self.env, cwd=self.folder, capture_output=True, timeout=40, check=False
         )

@@ -257,3 +257,20 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
     missed = re.findall(r'data-stroke="(.)" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
     assert [(name, bool(is_missed)) for name, _, is_missed in missed] == [("a", False), ("b", True)]
     assert float(missed[0][1]) < 0.05 < float(missed[1][1])
+
+
+def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
+    text = DRAWING.replace('id="b"', 'id="b" stroke-width="30"')
+    bad = "".join(f'<path id="c{k}" stroke-width="{20 + k}" d="M30 {70 + k} H90"/>' for k in range(5))
+    (desk / "d.svg").write_text(text.replace("</svg>", bad + "</svg>"))
+    assert main(["report", "d.svg", "--json"]) == 1
+    out, err = capsys.readouterr()
+    report = json.loads(out)
+    assert [each["where"] for each in report["refused"]] == ["b", "c0", "c1", "c2", "c3", "c4"]
+    assert "width 22.000 mm is outside the range" in report["refused"][3]["sentence"]
+    assert [each["stroke"] for each in report["strokes"]] == ["a"]
+    assert err.splitlines()[-1].startswith("brushsvg: d.svg: b and 5 like it: width 30.000 mm is outside")
+    assert main(["report", "d.svg"]) == 1
+    assert "Left out, since they cannot be painted: 6\n  b: width 30.000 mm" in capsys.readouterr().out
+    assert main(["convert", "d.svg", "x.ngc"]) == 1
+    assert not (desk / "x.ngc").exists()

@@ -121,10 +121,10 @@ class Walk:
             self._leave_out("hidden")
         elif not context.chosen:
             return
-        elif tag not in svg_shapes.TAGS:
-            self.notes.add(node, inner, _TEXT if tag == "text" else f"{tag[:40]} is not read: left out")
         elif inner.settings.get("skip"):
             self._leave_out("to be skipped, by data-brushsvg-skip")
+        elif tag not in svg_shapes.TAGS:
+            self.notes.add(node, inner, _TEXT if tag == "text" else f"{tag[:40]} is not read: left out")
         else:
             self.painted.add(node, tag, inner)
 
