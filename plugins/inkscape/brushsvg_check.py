@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import copy
-import json
 import sys
 
 from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
@@ -25,8 +24,7 @@ def main() -> None:
         from lxml import etree
 
         document = inkex.load_svg(args.input_file)
-        out, _ = run.finish(may_refuse=True)
-    report = json.loads(out)
+        report = run.report()
     svg = document.getroot()
     remove_layer(svg, LAYER_ID)
     layer = locked_layer(etree, LAYER_ID, _label(report))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import re
 import shutil
@@ -118,6 +119,17 @@ class Run:
             raise StopError(f"{self.program} has written nothing.")
         with open(path, "rb") as file:
             return file.read()
+
+    def report(self) -> dict:
+        """The report that it printed, of what can be painted and of what is refused."""
+        out, _ = self.finish(may_refuse=True)
+        try:
+            report = json.loads(out)
+            report["refused"], report["warnings"], report["brush"]
+        except (ValueError, KeyError, TypeError):
+            self._stop_if_too_old()
+            raise StopError(f"{self.program} has not printed a report.") from None
+        return report
 
     def _stop_if_too_old(self) -> None:
         """Asked only when something went wrong: it would cost each preview a tenth of a second."""

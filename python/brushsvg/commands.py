@@ -327,6 +327,14 @@ def cell_check(args) -> None:
     tell(f"{args.input}: cell {cell.name} can be used\n")
 
 
+def install_plugin(args) -> None:
+    from .plugin import install_inkscape
+
+    with about(args.plugin):
+        folder = install_inkscape(args.zip)
+    tell(f"{folder}: installed; start Inkscape again, and look under Extensions > Brush\n")
+
+
 def cell_new(args) -> None:
     _check_places(args.output)
     if os.path.exists(args.output):

@@ -136,6 +136,13 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--json", action="store_true", help="as JSON")
     report.set_defaults(run="report_file", parser=report)
 
+    install = commands.add_parser("install-plugin", help="put our extension where a drawing program looks")
+    install.add_argument("plugin", metavar="inkscape", choices=("inkscape",), help="which one")
+    install.add_argument(
+        "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"
+    )
+    install.set_defaults(run="install_plugin", parser=install)
+
     for kind, about, told, file in (
         ("brush", "look at brushes", "laws and ranges", "brush.json"),
         ("cell", "look at cells: machines and their limits", "heights, speeds and limits", "cell.toml"),
@@ -346,7 +353,7 @@ def _check_operands(args) -> None:
         args.parser.error(f"{args.output} does not end in .toml")
     if args.run == "cell_new" and len(args.taught or ()) not in (0, 3, 4):
         args.parser.error(f"--taught is given {len(args.taught)} times, not three or four")
-    if args.run.startswith(("brush_", "cell_")):
+    if args.run.startswith(("brush_", "cell_", "install_")):
         return
     if args.run == "height_file":
         _check_extension(args, args.output, PROGRAMS[1:])
