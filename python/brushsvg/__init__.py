@@ -39,8 +39,9 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .errors import Error
     from .importers import ReadOptions, read_drawing
     from .machine import write_program
-    from .render import marks_png, marks_svg
+    from .render import marks_png
     from .strokes import strokes
+    from .svg_marks import marks_svg
     from .text import text_svg
 
     __version__: str
@@ -60,7 +61,7 @@ _HOME = {
     "find_brush": "brushes",
     "write_program": "machine",
     "marks_png": "render",
-    "marks_svg": "render",
+    "marks_svg": "svg_marks",
 } | dict.fromkeys(
     [
         "Arc",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import checking, convert, machine
+from . import convert, machine
 from ._core import remarks
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -17,11 +17,9 @@ from .errors import Error
 from .files import read_bytes, write_files
 from .fold import folded
 from .importers import ReadOptions, read_drawing, settings_in
-from .jobs import border, paper_height
 from .layout import Layout, arrange
 from .posts import POSTS
 from .program import Job
-from .readback import read_program
 from .strokes import strokes as strokes_of
 
 
@@ -65,6 +63,8 @@ def _warn_of_example(args, cell: Cell) -> None:
 
 
 def border_file(args) -> None:
+    from .jobs import border
+
     _check_places(args.output)
     _settle(args)
     cell = _cell(args)
@@ -79,6 +79,8 @@ def border_file(args) -> None:
 
 
 def height_file(args) -> None:
+    from .jobs import paper_height
+
     _check_places(args.output)
     cell, brush = _cell(args), _brush(args) or find_brush(convert.DEFAULT_BRUSH)
     with about(cell.name):
@@ -91,6 +93,9 @@ def height_file(args) -> None:
 
 
 def check_file(args) -> None:
+    from . import checking  # here and below: what only one command needs is loaded by it
+    from .readback import read_program
+
     _check_places(args.preview)
     with about(args.program):
         text = read_bytes(args.program).decode("latin-1")
@@ -125,7 +130,8 @@ def check_file(args) -> None:
 def predict_file(args) -> None:
     _check_places(args.output)
     _settle(args)
-    work, marks, _ = _look(args, _cell(args), outlines=_suffix(args.output) != ".png")
+    suffix = _suffix(args.output)
+    work, marks, _ = _look(args, _cell(args), outlines=suffix != ".png", whole=suffix == ".json")
     with about(args.input):
         picture = convert.picture(_suffix(args.output), work, marks)
     _write({args.output: picture})
@@ -188,14 +194,14 @@ def report_file(args) -> None:
         raise RefusedError([(args.input, *each) for each in refused])
 
 
-def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False):
+def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
     """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
     work = _prepare(args, cell, partly=partly)
     with about(args.input):
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
         if in_loads:
             work = convert.in_loads(work, cell)
-        marks = convert.predict(work, outlines, stage)
+        marks = convert.predict(work, outlines, stage, whole)
         warnings = [(n.where, n.sentence) for n in work.notices]
         if work.plan.passes or not work.refused:
             warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)

@@ -20,6 +20,7 @@ from .files import read_bytes
 from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
 from .paint import in_loads as in_loads_of
 from .strokes import strokes as strokes_of
+from .svg_marks import marks_svg
 from .timeline import timeline
 
 DEFAULT_BRUSH = "round-6"
@@ -236,17 +237,42 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     return best
 
 
-def predict(work: Work, outlines: bool = True, stage=lambda text: None):
-    """The marks of the plan; outlines: trace their rings too."""
+def predict(work: Work, outlines: bool = True, stage=lambda text: None, whole: bool = True):
+    """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
 
     progress = _counted(stage, "simulated")
     marks = _core.simulate(work.plan, work.brush, progress=progress)
-    return outlined(marks, work.brush, stage) if outlines else marks
+    if not outlines:
+        return marks
+    return outlined(marks, work.brush, stage) if whole else _outlined_apart(marks, work.brush, stage)
 
 
 def outlined(marks, brush, stage=lambda text: None):
     """The marks with their rings traced."""
     _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
+    return marks
+
+
+def _outlined_apart(marks, brush, stage):
+    """The marks with the rings of each pass alone, which is all that a picture needs, on all processors."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    def one(trace):
+        alone = _core.Marks()
+        alone.passes = [trace]
+        _core.trace_outlines(alone, brush)
+        return alone.passes[0]
+
+    count = _counted(stage, "outlined")
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        done = []
+        for trace in pool.map(one, marks.passes):
+            done.append(trace)
+            count(len(done), len(marks.passes))
+    finally:
+        pool.shutdown(cancel_futures=True)  # Ctrl-C waits for the strokes at hand, no longer
+    marks.passes = done
     return marks
 
 
@@ -267,14 +293,14 @@ def picture(suffix: str, work: Work, marks) -> bytes:
     """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines."""
     if suffix == ".json":
         return _core.write_marks(marks).encode()
-    from . import render  # brings OpenCV, which a program does not need
-
     colours = [a_pass.colour for a_pass in work.plan.passes]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"
-        text = render.marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made)
+        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made)
         return text.encode()
+    from . import render  # brings OpenCV, which the others do not need
+
     return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
 
 
