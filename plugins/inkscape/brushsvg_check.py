@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import copy
 import sys
+import textwrap
 
 from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
 from brushsvg_program import Run, arguments, choices, guarded
@@ -15,6 +16,8 @@ REFUSED, WARNED = "#d4351c", "#e08700"
 SHAPES = {f"{SVG}{name}" for name in ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")}
 OWN_TO_A_SHAPE = (f"{INKSCAPE}path-effect", f"{INKSCAPE}original-d", "class", "id", "transform")
 TEXT_MM = 3
+LETTERS = 50  # of a line of text
+HALO = "paint-order:stroke;stroke:#ffffff"  # letters can be read on top of a drawing
 
 
 def main() -> None:
@@ -73,15 +76,26 @@ def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
     unit = svg.unittouu("1mm")
     if element.tag in SHAPES:
         layer.append(_copy(element, place, colour))
-    box = element.bounding_box(element.getparent().composed_transform()) if element.tag in SHAPES else None
-    at = (
-        (box.left, box.top - unit)
-        if box
-        else place.apply_to_point((_number(element, "x"), _number(element, "y")))
+    at = place.apply_to_point((_number(element, "x"), _number(element, "y")))
+    if element.tag in SHAPES and (box := element.bounding_box(element.getparent().composed_transform())):
+        width = svg.unittouu(element.specified_style().get("stroke-width", "1"))
+        half_width = width * abs(place.a * place.d - place.b * place.c) ** 0.5 / 2
+        at = (box.left, box.top - half_width - unit)
+    _write(etree, layer, sentence, at, TEXT_MM * unit, colour)
+
+
+def _write(etree, layer, sentence: str, at, size: float, colour: str) -> None:
+    """Lines of text that end above a point."""
+    text = etree.SubElement(layer, f"{SVG}text")
+    text.set(
+        "style",
+        f"font-size:{size:.6g}px;font-family:sans-serif;fill:{colour};{HALO};stroke-width:{size / 5:.6g}",
     )
-    text = etree.SubElement(layer, f"{SVG}text", x=f"{at[0]:.6g}", y=f"{at[1]:.6g}")
-    text.set("style", f"font-size:{TEXT_MM * unit:.6g}px;font-family:sans-serif;fill:{colour};stroke:none")
-    text.text = sentence
+    lines = textwrap.wrap(sentence, LETTERS)
+    for number, line in enumerate(lines):
+        part = etree.SubElement(text, f"{SVG}tspan", x=f"{at[0]:.6g}")
+        part.set("y", f"{at[1] - (len(lines) - 1 - number) * 1.2 * size:.6g}")
+        part.text = line
 
 
 def _copy(element, place, colour: str):

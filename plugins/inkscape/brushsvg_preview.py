@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 from brushsvg_program import Run, arguments, choices, guarded
 
-MISSED = "#d4351c"
+PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both can be seen through each other
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
@@ -58,7 +58,7 @@ def _layer(etree, marks, root, warnings: list[str]):
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(warnings)
     for path in paths:
         is_missed = path.get("data-missed") == "yes"
-        colour = MISSED if is_missed else path.get("fill")
+        colour = MISSED if is_missed else PAINTED
         mark = etree.SubElement(layer, f"{SVG}path")
         mark.set("d", path.get("d").strip())
         mark.set("style", f"fill:{colour};fill-opacity:0.6;fill-rule:nonzero;stroke:none")

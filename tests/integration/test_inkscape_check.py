@@ -39,7 +39,7 @@ def ends_mm(path, select):
 def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path):
     out, layer = checked(plugin, tmp_path, BODY)
     assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 1 warned of"
-    texts = ["".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
+    texts = [" ".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
     assert "width 22.000 mm is outside the range [0.000, 8.400] mm" in texts[0]
     assert "it turns too sharply there for the brush" in texts[1]
     colours = [path.get("style").split("stroke:")[1][:7] for path in layer.iter(f"{SVG}path")]
