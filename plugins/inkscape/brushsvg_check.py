@@ -78,7 +78,10 @@ def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
         layer.append(_copy(element, place, colour))
     at = place.apply_to_point((_number(element, "x"), _number(element, "y")))
     if element.tag in SHAPES and (box := element.bounding_box(element.getparent().composed_transform())):
-        width = svg.unittouu(element.specified_style().get("stroke-width", "1"))
+        drawn = element.specified_style().get("stroke-width", "1")
+        width = (
+            svg.unittouu(drawn) if drawn[-1:].isalpha() else _float(drawn)
+        )  # plain numbers are the element's units
         half_width = width * abs(place.a * place.d - place.b * place.c) ** 0.5 / 2
         at = (box.left, box.top - half_width - unit)
     _write(etree, layer, sentence, at, TEXT_MM * unit, colour)
@@ -111,8 +114,12 @@ def _copy(element, place, colour: str):
 
 
 def _number(element, name: str) -> float:
+    return _float(element.get(name, "0"))
+
+
+def _float(text: str) -> float:
     try:
-        return float(element.get(name, "0"))
+        return float(text)
     except ValueError:
         return 0.0
 
