@@ -12,12 +12,13 @@ SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: help setup system test-system demo test lint format cpp-test python-test integration fuzz bench asan clean
+.PHONY: plugins help setup system test-system demo test lint format cpp-test python-test integration fuzz bench asan clean
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, Chromium, real lettering (installs them)"
+	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"
@@ -114,6 +115,11 @@ bench: setup
 	$(BIN)/python benchmarks/read.py
 	font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf  # of `make integration`
 	if [ -f $$font ]; then $(BIN)/pip install -q -e '.[bench]' --no-build-isolation; $(BIN)/python benchmarks/outlines.py $$font; fi
+	$(BIN)/python benchmarks/preview.py
+
+plugins:
+	@mkdir -p dist
+	$(PYTHON) tools/zip_plugin.py plugins/inkscape dist/brushsvg-inkscape.zip
 
 clean:
 	@rm -rf build demo $(VENV)

@@ -40,8 +40,9 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .importers import ReadOptions, read_drawing
     from .machine import write_program
     from .reach import within_reach
-    from .render import marks_png, marks_svg
+    from .render import marks_png
     from .strokes import strokes
+    from .svg_marks import marks_svg
     from .text import text_svg
 
     __version__: str
@@ -62,7 +63,7 @@ _HOME = {
     "write_program": "machine",
     "within_reach": "reach",
     "marks_png": "render",
-    "marks_svg": "render",
+    "marks_svg": "svg_marks",
 } | dict.fromkeys(
     [
         "Arc",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import checking, convert, machine
+from . import convert, machine
 from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -16,18 +16,17 @@ from .design import Notice
 from .errors import Error
 from .files import read_bytes, write_files
 from .fold import folded
-from .importers import ReadOptions, read_drawing
-from .jobs import border, paper_height
+from .importers import ReadOptions, read_drawing, settings_in
 from .layout import Layout, arrange
 from .moves import duration_s
 from .posts import POSTS
 from .program import Job
-from .readback import read_program
 from .strokes import strokes as strokes_of
 
 
 def convert_file(args) -> None:
     _check_places(args.output, args.preview, args.report)
+    _settle(args)
     cell = _cell(args)
     work = _prepare(args, cell)
     cell = machine.as_exact_as(cell, work.options.tolerance_mm)
@@ -65,7 +64,10 @@ def _warn_of_example(args, cell: Cell) -> None:
 
 
 def border_file(args) -> None:
+    from .jobs import border
+
     _check_places(args.output)
+    _settle(args)
     cell = _cell(args)
     work, marks, _ = _look(args, cell, outlines=False)
     with about(args.input):
@@ -78,6 +80,8 @@ def border_file(args) -> None:
 
 
 def height_file(args) -> None:
+    from .jobs import paper_height
+
     _check_places(args.output)
     cell, brush = _cell(args), _brush(args) or find_brush(convert.DEFAULT_BRUSH)
     with about(cell.name):
@@ -90,6 +94,9 @@ def height_file(args) -> None:
 
 
 def check_file(args) -> None:
+    from . import checking  # here and below: what only one command needs is loaded by it
+    from .readback import read_program
+
     _check_places(args.preview)
     with about(args.program):
         text = read_bytes(args.program).decode("latin-1")
@@ -135,7 +142,9 @@ def check_file(args) -> None:
 
 def predict_file(args) -> None:
     _check_places(args.output)
-    work, marks, _ = _look(args, _cell(args), outlines=_suffix(args.output) != ".png")
+    _settle(args)
+    suffix = _suffix(args.output)
+    work, marks, _ = _look(args, _cell(args), outlines=suffix != ".png", whole=suffix == ".json")
     with about(args.input):
         picture = convert.picture(_suffix(args.output), work, marks)
     _write({args.output: picture})
@@ -143,6 +152,7 @@ def predict_file(args) -> None:
 
 def animate_file(args) -> None:
     _check_places(args.output)
+    _settle(args)
     cell = _cell(args)
     work, marks, _ = _look(args, cell, outlines=True, in_loads=True)
     with about(args.input):
@@ -185,28 +195,34 @@ def text_file(args) -> None:
 
 
 def report_file(args) -> None:
+    _settle(args)
     cell = _cell(args)
-    work, marks, warnings = _look(args, cell, outlines=True)
+    work, marks, warnings = _look(args, cell, outlines=True, partly=True)
     with about(args.input):
         text = convert.report_text(".json" if args.json else ".txt", work, marks, cell, warnings)
-    tell(text)
+    if work.plan.passes or args.json:
+        tell(text)
+    if work.refused:
+        refused = folded((notice.where, notice.sentence) for notice in work.refused)
+        raise RefusedError([(args.input, *each) for each in refused])
 
 
-def _look(args, cell: Cell, outlines: bool, in_loads: bool = False):
+def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
     """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
-    work = _prepare(args, cell)
+    work = _prepare(args, cell, partly=partly)
     with about(args.input):
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
         if in_loads:
             work = convert.in_loads(work, cell)
-        marks = convert.predict(work, outlines, stage)
+        marks = convert.predict(work, outlines, stage, whole)
         warnings = [(n.where, n.sentence) for n in work.notices]
-        warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+        if work.plan.passes or not work.refused:
+            warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
     warn(args.input, warnings)
     return work, marks, warnings
 
 
-def _prepare(args, cell: Cell, brush=None) -> convert.Work:
+def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
     if _suffix(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
@@ -223,7 +239,20 @@ def _prepare(args, cell: Cell, brush=None) -> convert.Work:
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
     with about(args.input):
-        return convert.prepare(args.input, options, stage)
+        return convert.prepare(args.input, options, stage, partly)
+
+
+def _settle(args) -> None:
+    """What was not typed is as the drawing says. It can only name what comes along: it reads no other file."""
+    with about(args.input):
+        said = settings_in(args.input)
+        if args.brush is None and said.get("brush") not in brush_names():
+            said.pop("brush", None)  # the strokes that ask for it are warned of
+        if args.cell is None and said.get("cell", DEFAULT_CELL) not in cell_names():
+            raise Error(f"the drawing asks for cell {said['cell']}, which does not come along: give --cell")
+    for name, value in said.items():
+        if getattr(args, name) is None:
+            setattr(args, name, value)
 
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
@@ -367,6 +396,14 @@ def cell_check(args) -> None:
             f"no program can be written in {cell.language!r} yet, only plans; known: {known}",
         )
     tell(f"{args.input}: cell {cell.name} can be used\n")
+
+
+def install_plugin(args) -> None:
+    from .plugin import install_inkscape
+
+    with about(args.plugin):
+        folder = install_inkscape(args.zip)
+    tell(f"{folder}: installed; start Inkscape again, and look under Extensions > Brush\n")
 
 
 def cell_new(args) -> None:

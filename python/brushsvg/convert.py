@@ -21,6 +21,7 @@ from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
 from .paint import in_loads as in_loads_of
 from .reach import within_reach
 from .strokes import strokes as strokes_of
+from .svg_marks import marks_svg
 from .timeline import timeline
 
 DEFAULT_BRUSH = "round-6"
@@ -46,7 +47,7 @@ class Options:
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
-    misses: one per pass of the plan, () for a plan read from a file.
+    misses: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
     """
 
     title: str
@@ -56,10 +57,14 @@ class Work:
     misses: tuple
     options: Options
     notices: tuple[Notice, ...]
+    refused: tuple[Notice, ...] = ()
 
 
-def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda text: None) -> Work:
-    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted."""
+def prepare(
+    path: str | os.PathLike, options: Options = Options(), stage=lambda text: None, partly: bool = False
+) -> Work:
+    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted; partly: strokes
+    that are refused are left out."""
     if Path(path).suffix.lower() == ".json":
         return _prepare_plan(path, options)
     stage("reading")
@@ -69,22 +74,48 @@ def prepare(path: str | os.PathLike, options: Options = Options(), stage=lambda 
     strokes, notices = strokes_of(design, options.paths_as)
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
-    done = _core.compensate(
-        painted,
-        brush,
-        design.sheet_mm,
-        options.compensation,
-        options.tolerance_mm,
-        options.lag_mm,
-        options.speed_mm_s,
-        progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
-    )
+
+    def compensated(some):
+        return _core.compensate(
+            some,
+            brush,
+            design.sheet_mm,
+            options.compensation,
+            options.tolerance_mm,
+            options.lag_mm,
+            options.speed_mm_s,
+            progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
+        )
+
+    refused = []
+    try:
+        done = compensated(painted)
+    except Error:
+        if not partly:
+            raise
+        painted, strokes, refused = _sorted_out(painted, strokes, compensated)
+        done = compensated(painted)
     plan = _with_speeds(done.plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
     notices += _other_brushes(strokes, brush)
     if options.compensation == "closed":
         notices += _misses(strokes, done.misses, options.tolerance_mm)
-    return Work(design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices))
+    return Work(
+        design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices), tuple(refused)
+    )
+
+
+def _sorted_out(painted, wanted, compensated):
+    """Strokes that can be painted, with what they should become, and why the others cannot: each is tried alone."""
+    sound, refused = [], []
+    for pair in zip(painted, wanted, strict=True):
+        try:
+            compensated(pair[:1])
+        except Error as error:
+            refused.append(Notice(pair[0].id, str(error)))
+        else:
+            sound.append(pair)
+    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused
 
 
 def _widths(warnings, may_advise: bool) -> list[Notice]:
@@ -212,17 +243,42 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     return best
 
 
-def predict(work: Work, outlines: bool = True, stage=lambda text: None):
-    """The marks of the plan; outlines: trace their rings too."""
+def predict(work: Work, outlines: bool = True, stage=lambda text: None, whole: bool = True):
+    """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
 
     progress = _counted(stage, "simulated")
     marks = _core.simulate(work.plan, work.brush, progress=progress)
-    return outlined(marks, work.brush, stage) if outlines else marks
+    if not outlines:
+        return marks
+    return outlined(marks, work.brush, stage) if whole else _outlined_apart(marks, work.brush, stage)
 
 
 def outlined(marks, brush, stage=lambda text: None):
     """The marks with their rings traced."""
     _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
+    return marks
+
+
+def _outlined_apart(marks, brush, stage):
+    """The marks with the rings of each pass alone, which is all that a picture needs, on all processors."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    def one(trace):
+        alone = _core.Marks()
+        alone.passes = [trace]
+        _core.trace_outlines(alone, brush)
+        return alone.passes[0]
+
+    count = _counted(stage, "outlined")
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        done = []
+        for trace in pool.map(one, marks.passes):
+            done.append(trace)
+            count(len(done), len(marks.passes))
+    finally:
+        pool.shutdown(cancel_futures=True)  # Ctrl-C waits for the strokes at hand, no longer
+    marks.passes = done
     return marks
 
 
@@ -244,11 +300,14 @@ def picture(suffix: str, work: Work, marks) -> bytes:
     """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines."""
     if suffix == ".json":
         return _core.write_marks(marks).encode()
-    from . import render  # brings OpenCV, which a program does not need
-
     colours = [a_pass.colour for a_pass in work.plan.passes]
     if suffix == ".svg":
-        return render.marks_svg(marks, work.plan.sheet_mm, colours, work.title).encode()
+        how = "" if work.strokes is None else f", {work.options.compensation}"
+        made = f"{work.plan.brush}{how}"
+        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made)
+        return text.encode()
+    from . import render  # brings OpenCV, which the others do not need
+
     return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
 
 
@@ -274,5 +333,6 @@ def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn
         total=total,
         time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
         warnings=tuple(known),
+        refused=tuple((notice.where, notice.sentence) for notice in work.refused),
     )
     return report.to_json(result) if suffix == ".json" else report.to_text(result)

@@ -1,16 +1,15 @@
-"""Marks -> SVG and PNG: a page of predicted paint, and panels that hold it against what was wanted."""
+"""Marks -> PNG: a page of predicted paint, and panels that hold it against what was wanted."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from xml.sax.saxutils import escape, quoteattr
 
 import cv2
 import numpy as np
 
 from . import _core
 from .errors import Error
+from .svg_marks import known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -26,37 +25,6 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_svg(marks, sheet_mm: tuple[float, float], colours: list[str], title: str = "") -> str:
-    """One path per pass in its colour, in millimetres of the sheet. marks: with outlines."""
-    width, height = sheet_mm
-    lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
-        f'viewBox="0 0 {width:g} {height:g}">',
-        f"<title>{escape(_printable(title))}</title>",
-    ]
-    for trace, colour in zip(marks.passes, colours, strict=True):
-        if trace.outline_mm:
-            stroke = quoteattr(_printable(trace.stroke))
-            lines.append(f'<path data-stroke={stroke} fill="{_known(colour)}" d="')
-            lines += [_path_data(ring, height) for ring in trace.outline_mm]
-            lines[-1] += '"/>'
-    return "\n".join([*lines, "</svg>", ""])
-
-
-def _known(colour: str) -> str:
-    """A plan from elsewhere may say anything of its colours: what is not #rrggbb is drawn black."""
-    return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"
-
-
-def _path_data(ring: np.ndarray, height: float) -> str:
-    points = np.round(np.column_stack([ring[:, 0], height - ring[:, 1]]), 3) + 0.0
-    return ("M" + "L".join(["%.3f,%.3f"] * len(points)) + "Z") % tuple(points.ravel().tolist())
-
-
-def _printable(text: str) -> str:
-    return "".join(letter if letter.isprintable() else " " for letter in text)
-
-
 def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order."""
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
@@ -70,7 +38,7 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -
         run.passes = list(marks.passes[first:last])
         paint = _core.coverage(run, brush, window, px_per_mm)
         image = _canvas(paint.shape, "#ffffff") if image is None else image
-        _lay(image, paint, _known(colours[first]))
+        _lay(image, paint, known_colour(colours[first]))
         first = last
     if image is None:
         raise Error("there is nothing to draw")

@@ -44,6 +44,7 @@ class Report:
     total: Figures
     time_s: float
     warnings: tuple[tuple[str, str], ...] = ()
+    refused: tuple[tuple[str, str], ...] = ()  # strokes that are not among those of the report
 
 
 def wanted_rings(strokes) -> list[np.ndarray]:
@@ -79,7 +80,7 @@ def measure(
         rows.append(figures)
         wanted += rings
     meant = _core.unite(wanted) if drawn is None else wanted_rings(drawn)
-    return tuple(rows), _in_all(tuple(rows), _core.overlap(marks.outline_mm, meant))
+    return tuple(rows), _in_all(tuple(rows), _core.overlap(marks.outline_mm, meant) if rows else None)
 
 
 def _bare_figures(a_pass) -> Figures:
@@ -198,6 +199,7 @@ def to_json(report: Report) -> str:
                 "total": figures(report.total),
                 "strokes": [figures(row) for row in report.strokes],
                 "warnings": [{"where": where, "sentence": sentence} for where, sentence in report.warnings],
+                "refused": [{"where": where, "sentence": sentence} for where, sentence in report.refused],
             },
             indent=1,
             ensure_ascii=False,
@@ -236,6 +238,9 @@ def to_text(report: Report) -> str:
         "of the widest point from the middle line. Painted: path of the TCP on the paper.",
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
+    if report.refused:
+        lines += ["", f"Left out, since they cannot be painted: {len(report.refused)}"]
+        lines += ["  " + ": ".join(refusal) for refusal in report.refused]
     if report.warnings:
         lines += ["", f"Warnings: {len(report.warnings)}"]
         lines += ["  " + ": ".join(filter(None, warning)) for warning in report.warnings]

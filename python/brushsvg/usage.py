@@ -149,6 +149,13 @@ def _parser() -> argparse.ArgumentParser:
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     fit.set_defaults(run="calibrate_file", parser=fit)
 
+    install = commands.add_parser("install-plugin", help="put our extension where a drawing program looks")
+    install.add_argument("plugin", metavar="inkscape", choices=("inkscape",), help="which one")
+    install.add_argument(
+        "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"
+    )
+    install.set_defaults(run="install_plugin", parser=install)
+
     for kind, about, told, file in (
         ("brush", "look at brushes", "laws and ranges", "brush.json"),
         ("cell", "look at cells: machines and their limits", "heights, speeds and limits", "cell.toml"),
@@ -418,7 +425,7 @@ def _check_operands(args) -> None:
         return
     if args.run == "brush_plot":
         _check_extension(args, args.output, PREVIEWS)
-    if args.run.startswith(("brush_", "cell_")):
+    if args.run.startswith(("brush_", "cell_", "install_")):
         return
     if args.run == "height_file":
         _check_extension(args, args.output, PROGRAMS[1:])

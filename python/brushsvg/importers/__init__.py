@@ -43,6 +43,18 @@ def _dxf(data: bytes, options: ReadOptions) -> Design:
     return read_dxf(data, options)
 
 
+def settings_in(path: str | os.PathLike) -> dict:
+    """Brush, cell, compensation and tolerance [mm] that a drawing asks for, as far as it does.
+
+    Error if the file cannot be read.
+    """
+    if os.path.splitext(path)[1].lower() not in (".svg", ".svgz"):
+        return {}
+    from .svg import settings_of
+
+    return settings_of(read_bytes(path))
+
+
 READERS = {".svg": _svg, ".svgz": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
 
 

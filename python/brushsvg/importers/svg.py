@@ -12,6 +12,7 @@ from .nothing import nothing_to_paint
 from .svg_context import local, one_line
 from .svg_frame import Page, read_page
 from .svg_rules import selected
+from .svg_settings import PREFIX, document_settings
 from .svg_walk import SVG, Walk
 from .svg_xml import Document, parse_xml
 
@@ -27,6 +28,17 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         return _read(parse_xml(data), options)
     except RecursionError:
         raise Error("its CSS is nested too deeply", where="style") from None
+
+
+def settings_of(data: bytes) -> dict:
+    """What the root says of the whole job; {} for a file that is not sound, of which read_svg tells what is wrong."""
+    is_plain = not data.startswith((b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff"))  # neither compressed nor UTF-16
+    if is_plain and PREFIX.encode() not in data:
+        return {}
+    try:
+        return document_settings(parse_xml(data).root.attrib)
+    except Error:
+        return {}
 
 
 def _read(document: Document, options: ReadOptions) -> Design:

@@ -1,4 +1,4 @@
-"""What a drawing says to brushsvg itself: data-brushsvg-* on paths, groups and layers, inherited."""
+"""What a drawing says to brushsvg itself: data-brushsvg-* on paths, groups and layers, inherited, and on its root."""
 
 from __future__ import annotations
 
@@ -8,20 +8,32 @@ import re
 from ..errors import Error
 from ..units import length_mm, number
 
-_PREFIX = "data-brushsvg-"
+PREFIX = "data-brushsvg-"
+COMPENSATIONS = ("none", "constant", "closed")
 
 
-def own_settings(attributes: dict[str, str]) -> tuple[dict, list[str]]:
+def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:
     """Settings that an element says itself, as docs/drawings.md lists them, and what of them is not valid."""
+    settings, problems = _read(attributes, _KNOWN | _OF_THE_DOCUMENT if is_root else _KNOWN)
+    return {key: value for key, value in settings.items() if key not in _OF_THE_DOCUMENT}, problems
+
+
+def document_settings(attributes: dict[str, str]) -> dict:
+    """What the root element says of the whole job: brush, cell, compensation, tolerance; valid ones only."""
+    settings, _ = _read(attributes, _OF_THE_DOCUMENT | {"brush": _KNOWN["brush"]})
+    return settings
+
+
+def _read(attributes: dict[str, str], known: dict) -> tuple[dict, list[str]]:
     settings, problems = {}, []
     for attribute, text in attributes.items():
-        if not attribute.startswith(_PREFIX):
+        if not attribute.startswith(PREFIX):
             continue
-        name = attribute.removeprefix(_PREFIX)
-        if name not in _KNOWN:
-            problems.append(f"{attribute} is not known; known: {', '.join(_KNOWN)}")
+        name = attribute.removeprefix(PREFIX)
+        if name not in known:
+            problems.append(f"{attribute} is not known; known: {', '.join(known)}")
             continue
-        key, read = _KNOWN[name]
+        key, read = known[name]
         try:
             settings[key] = read(text.strip())
         except (Error, ValueError) as problem:
@@ -62,6 +74,16 @@ def _name(text: str) -> str:
     return text
 
 
+def _compensation(text: str) -> str:
+    if text not in COMPENSATIONS:
+        raise Error(f"{text[:24]!r} is none of {', '.join(COMPENSATIONS)}")
+    return text
+
+
+def _tolerance_mm(text: str) -> float:
+    return _in_range(length_mm(text), 1e-5, 10, "mm")
+
+
 def _in_range(value, least, greatest, unit: str = ""):
     if not (math.isfinite(value) and least <= value <= greatest):
         unit = unit and f" {unit}"
@@ -77,4 +99,9 @@ _KNOWN = {
     "reload": ("reload", _yes),
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
+}
+_OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
+    "cell": ("cell", _name),
+    "compensation": ("compensation", _compensation),
+    "tolerance": ("tolerance", _tolerance_mm),
 }

@@ -121,10 +121,10 @@ class Walk:
             self._leave_out("hidden")
         elif not context.chosen:
             return
-        elif tag not in svg_shapes.TAGS:
-            self.notes.add(node, inner, _TEXT if tag == "text" else f"{tag[:40]} is not read: left out")
         elif inner.settings.get("skip"):
             self._leave_out("to be skipped, by data-brushsvg-skip")
+        elif tag not in svg_shapes.TAGS:
+            self.notes.add(node, inner, _TEXT if tag == "text" else f"{tag[:40]} is not read: left out")
         else:
             self.painted.add(node, tag, inner)
 
@@ -133,7 +133,7 @@ class Walk:
 
     def _inside(self, node: ET.Element, context: Context, style: Style, problems) -> Context | None:
         """What a node hands to what it holds; None if nothing of it can be painted."""
-        settings, invalid = own_settings(node.attrib)
+        settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
         if is_zero(style.own["opacity"]):
             self.notes.add(node, context, "it is fully transparent: left out")

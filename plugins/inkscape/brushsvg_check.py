@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Brush check: marks what the brush or the machine cannot paint, in place and with the reason, in a locked layer."""
+
+from __future__ import annotations
+
+import copy
+import sys
+import textwrap
+
+from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
+from brushsvg_program import Run, arguments, choices, guarded
+
+LAYER_ID = "brushsvg-check"
+REFUSED, WARNED = "#d4351c", "#e08700"
+SHAPES = {f"{SVG}{name}" for name in ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")}
+OWN_TO_A_SHAPE = (f"{INKSCAPE}path-effect", f"{INKSCAPE}original-d", "class", "id", "transform")
+TEXT_MM = 3
+LETTERS = 50  # of a line of text
+HALO = "paint-order:stroke;stroke:#ffffff"  # letters can be read on top of a drawing
+
+
+def main() -> None:
+    args = arguments(brush="document", brush_file="", cell="document", cell_file="", compensation="document")
+    with Run(args.executable, args.input_file, "report", "--json", *choices(args)) as run:
+        import inkex  # while brushsvg runs: it knows where things lie
+        from lxml import etree
+
+        document = inkex.load_svg(args.input_file)
+        report = run.report()
+    svg = document.getroot()
+    remove_layer(svg, LAYER_ID)
+    layer = locked_layer(etree, LAYER_ID, _label(report))
+    unplaced = _mark_all(etree, svg, layer, report)
+    if unplaced:
+        etree.SubElement(layer, f"{SVG}desc").text = "\n".join(unplaced)
+    svg.append(layer)
+    document.write(sys.stdout.buffer)
+
+
+def _label(report: dict) -> str:
+    refused, warned = len(report["refused"]), len(report["warnings"])
+    if not refused and not warned:
+        return f"Brush check: {report['brush']}: all can be painted"
+    return f"Brush check: {report['brush']}: {refused} cannot be painted, {warned} warned of"
+
+
+def _mark_all(etree, svg, layer, report: dict) -> list[str]:
+    """Sentences about what cannot be shown in place."""
+    unplaced = []
+    by_id = {node.get("id"): node for node in svg.iterdescendants() if node.get("id")}
+    per_element: dict[str, list[tuple[str, str]]] = {}
+    for colour, kind in ((REFUSED, "refused"), (WARNED, "warnings")):
+        for each in report[kind]:
+            per_element.setdefault(each["where"], []).append((colour, each["sentence"]))
+    for where, said in per_element.items():
+        element = _element(by_id, where)
+        if element is None:
+            unplaced += [": ".join(filter(None, (where, sentence))) for _, sentence in said]
+        else:
+            _mark(etree, svg, layer, element, said)
+    return unplaced
+
+
+def _element(by_id: dict, where: str):
+    """The element of a stroke: id, id/2 for a part of it, id#2 for a pass, use/id for a copy."""
+    for name in (where, where.rpartition("#")[0], where.rpartition("/")[0], where.partition("/")[0]):
+        if name in by_id:
+            return by_id[name]
+    return None
+
+
+def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
+    colour, sentence = said[0][0], "; ".join(sentence for _, sentence in said)
+    place = element.composed_transform()
+    unit = svg.unittouu("1mm")
+    if element.tag in SHAPES:
+        layer.append(_copy(element, place, colour))
+    at = place.apply_to_point((_number(element, "x"), _number(element, "y")))
+    if element.tag in SHAPES and (box := element.bounding_box(element.getparent().composed_transform())):
+        drawn = element.specified_style().get("stroke-width", "1")
+        width = (
+            svg.unittouu(drawn) if drawn[-1:].isalpha() else _float(drawn)
+        )  # plain numbers are the element's units
+        half_width = width * abs(place.a * place.d - place.b * place.c) ** 0.5 / 2
+        at = (box.left, box.top - half_width - unit)
+    _write(etree, layer, sentence, at, TEXT_MM * unit, colour)
+
+
+def _write(etree, layer, sentence: str, at, size: float, colour: str) -> None:
+    """Lines of text that end above a point."""
+    text = etree.SubElement(layer, f"{SVG}text")
+    text.set(
+        "style",
+        f"font-size:{size:.6g}px;font-family:sans-serif;fill:{colour};{HALO};stroke-width:{size / 5:.6g}",
+    )
+    lines = textwrap.wrap(sentence, LETTERS)
+    for number, line in enumerate(lines):
+        part = etree.SubElement(text, f"{SVG}tspan", x=f"{at[0]:.6g}")
+        part.set("y", f"{at[1] - (len(lines) - 1 - number) * 1.2 * size:.6g}")
+        part.text = line
+
+
+def _copy(element, place, colour: str):
+    shape = copy.deepcopy(element)
+    for name in [*OWN_TO_A_SHAPE, *(name for name in shape.attrib if name.startswith("data-brushsvg-"))]:
+        shape.attrib.pop(name, None)
+    for child in list(shape):
+        shape.remove(child)
+    width = element.specified_style().get("stroke-width", "1")
+    shape.set("style", f"fill:none;stroke:{colour};stroke-opacity:0.7;stroke-width:{width}")
+    shape.set("transform", str(place))
+    return shape
+
+
+def _number(element, name: str) -> float:
+    return _float(element.get(name, "0"))
+
+
+def _float(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return 0.0
+
+
+if __name__ == "__main__":
+    guarded(main)

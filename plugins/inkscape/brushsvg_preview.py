@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Brush preview: what the brush will paint, in a locked layer of its own. Nothing else in the drawing is touched.
+
+Live preview runs this at each change of the dialog, so brushsvg is started before anything else is loaded, and of
+inkex nothing is: lxml, which it stands on, is enough.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from xml.etree import ElementTree
+
+from brushsvg_program import Run, arguments, choices, guarded
+
+PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both can be seen through each other
+SVG = "{http://www.w3.org/2000/svg}"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
+LAYER_ID = "brushsvg-preview"
+PX_PER_MM = 96 / 25.4
+
+
+def main() -> None:
+    args = arguments(brush="document", brush_file="", compensation="document")
+    words = choices(args)
+    ids = [each for each in args.ids if each != LAYER_ID]
+    if ids:
+        words += ["--select", ", ".join(f'[id="{_escaped(each)}"]' for each in ids)]
+    with Run(args.executable, args.input_file, "predict", "marks.svg", *words) as run:
+        from lxml import etree  # while brushsvg runs
+
+        document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
+        _, warnings = run.finish()
+        marks = ElementTree.fromstring(run.made("marks.svg"))
+    root = document.getroot()
+    remove_layer(root, LAYER_ID)
+    root.append(_layer(etree, marks, root, warnings))
+    document.write(sys.stdout.buffer)
+
+
+def _escaped(text: str) -> str:
+    return re.sub(r'(["\\])', r"\\\1", text)
+
+
+def remove_layer(root, name: str) -> None:
+    for old in [node for node in root.iter() if node.get("id") == name]:
+        old.getparent().remove(old)
+
+
+def _layer(etree, marks, root, warnings: list[str]):
+    paths = marks.findall(f"{SVG}path")
+    missed = sum(path.get("data-missed") == "yes" for path in paths)
+    layer = locked_layer(etree, LAYER_ID, _label(paths, missed, marks, len(warnings)))
+    layer.set("transform", user_from_mm(root, _mm(marks.get("width")), _mm(marks.get("height"))))
+    if warnings:
+        etree.SubElement(layer, f"{SVG}desc").text = "\n".join(warnings)
+    for path in paths:
+        is_missed = path.get("data-missed") == "yes"
+        colour = MISSED if is_missed else PAINTED
+        mark = etree.SubElement(layer, f"{SVG}path")
+        mark.set("d", path.get("d").strip())
+        mark.set("style", f"fill:{colour};fill-opacity:0.6;fill-rule:nonzero;stroke:none")
+        mark.set(f"{INKSCAPE}label", path.get("data-stroke"))
+    return layer
+
+
+def locked_layer(etree, name: str, label: str):
+    """An empty layer that can neither be edited by mistake nor painted."""
+    layer = etree.Element(f"{SVG}g")
+    layer.set("id", name)
+    layer.set(f"{INKSCAPE}groupmode", "layer")
+    layer.set(f"{INKSCAPE}label", label)
+    layer.set(f"{SODIPODI}insensitive", "true")
+    layer.set("data-brushsvg-skip", "yes")
+    return layer
+
+
+def _label(paths, missed: int, marks, warnings: int) -> str:
+    count = len(paths)
+    parts = [f"{count} stroke{'s' * (count != 1)}"]
+    misses_mm = [float(path.get("data-miss-mm")) for path in paths if path.get("data-miss-mm")]
+    if misses_mm:
+        parts.append(f"at most {max(misses_mm):.2f} mm off the line")
+    if missed:
+        parts.append(f"{missed} missed")
+    if warnings:
+        parts.append(f"{warnings} warning{'s' * (warnings != 1)}")
+    return f"Brush preview: {marks.get('data-made')}: " + ", ".join(parts)
+
+
+def _mm(length: str) -> float:
+    return float(length[: -len("mm")])
+
+
+def user_from_mm(root, width_mm: float, height_mm: float) -> str:
+    """A transform from millimetres of the sheet, y down, to the units in which the drawing's root counts."""
+    box = root.get("viewBox")
+    numbers = [float(part) for part in re.split(r"[\s,]+", box.strip())] if box and box.strip() else []
+    if len(numbers) != 4 or numbers[2] <= 0 or numbers[3] <= 0:
+        return f"scale({PX_PER_MM:.9g})"
+    x, y, width, height = numbers
+    across, down = width_mm / width, height_mm / height  # mm per unit
+    wish = (root.get("preserveAspectRatio") or "xMidYMid").replace("defer", "").split()
+    if wish[0] != "none":
+        across = down = (max if wish[1:] == ["slice"] else min)(across, down)
+        place = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+        x -= place.get(wish[0][1:4], 0.5) * (width_mm / across - width)
+        y -= place.get(wish[0][5:8], 0.5) * (height_mm / down - height)
+    return f"matrix({1 / across:.9g},0,0,{1 / down:.9g},{x:.9g},{y:.9g})"
+
+
+if __name__ == "__main__":
+    guarded(main)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Finds and runs the program brushsvg. Nothing but the standard library: a live preview has no time to import more."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from xml.etree import ElementTree
+
+NEEDED = (0, 1, 0)
+INSTALL = "pipx install brushsvg"
+DRAWING = "drawing.svg"
+BESIDE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inkscape`
+
+
+class StopError(Exception):
+    """What the person at the drawing program is told, in sentences."""
+
+
+def arguments(**choices: str) -> argparse.Namespace:
+    """What Inkscape hands over: parameters with their defaults, ids of what is selected, the drawing's file."""
+    parser = argparse.ArgumentParser(allow_abbrev=False)
+    parser.add_argument("--id", action="append", dest="ids", default=[])
+    for name, default in {"executable": "", **choices}.items():
+        parser.add_argument(f"--{name}", default=default)
+    parser.add_argument("input_file")
+    return parser.parse_known_args()[0]
+
+
+def guarded(main) -> None:
+    """Run main; whatever goes wrong is a sentence in Inkscape's dialog, which shows stderr, and status 1."""
+    try:
+        main()
+    except StopError as stop:
+        told = str(stop)
+    except Exception as mistake:
+        told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
+    else:
+        return
+    sys.stderr.write(told + "\n")
+    sys.stderr.flush()
+    sys.exit(1)
+
+
+def executable(chosen: str) -> str:
+    """Where brushsvg is: as chosen in the dialog, on PATH, or as told when the extension was installed."""
+    if chosen and not os.path.isdir(chosen):  # Inkscape makes a folder of an empty choice of a file
+        if shutil.which(chosen):
+            return chosen
+        raise StopError(f"{chosen} is not a program that can be run: choose another one under Program.")
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), BESIDE)
+    noted = ""
+    if os.path.exists(beside):
+        with open(beside, encoding="utf-8") as file:
+            noted = file.read().strip()
+    found = shutil.which("brushsvg") or shutil.which(noted or "brushsvg")
+    if found is None:
+        raise StopError(
+            f"The program brushsvg was not found. Install it with:  {INSTALL}\n"
+            "If it is installed already, choose its file under Program."
+        )
+    return found
+
+
+class Run:
+    """One brushsvg command on a copy of the drawing, started at once. In a `with`, so that its folder goes away."""
+
+    def __init__(self, chosen: str, drawing: str, command: str, *words: str):
+        self.program = executable(chosen)
+        self.folder = tempfile.TemporaryDirectory(prefix="brushsvg")
+        shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
+        try:
+            self.process = subprocess.Popen(
+                [self.program, command, DRAWING, *words],
+                cwd=self.folder.name,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                encoding="utf-8",
+                errors="replace",
+                env=_environment(),
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except OSError as problem:
+            self.folder.cleanup()
+            raise StopError(f"{self.program} cannot be run: {problem.strerror}.") from None
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.process.kill()
+        self.process.wait()
+        self.folder.cleanup()
+
+    def finish(self, may_refuse: bool = False) -> tuple[str, list[str]]:
+        """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine."""
+        out, err = self.process.communicate()
+        told = [re.sub(f"^brushsvg: (?:{re.escape(DRAWING)}: )?", "", line) for line in err.splitlines()]
+        status = self.process.returncode
+        if status == 0 or (may_refuse and status == 1 and out):
+            return out, told
+        if status != 1:
+            self._stop_if_too_old()
+        raise StopError(
+            "\n".join(["brushsvg refuses:", *told] if told else [f"{self.program} failed ({status})."])
+        )
+
+    def made(self, name: str) -> bytes:
+        path = os.path.join(self.folder.name, name)
+        if not os.path.exists(path):
+            self._stop_if_too_old()
+            raise StopError(f"{self.program} has written nothing.")
+        with open(path, "rb") as file:
+            return file.read()
+
+    def report(self) -> dict:
+        """The report that it printed, of what can be painted and of what is refused."""
+        out, _ = self.finish(may_refuse=True)
+        try:
+            report = json.loads(out)
+            report["refused"], report["warnings"], report["brush"]
+        except (ValueError, KeyError, TypeError):
+            self._stop_if_too_old()
+            raise StopError(f"{self.program} has not printed a report.") from None
+        return report
+
+    def _stop_if_too_old(self) -> None:
+        """Asked only when something went wrong: it would cost each preview a tenth of a second."""
+        try:
+            asked = subprocess.run(
+                [self.program, "--version"], capture_output=True, encoding="utf-8", timeout=20, check=False
+            )
+            found = re.match(r"brushsvg (\d+)\.(\d+)\.(\d+)", asked.stdout)
+        except (OSError, ValueError, subprocess.TimeoutExpired):
+            found = None
+        if found is None:
+            raise StopError(f"{self.program} is not the program brushsvg: choose another one under Program.")
+        if tuple(map(int, found.groups())) < NEEDED:
+            needed = ".".join(map(str, NEEDED))
+            raise StopError(
+                f"brushsvg {found[0].split()[1]} is too old: this extension needs {needed}. "
+                f"Install it with:  {INSTALL.replace('install', 'upgrade')}"
+            )
+
+
+def root_of(drawing: str) -> dict[str, str]:
+    """Attributes of the drawing's root element."""
+    return dict(next(ElementTree.iterparse(drawing, events=("start",)))[1].attrib)
+
+
+def _environment() -> dict[str, str]:
+    """Without what an Inkscape that brings its own Python sets for that one."""
+    return {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "PYTHONHOME")}
+
+
+def choices(args: argparse.Namespace) -> list[str]:
+    """Flags for what was chosen; what was left as the document says is not named."""
+    words = []
+    for flag in ("brush", "cell", "compensation"):
+        said = getattr(args, flag, "document")
+        file = getattr(args, f"{flag}_file", "")
+        if file and os.path.isfile(file):
+            said = file
+        if said and said != "document":
+            words += [f"--{flag}", said]
+    return words

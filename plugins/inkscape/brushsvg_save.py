@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Save as robot program: the same bytes as `brushsvg convert` writes."""
+
+from __future__ import annotations
+
+import sys
+
+from brushsvg_program import Run, arguments, choices, guarded, root_of
+
+
+def main() -> None:
+    args = arguments(
+        format="ngc", else_cell="", brush="document", brush_file="", cell="document", cell_file=""
+    )
+    if (
+        args.cell == "document"
+        and args.else_cell
+        and root_of(args.input_file).get("data-brushsvg-cell") is None
+    ):
+        args.cell = args.else_cell
+    out = f"program.{args.format}"
+    with Run(args.executable, args.input_file, "convert", out, *choices(args)) as run:
+        _, warnings = run.finish()
+        sys.stdout.buffer.write(run.made(out))
+        sys.stdout.flush()
+    if warnings:
+        sys.stderr.write("\n".join(["Saved. brushsvg warns:", *warnings]) + "\n")
+
+
+if __name__ == "__main__":
+    guarded(main)

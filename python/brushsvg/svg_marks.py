@@ -1,0 +1,55 @@
+"""Marks -> SVG. Apart from the other pictures: a preview in a drawing program has no time to load OpenCV."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+
+import numpy as np
+
+
+def marks_svg(
+    marks, sheet_mm: tuple[float, float], colours: list[str], title: str = "", misses=(), made: str = ""
+) -> str:
+    """One path per pass in its colour, in millimetres of the sheet.
+
+    marks: with outlines; misses: of the passes, if known; made: how, in words.
+    """
+    width, height = sheet_mm
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
+        f'viewBox="0 0 {width:g} {height:g}"' + (f" data-made={_quoted(made)}" if made else "") + ">",
+        f"<title>{escape(_printable(title), quote=False)}</title>",
+    ]
+    misses = misses or [None] * len(colours)
+    for trace, colour, miss in zip(marks.passes, colours, misses, strict=True):
+        if trace.outline_mm:
+            stroke = _quoted(trace.stroke)
+            lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
+            lines += [_path_data(ring, height) for ring in trace.outline_mm]
+            lines[-1] += '"/>'
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def _missed(miss) -> str:
+    if miss is None:
+        return ""
+    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * (not miss.within_tolerance)
+
+
+def known_colour(colour: str) -> str:
+    """A plan from elsewhere may say anything of its colours: what is not #rrggbb is drawn black."""
+    return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"
+
+
+def _path_data(ring: np.ndarray, height: float) -> str:
+    points = np.round(np.column_stack([ring[:, 0], height - ring[:, 1]]), 3) + 0.0
+    return ("M" + "L".join(["%.3f,%.3f"] * len(points)) + "Z") % tuple(points.ravel().tolist())
+
+
+def _printable(text: str) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _quoted(text: str) -> str:
+    return f'"{escape(_printable(text))}"'

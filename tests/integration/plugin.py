@@ -1,0 +1,64 @@
+"""The real Inkscape with our extension installed, in a profile of its own."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from command import COMMAND
+
+SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what lies there
+SOURCE = Path(__file__).parents[2] / "plugins" / "inkscape"
+
+
+class Plugin:
+    """Inkscape runs our scripts with the system's Python, as it would without us, and finds brushsvg on PATH."""
+
+    def __init__(self, folder: Path, command: Path | None = COMMAND):
+        self.folder = folder
+        self.profile = folder / "profile"
+        self.installed = self.profile / "extensions" / "brushsvg"
+        shutil.copytree(SOURCE, self.installed)
+        self.set()
+        programs = folder / "programs"
+        programs.mkdir()
+        if command is not None:
+            (programs / "brushsvg").symlink_to(command)
+        self.env = {
+            **os.environ,
+            "INKSCAPE_PROFILE_DIR": str(self.profile),
+            "HOME": str(folder),
+            "PATH": f"{programs}:/usr/bin:/bin",
+        }
+        for name in ("DISPLAY", "VIRTUAL_ENV", "PYTHONPATH"):
+            self.env.pop(name, None)
+
+    def set(self, **parameters: str) -> None:
+        """What the dialogs of extensions remember, `preview__brush="rigid"` for one of org.brushsvg.preview."""
+        said = " ".join(f'org.brushsvg.{k.replace("__", ".")}="{v}"' for k, v in parameters.items())
+        (self.profile / "preferences.xml").write_text(
+            '<inkscape xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd" version="1">'
+            f'<group id="extensions" python-interpreter="/usr/bin/python3" {said}/></inkscape>'
+        )
+
+    def save(self, drawing: Path, out: Path) -> subprocess.CompletedProcess:
+        """As a person who saves a copy."""
+        return self._run(["inkscape", f"--export-filename={out}", str(drawing)])
+
+    def effect(self, name: str, drawing: Path, out: Path, select: str = "") -> Path:
+        """The drawing as Inkscape saves it after an effect; select: ids with commas between."""
+        chosen = f"select-by-id:{select};" if select else ""
+        actions = f"{chosen}org.brushsvg.{name}.noprefs;export-filename:{out};export-do"
+        self._run(["xvfb-run", "-a", "inkscape", "--batch-process", f"--actions={actions}", str(drawing)])
+        assert out.exists()
+        return out
+
+    def script(self, name: str, drawing: Path, *words: str) -> subprocess.CompletedProcess:
+        """The script as Inkscape starts it, to read what its dialog would say."""
+        script = str(self.installed / f"brushsvg_{name}.py")
+        return self._run(["env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3", script, *words, str(drawing)])
+
+    def _run(self, words) -> subprocess.CompletedProcess:
+        return subprocess.run(
+            words, env=self.env, cwd=self.folder, capture_output=True, timeout=40, check=False
+        )

@@ -1,0 +1,89 @@
+"""Brush check in the real Inkscape: what cannot be painted is marked where it lies, with the reason."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from command import OPEN, SOUND
+from plugin import Plugin
+
+from brushsvg import read_drawing
+from brushsvg.importers import ReadOptions
+
+SVG = "{http://www.w3.org/2000/svg}"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+BODY = """<g id="layer" transform="translate(5,2)"><g id="turned" transform="rotate(-10) scale(1.1)">
+ <path id="wide" d="M 10,40 H 60" style="fill:none;stroke:#102030;stroke-width:20"/></g>
+ <path id="sharp" d="M 20,45 L 80,45 L 22,49" style="fill:none;stroke:#0000ff;stroke-width:3"/>
+ <path id="sound" d="M 20,30 H 90" style="fill:none;stroke:#a00000;stroke-width:3"/></g>"""
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+def checked(plugin, tmp_path, body, name="drawing"):
+    source = tmp_path / f"{name}.svg"
+    source.write_text(body if body.startswith("<svg") else f"{OPEN}{body}</svg>")
+    out = plugin.effect("check", source, tmp_path / f"{name}-checked.svg")
+    (layer,) = (node for node in ET.parse(out).iter() if node.get("id") == "brushsvg-check")
+    return out, layer
+
+
+def ends_mm(path, select):
+    elements = read_drawing(path, ReadOptions(select=select)).elements
+    return [np.vstack([each.subpaths[0].cubics[0, 0], each.subpaths[0].cubics[-1, 3]]) for each in elements]
+
+
+def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path):
+    out, layer = checked(plugin, tmp_path, BODY)
+    assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 1 warned of"
+    texts = [" ".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
+    assert "width 22.000 mm is outside the range [0.000, 8.400] mm" in texts[0]
+    assert "it turns too sharply there for the brush" in texts[1]
+    colours = [path.get("style").split("stroke:")[1][:7] for path in layer.iter(f"{SVG}path")]
+    assert colours == ["#d4351c", "#e08700"]
+    shown = tmp_path / "shown.svg"
+    shown.write_text(out.read_text().replace('data-brushsvg-skip="yes"', ""))
+    for marked, drawn in zip(
+        ends_mm(shown, "#brushsvg-check path"), ends_mm(out, "#wide, #sharp"), strict=True
+    ):
+        assert np.abs(marked - drawn).max() < 0.01
+
+
+def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
+    out, layer = checked(plugin, tmp_path, BODY)
+    again, layer_again = checked(plugin, tmp_path, out.read_text().partition("?>")[2].strip(), "again")
+    assert len(layer) == len(layer_again)
+    for text in (out.read_text(), again.read_text()):
+        originals = [
+            node for node in ET.fromstring(text).iter() if node.get("id") in ("wide", "sharp", "sound")
+        ]
+        drawn = ET.fromstring(f"{OPEN}{BODY}</svg>")
+        expected = [node for node in drawn.iter() if node.get("id") in ("wide", "sharp", "sound")]
+        assert [node.attrib for node in originals] == [node.attrib for node in expected]
+
+
+def test_nothing_to_say(plugin, tmp_path):
+    _, layer = checked(plugin, tmp_path, SOUND)
+    assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: all can be painted"
+    assert len(layer) == 0
+
+
+def test_nothing_that_can_be_painted(plugin, tmp_path):
+    body = "".join(
+        f'<path id="p{k}" d="M20 30 H90" stroke="#000" stroke-width="{30 + k}"/>' for k in range(5)
+    )
+    _, layer = checked(plugin, tmp_path, body)
+    assert len(list(layer.iter(f"{SVG}path"))) == 5
+
+
+def test_odd_ids_and_texts_are_marked(plugin, tmp_path):
+    body = SOUND.replace('id="line"', 'id="a&quot;b&apos;" stroke-width="30"').replace('stroke-width="3"', "")
+    source = tmp_path / "drawing.svg"
+    source.write_text(body.replace("</svg>", '<text id="word" x="10" y="10">a</text></svg>'))
+    done = plugin.script("check", source)
+    assert done.returncode == 0, done.stderr
+    (layer,) = (node for node in ET.fromstring(done.stdout).iter() if node.get("id") == "brushsvg-check")
+    assert len(list(layer.iter(f"{SVG}text"))) == 2

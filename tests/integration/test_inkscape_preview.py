@@ -1,0 +1,175 @@
+"""Brush preview and settings in the real Inkscape: marks where `brushsvg predict` puts them, originals untouched."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from command import SOUND, brushsvg
+from plugin import Plugin
+
+from brushsvg import read_drawing
+from brushsvg.importers import ReadOptions
+
+SVG = "{http://www.w3.org/2000/svg}"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
+BODY = """<g inkscape:groupmode="layer" inkscape:label="Ink" id="layer1" transform="translate({0},{0})">
+  <g id="turned" transform="rotate(-10)">
+   <path id="wave" d="M 10,40 C 20,0 40,0 50,20 S 80,40 90,20" style="fill:none;stroke:#102030;stroke-width:4"/></g>
+  <path id="bar" d="M 20,60 H 90" style="fill:none;stroke:#a00000;stroke-width:4"/></g>
+ <g inkscape:groupmode="layer" inkscape:label="More" id="layer2">
+  <path id="sharp" d="M 20,90 L 80,90 L 22,95" style="fill:none;stroke:#0000ff;stroke-width:6"/>
+  <text id="word" x="20" y="20">text</text></g>"""
+HEADS = {
+    "mm": 'width="150mm" height="130mm" viewBox="0 0 150 130"',
+    "px": 'width="500" height="450"',
+    "in": 'width="6in" height="5in" viewBox="-5 -8 160 130"',
+    "wide": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="xMaxYMid"',
+    "slice": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="xMinYMin slice"',
+    "stretched": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="none"',
+}
+
+
+def drawing(head: str) -> str:
+    spaces = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
+    body = BODY.format(5)
+    if head == "px":
+        body = f'<g id="all" transform="scale(3)">{body}</g>'
+    return f"<svg {spaces} {HEADS[head]}>{body}</svg>"
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+def elements(text: str) -> dict:
+    """What may not change: path data, style, transform and parent of everything with an id of ours."""
+    root = ET.fromstring(text)
+    parents = {child: parent for parent in root.iter() for child in parent}
+    return {
+        node.get("id"): (
+            node.tag,
+            node.get("d"),
+            node.get("style"),
+            node.get("transform"),
+            parents[node].get("id") if parents[node] is not root else "",
+        )
+        for node in root.iter()
+        if node.get("id") in ("layer1", "turned", "wave", "bar", "layer2", "sharp", "word", "all")
+    }
+
+
+def preview(text: str):
+    (layer,) = (node for node in ET.fromstring(text) if node.get("id") == "brushsvg-preview")
+    return layer
+
+
+def rings_mm(path, tmp_path):
+    """Corners of the preview's marks on paper, (n, 2) per path, as our own reader places them."""
+    text = path.read_text().replace('data-brushsvg-skip="yes"', "")
+    (tmp_path / "shown.svg").write_text(text)
+    design = read_drawing(tmp_path / "shown.svg", ReadOptions(select="#brushsvg-preview"))
+    return [np.vstack([part.cubics[:, 0] for part in each.subpaths]) for each in design.elements]
+
+
+def predicted_mm(tmp_path, *flags):
+    brushsvg("predict", "drawing.svg", "marks.svg", *flags, cwd=tmp_path, status=0)
+    return [
+        np.vstack([part.cubics[:, 0] for part in each.subpaths])
+        for each in read_drawing(tmp_path / "marks.svg").elements
+    ]
+
+
+def assert_alike(shown, predicted):
+    assert len(shown) == len(predicted) > 0
+    for ours, theirs in zip(shown, predicted, strict=True):
+        assert ours.shape == theirs.shape
+        assert np.abs(ours - theirs).max() < 0.01
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_marks_lie_where_predict_puts_them_and_originals_stay(plugin, tmp_path, head):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing(head))
+    shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
+    assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path))
+    assert elements(shown.read_text()) == elements(source.read_text())
+
+
+def test_its_layer_is_locked_named_and_replaced(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing("mm"))
+    once = plugin.effect("preview", source, tmp_path / "once.svg")
+    layer = preview(once.read_text())
+    assert layer.get(f"{SODIPODI}insensitive") == "true"
+    label = (
+        r"Brush preview: round-6, closed: 3 strokes, at most \d+\.\d\d mm off the line, 1 missed, 2 warnings"
+    )
+    assert re.fullmatch(label, layer.get(f"{INKSCAPE}label"))
+    assert [("#d4351c" in path.get("style")) for path in layer.iter(f"{SVG}path")] == [False, False, True]
+    twice = plugin.effect("preview", once, tmp_path / "twice.svg")
+    assert_alike(rings_mm(twice, tmp_path), rings_mm(once, tmp_path))
+
+
+def test_the_layer_is_not_painted(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing("mm"))
+    plugin.effect("preview", source, tmp_path / "shown.svg")
+    for name in ("drawing", "shown"):
+        brushsvg("convert", f"{name}.svg", f"{name}.ngc", cwd=tmp_path, status=0)
+    assert (tmp_path / "shown.ngc").read_bytes() == (tmp_path / "drawing.ngc").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("select", "css"), [("bar", "#bar"), ("layer1", "#layer1"), ("wave,sharp", "#wave, #sharp")]
+)
+def test_a_selection_alone_is_shown(plugin, tmp_path, select, css):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing("in"))
+    shown = plugin.effect("preview", source, tmp_path / "shown-in.svg", select=select)
+    assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--select", css))
+
+
+def test_what_the_dialog_says_wins(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing("mm"))
+    plugin.set(preview__brush="rigid", preview__compensation="none")
+    try:
+        shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
+    finally:
+        plugin.set()
+    assert_alike(
+        rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--brush", "rigid", "--compensation", "none")
+    )
+
+
+def test_odd_ids_can_be_selected(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND.replace('id="line"', 'id="a&quot;b\\c,d]"'))
+    done = plugin.script("preview", source, '--id=a"b\\c,d]')
+    assert done.returncode == 0, done.stderr
+    assert b"1 stroke," in done.stdout
+
+
+def test_settings_stay_in_the_document_and_the_command_line_uses_them(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing("mm"))
+    plugin.set(
+        settings__brush="rigid",
+        settings__compensation="none",
+        settings__cell="ur5e",
+        settings__tolerance="0.2",
+    )
+    try:
+        said = plugin.effect("settings", source, tmp_path / "said.svg")
+    finally:
+        plugin.set()
+    assert elements(said.read_text()) == elements(source.read_text())
+    brushsvg("convert", "said.svg", "said.script", cwd=tmp_path, status=0)
+    flags = ("--brush", "rigid", "--compensation", "none", "--cell", "ur5e", "--tolerance", "0.2")
+    brushsvg("convert", "drawing.svg", "typed.script", *flags, cwd=tmp_path, status=0)
+    assert (tmp_path / "said.script").read_bytes() == (tmp_path / "typed.script").read_bytes()
+    plain = plugin.effect("settings", said, tmp_path / "plain.svg")
+    assert "data-brushsvg" not in plain.read_text()

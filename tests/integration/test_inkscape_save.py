@@ -1,0 +1,157 @@
+"""Save as robot program from the real Inkscape: the same bytes as the command line writes, or a sentence."""
+
+import stat
+import subprocess
+from xml.etree import ElementTree
+
+import pytest
+from command import COMMAND, SOUND, brushsvg, path
+from plugin import SOURCE, Plugin
+
+from brushsvg import brush_names, cell_names
+from brushsvg.posts import POSTS
+
+SCHEMA = "/usr/share/inkscape/extensions/inkscape.extension.rng"
+GROUPS = """<svg xmlns="http://www.w3.org/2000/svg" width="6in" height="90mm" viewBox="10 5 300 200"
+ xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">
+ <g inkscape:groupmode="layer" inkscape:label="Ink" id="layer1" transform="translate(40,30)">
+  <g id="turned" transform="rotate(-10) scale(1.2)">
+   <path id="wave" d="M 10,40 C 20,0 40,0 50,20 S 80,40 90,20" style="fill:none;stroke:#102030;stroke-width:5"/></g>
+  <path id="bar" d="M 20,90 H 160" style="fill:none;stroke:#a00000;stroke-width:4"/></g>
+</svg>"""
+DRAWINGS = {
+    "sound": SOUND,
+    "groups": GROUPS,
+    "settings": SOUND.replace("<svg ", '<svg data-brushsvg-brush="rigid" data-brushsvg-tolerance="0.1mm" '),
+}
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+@pytest.mark.parametrize("extension", ["ngc", "json", "script"])
+def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, extension):
+    drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved.{extension}"
+    drawing.write_text(DRAWINGS[name])
+    plugin.save(drawing, saved)
+    cell = ["--cell", "ur5e"] if extension == "script" else []
+    brushsvg("convert", "drawing.svg", f"typed.{extension}", *cell, cwd=tmp_path, status=0)
+    assert saved.read_bytes() == (tmp_path / f"typed.{extension}").read_bytes()
+
+
+def test_the_document_chooses_unless_the_dialog_does(plugin, tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(DRAWINGS["settings"])
+    for words, brush in (
+        ((), b"rigid"),
+        (("--brush=document",), b"rigid"),
+        (("--brush=round-6",), b"round-6"),
+    ):
+        program = plugin.script("save", drawing, *words).stdout
+        assert b"brush: " + brush in program
+
+
+def test_warnings_are_shown_beside_the_program(plugin, tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND.replace("</svg>", '<text id="word" x="10" y="10">a</text></svg>'))
+    done = plugin.script("save", drawing)
+    assert done.returncode == 0 and done.stdout
+    assert b"Saved. brushsvg warns:\nword: text is not read" in done.stderr
+
+
+def sentence(done: subprocess.CompletedProcess) -> str:
+    told = done.stderr.decode()
+    assert done.returncode == 1 and done.stdout == b"" and told and "Traceback" not in told
+    return told
+
+
+def test_a_refusal_is_shown_and_nothing_written(plugin, tmp_path):
+    drawing, saved = tmp_path / "drawing.svg", tmp_path / "saved.ngc"
+    drawing.write_text(path("M20 30 H90", width="30"))
+    plugin.save(drawing, saved)
+    assert not saved.exists()
+    told = sentence(plugin.script("save", drawing))
+    assert told.startswith("brushsvg refuses:\np: width 30.000 mm is outside the range")
+
+
+@pytest.mark.parametrize("script", ["save", "preview", "check"])
+def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, script):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND)
+    told = sentence(Plugin(tmp_path, command=None).script(script, drawing))
+    assert told.startswith("The program brushsvg was not found. Install it with:  pipx install brushsvg\n")
+
+
+def programs(tmp_path, text):
+    file = tmp_path / "other"
+    file.write_text(f"#!/bin/sh\n{text}\n")
+    file.chmod(file.stat().st_mode | stat.S_IXUSR)
+    return file
+
+
+@pytest.mark.parametrize(
+    ("does", "told"),
+    [
+        ('test "$1" = --version && echo brushsvg 0.0.9 && exit; exit 2', "brushsvg 0.0.9 is too old"),
+        ("exit 0", "is not the program brushsvg"),
+        ("kill -9 $$", "is not the program brushsvg"),
+        ("echo something else; exit 3", "is not the program brushsvg"),
+    ],
+)
+@pytest.mark.parametrize("script", ["save", "preview", "check"])
+def test_another_program_is_told(plugin, tmp_path, script, does, told):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND)
+    other = programs(tmp_path, does)
+    assert told in sentence(plugin.script(script, drawing, f"--executable={other}"))
+
+
+def test_one_that_is_chosen_but_is_not_there_is_told(plugin, tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND)
+    told = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
+    assert "is not a program that can be run" in told
+
+
+def test_the_place_noted_when_it_was_installed_is_used(tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND)
+    alone = Plugin(tmp_path, command=None)
+    (alone.installed / "brushsvg-executable.txt").write_text(f"{COMMAND}\n")
+    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
+
+
+CHECK = """
+import sys
+from lxml import etree
+schema = etree.RelaxNG(etree.parse(sys.argv[1]))
+for file in sys.argv[2:]:
+    schema.assertValid(etree.parse(file))
+"""
+
+
+def test_the_descriptions_are_valid_by_inkscapes_own_schema(tmp_path):
+    files = sorted(map(str, SOURCE.glob("*.inx")))
+    assert len(files) >= 5
+    subprocess.run(["/usr/bin/python3", "-c", CHECK, SCHEMA, *files], check=True)
+
+
+def options(file, parameter):
+    root = ElementTree.parse(file).getroot()
+    own = "{http://www.inkscape.org/namespace/inkscape/extension}"
+    found = [each for each in root.iter(f"{own}param") if each.get("name") == parameter]
+    return {option.get("value") for each in found for option in each} - {"document"}
+
+
+def test_dialogs_offer_what_comes_along():
+    for file in SOURCE.glob("*.inx"):
+        assert options(file, "brush") in (set(), set(brush_names())), file
+        assert options(file, "cell") <= set(cell_names()), file
+
+
+def test_every_language_can_be_saved():
+    saved = {file.read_text().split("<extension>")[1].split("<")[0] for file in SOURCE.glob("*save*.inx")}
+    assert saved == {post.extensions[0] for post in POSTS.values()} | {".json"}

@@ -1,0 +1,127 @@
+"""The commands in a real vpype, in an environment of its own. Installing that is slow: -m "not slow" leaves it out."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command import OPEN, brushsvg
+
+from brushsvg import area, read_drawing
+
+pytestmark = pytest.mark.slow
+SOURCE = Path(__file__).parents[2] / "plugins" / "vpype"
+DRAWING = f"""{OPEN.replace("<svg", '<svg xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"')}
+ <g inkscape:groupmode="layer" inkscape:label="Ink" id="layer1" fill="none" stroke="#203060" stroke-width="3">
+  <path id="line" d="M20 40 C40 10 60 10 90 30"/><path id="corner" d="M20 50 H60 V40"/></g>
+ <g inkscape:groupmode="layer" inkscape:label="Red" id="layer2" fill="none" stroke="#ff0000" stroke-width="2">
+  <circle id="ring" cx="90" cy="42" r="8"/></g></svg>"""
+
+
+@pytest.fixture(scope="session")
+def vpype(tmp_path_factory):
+    """A function that runs vpype; brushsvg is the one under test, found beside vpype's own packages."""
+    folder = tmp_path_factory.mktemp("vpype")
+    environment = folder / "env"
+    python = environment / "bin" / "python"
+    shutil.copytree(SOURCE, folder / "source")
+    subprocess.run([sys.executable, "-m", "venv", environment], check=True)
+    for words in (["vpype"], ["--no-deps", folder / "source"]):
+        done = subprocess.run([python, "-m", "pip", "install", "-q", *words], capture_output=True, text=True)
+        if done.returncode:
+            pytest.skip(f"vpype cannot be installed here: {done.stderr.splitlines()[-1]}")
+    beside = f"import site; site.addsitedir({sysconfig.get_path('purelib')!r})\n"
+    (next(environment.glob("lib/python*/site-packages")) / "brushsvg.pth").write_text(beside)
+
+    def run(*words, cwd, status=0):
+        done = subprocess.run(
+            [environment / "bin" / "vpype", *map(str, words)],
+            cwd=cwd,
+            env={**os.environ, "HOME": str(folder)},
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+        assert done.returncode == status, done.stderr
+        assert "Traceback" not in done.stderr
+        return done.stderr
+
+    return run
+
+
+@pytest.fixture
+def desk(tmp_path):
+    (tmp_path / "x.svg").write_text(DRAWING)
+    return tmp_path
+
+
+def test_brush_shows_the_marks_that_predict_shows(vpype, desk):
+    vpype("read", "x.svg", "brush", "--brush", "round-6", "write", "marks.svg", cwd=desk)
+    brushsvg("predict", "x.svg", "predicted.svg", cwd=desk, status=0)
+
+    def inked(name):
+        parts = (part for each in read_drawing(desk / name).elements for part in each.subpaths)
+        return sum(abs(area([part.cubics[:, 0]])) for part in parts), np.vstack(
+            [part.cubics[:, 0] for each in read_drawing(desk / name).elements for part in each.subpaths]
+        )
+
+    (area_mm2, corners), (expected_mm2, expected) = inked("marks.svg"), inked("predicted.svg")
+    assert area_mm2 == pytest.approx(expected_mm2, rel=0.01)
+    assert np.abs(corners.min(axis=0) - expected.min(axis=0)).max() < 0.1  # vpype reads curves to 0.1 mm
+    assert np.abs(corners.max(axis=0) - expected.max(axis=0)).max() < 0.1
+
+
+def test_layers_keep_their_settings(vpype, desk):
+    vpype("read", "x.svg", "brush", "write", "marks.svg", cwd=desk)
+    text = (desk / "marks.svg").read_text()
+    for told in ('inkscape:label="Ink"', 'inkscape:label="Red"', 'stroke="#203060"', 'stroke="#f00"'):
+        assert told in text or told.replace("#f00", "#ff0000") in text, told
+    design = read_drawing(desk / "marks.svg")
+    widths = {each.layer: round(each.stroke_width_mm, 3) for each in design.elements}
+    assert widths == {"Ink": 3, "Red": 2}
+
+
+def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
+    vpype("read", "x.svg", "brushwrite", "out.json", "brushwrite", "--width", "1mm", "thin.json", cwd=desk)
+    brushsvg("convert", "x.svg", "typed.json", cwd=desk, status=0)
+    plan, thin, typed = (json.loads((desk / f"{name}.json").read_text()) for name in ("out", "thin", "typed"))
+    depths = [
+        [min(z for _, _, z in each["poses_mm"]) for each in some["passes"]] for some in (plan, thin, typed)
+    ]
+    assert depths[0] == pytest.approx(depths[2], abs=0.02)
+    assert max(depths[1]) == pytest.approx(min(depths[1]), abs=0.02) and min(depths[1]) > max(depths[0])
+    assert [each["layer"] for each in plan["passes"]] == ["Ink", "Ink", "Red"]
+    assert [each["colour"] for each in plan["passes"]] == ["#203060", "#203060", "#ff0000"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("line", "0", "0", "5cm", "5cm", "brushwrite", "o.ngc"), "layer 1 has no pen width"),
+        (("read", "x.svg", "brushwrite", "o.xyz"), "the extension '.xyz' is neither"),
+        (("read", "x.svg", "brush", "--brush", "broom"), "broom"),
+        (
+            ("read", "x.svg", "brushwrite", "--width", "3cm", "o.ngc"),
+            "is outside the range [0.000, 8.400] mm",
+        ),
+        (("read", "x.svg", "brushwrite", "--cell", "nowhere", "o.ngc"), "nowhere"),
+        (("brushwrite", "o.ngc"), "nothing"),
+        (
+            ("pagesize", "5x5cm", "line", "0", "0", "9cm", "9cm", "brushwrite", "--width", "3mm", "o.ngc"),
+            "beyond",
+        ),
+    ],
+)
+def test_what_cannot_be_painted_is_told_in_a_sentence(vpype, desk, words, told):
+    assert told in vpype(*words, cwd=desk, status=1)
+    assert not list(desk.glob("o.*"))
+
+
+def test_without_a_page_there_is_a_margin(vpype, desk):
+    vpype("line", "0", "0", "5cm", "3cm", "penwidth", "3mm", "brushwrite", "o.json", cwd=desk)
+    assert json.loads((desk / "o.json").read_text())["sheet_mm"] == pytest.approx([90, 70], abs=0.01)

@@ -1,0 +1,96 @@
+"""Installing the extension for Inkscape, from the source tree and from its zip."""
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from brushsvg import Error
+from brushsvg.cli import main
+from brushsvg.plugin import extensions_folder, install_inkscape
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "plugins" / "inkscape"
+
+
+@pytest.fixture
+def profile(tmp_path, monkeypatch):
+    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path / "profile"))
+    return tmp_path / "profile" / "extensions" / "brushsvg"
+
+
+@pytest.fixture
+def zipped(tmp_path):
+    out = tmp_path / "brushsvg-inkscape.zip"
+    subprocess.run([sys.executable, ROOT / "tools" / "zip_plugin.py", SOURCE, out], check=True)
+    return out
+
+
+def installed(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_it_is_copied_from_the_source_tree_and_replaces_an_older_one(profile, capsys):
+    profile.mkdir(parents=True)
+    (profile / "brushsvg_gone.inx").write_text("old")
+    assert main(["install-plugin", "inkscape"]) == 0
+    assert capsys.readouterr().out.startswith(f"{profile}: installed; start Inkscape again")
+    files = installed(profile)
+    assert files.pop("brushsvg-executable.txt") is not None
+    expected = {path.name: path.read_bytes() for path in SOURCE.iterdir() if path.is_file()}
+    assert files == expected and "LICENSE" in files
+
+
+def test_the_zip_holds_the_same(profile, zipped):
+    install_inkscape()
+    from_tree = installed(profile)
+    for path in profile.iterdir():
+        path.unlink()
+    install_inkscape(str(zipped))
+    assert installed(profile) == from_tree
+
+
+def test_the_zip_has_the_same_bytes_each_time(zipped, tmp_path):
+    again = tmp_path / "again.zip"
+    subprocess.run([sys.executable, ROOT / "tools" / "zip_plugin.py", SOURCE, again], check=True)
+    assert again.read_bytes() == zipped.read_bytes()
+
+
+def test_where_there_is_no_source_it_says_what_to_do(profile, tmp_path):
+    with pytest.raises(Error, match="give its zip"):
+        install_inkscape(source=tmp_path / "site-packages")
+    assert not profile.exists()
+
+
+def test_what_is_not_the_zip_is_refused(profile, tmp_path, zipped):
+    for name, make in (
+        ("missing.zip", lambda path: None),
+        ("text.zip", lambda path: path.write_text("no zip")),
+        ("other.zip", lambda path: zipfile.ZipFile(path, "w").writestr("a.exe", "x")),
+        ("short.zip", lambda path: path.write_bytes(zipped.read_bytes()[:2000])),
+    ):
+        make(tmp_path / name)
+        with pytest.raises(Error) as refused:
+            install_inkscape(str(tmp_path / name))
+        assert refused.value.file == str(tmp_path / name)
+    assert not profile.exists()
+
+
+def test_a_name_in_the_zip_cannot_lead_elsewhere(profile, tmp_path, zipped):
+    with zipfile.ZipFile(zipped, "a") as file:
+        file.writestr("../../evil.py", "x")
+    install_inkscape(str(zipped))
+    assert (profile / "evil.py").exists() and not list(tmp_path.glob("evil.py"))
+
+
+def test_where_inkscape_looks(monkeypatch):
+    monkeypatch.delenv("INKSCAPE_PROFILE_DIR", raising=False)
+    monkeypatch.delenv("XDG_CONFIG_HOME", raising=False)
+    monkeypatch.setenv("HOME", "/home/somebody")
+    monkeypatch.setattr(sys, "platform", "linux")
+    assert extensions_folder() == Path("/home/somebody/.config/inkscape/extensions")
+    monkeypatch.setattr(sys, "platform", "darwin")
+    mac = "/home/somebody/Library/Application Support/org.inkscape.Inkscape/config/inkscape/extensions"
+    assert extensions_folder() == Path(mac)
