@@ -144,9 +144,18 @@ def predict_file(args) -> None:
     _check_places(args.output)
     _settle(args)
     suffix = _suffix(args.output)
-    work, marks, _ = _look(args, _cell(args), outlines=suffix != ".png", whole=suffix == ".json")
+    outlines = suffix != ".png" or args.band
+    work, marks, _ = _look(args, _cell(args), outlines=outlines, whole=suffix == ".json")
     with about(args.input):
-        picture = convert.picture(_suffix(args.output), work, marks)
+        band = None
+        if args.band:
+            from .uncertainty import band as band_of
+
+            stage("finding how sure it is")
+            band = band_of(work.plan, work.brush, marks)
+            if not any(band.rings):
+                say(work.brush.name, band.words)
+        picture = convert.picture(_suffix(args.output), work, marks, band)
     _write({args.output: picture})
 
 

@@ -80,6 +80,11 @@ def _parser() -> argparse.ArgumentParser:
     _add_input(predict)
     predict.add_argument("output", metavar="OUT", help="a picture (.png .svg) or marks (.json)")
     _add_choices(predict)
+    predict.add_argument(
+        "--band",
+        action="store_true",
+        help="also where the edges lie with 95 %%, as far as the brush is known",
+    )
     predict.set_defaults(run="predict_file", parser=predict)
 
     animate = commands.add_parser("animate", help="make a page that plays tool and paint over time")
@@ -449,6 +454,8 @@ def _check_operands(args) -> None:
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
     if args.lag is not None and args.compensation != "constant":
         args.parser.error("--lag needs --compensation constant")
+    if args.run == "predict_file" and args.band and os.path.splitext(args.output)[1].lower() == ".json":
+        args.parser.error("--band is for pictures (.svg .png)")
     outputs = {
         "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
         "border_file": lambda: [(args.output, PROGRAMS[1:])],
