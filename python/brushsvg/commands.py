@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import convert, machine
+from . import _core, convert, machine
 from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -93,6 +93,39 @@ def height_file(args) -> None:
     _write({args.output: text})
 
 
+def chart_file(args) -> None:
+    from .chart import chart
+    from .chart_json import write_chart
+    from .chart_page import chart_page
+
+    _check_places(args.output, args.page, args.chart)
+    brush = _brush(args) or find_brush(convert.DEFAULT_BRUSH)
+    cell = machine.as_exact_as(_cell(args), machine.DEFAULT_TOLERANCE_MM)
+    with about(args.output):
+        if _suffix(args.output) != ".json":
+            machine.post_for(_suffix(args.output), cell)
+        stage("laying out the chart")
+        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm)
+        job = Job(args.z_offset)
+        marks = _core.simulate(made.plan, brush)
+        problems = machine.problems(made.plan, brush, marks, cell, machine.DEFAULT_TOLERANCE_MM, job)
+        if problems:
+            raise RefusedError([(args.output, *problem) for problem in folded(problems)])
+        title = f"calibration chart of brush {brush.name}"
+        files = {args.output: machine.encode(_suffix(args.output), made.plan, brush, title, (), cell, job)}
+    if args.page:
+        files[args.page] = chart_page(made).encode()
+    if args.chart:
+        files[args.chart] = write_chart(made).encode()
+    _warn_of_example(args, cell)
+    _write(files)
+    depths = sorted({stroke.depth_mm for stroke in made.strokes if stroke.kind == "angular"})
+    count, width, height = len(made.strokes), *args.sheet
+    tell(
+        f"{count} strokes on {width:g} x {height:g} mm, depths {', '.join(f'{depth:g}' for depth in depths)} mm\n"
+    )
+
+
 def check_file(args) -> None:
     from . import checking  # here and below: what only one command needs is loaded by it
     from .readback import read_program
@@ -144,9 +177,18 @@ def predict_file(args) -> None:
     _check_places(args.output)
     _settle(args)
     suffix = _suffix(args.output)
-    work, marks, _ = _look(args, _cell(args), outlines=suffix != ".png", whole=suffix == ".json")
+    outlines = suffix != ".png" or args.band
+    work, marks, _ = _look(args, _cell(args), outlines=outlines, whole=suffix == ".json")
     with about(args.input):
-        picture = convert.picture(_suffix(args.output), work, marks)
+        band = None
+        if args.band:
+            from .uncertainty import band as band_of
+
+            stage("finding how sure it is")
+            band = band_of(work.plan, work.brush, marks)
+            if not any(band.rings):
+                say(work.brush.name, band.words)
+        picture = convert.picture(_suffix(args.output), work, marks, band)
     _write({args.output: picture})
 
 

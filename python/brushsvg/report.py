@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from . import _core
+from .uncertainty import Uncertainty
 
 RING_TOLERANCE_MM = 0.01
 SAMPLE_SPACING_MM = 0.25
@@ -45,6 +46,7 @@ class Report:
     time_s: float
     warnings: tuple[tuple[str, str], ...] = ()
     refused: tuple[tuple[str, str], ...] = ()  # strokes that are not among those of the report
+    sure: Uncertainty | None = None  # None: nothing is known of how sure the brush is
 
 
 def wanted_rings(strokes) -> list[np.ndarray]:
@@ -183,8 +185,15 @@ def _widths(xy, along, tails, heads, reach_mm) -> np.ndarray:
 def to_json(report: Report) -> str:
     """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
 
-    def figures(row: Figures) -> dict:
-        return {key: round(v, 6) if isinstance(v, float) else v for key, v in asdict(row).items()}
+    def figures(row: Figures, sure) -> dict:
+        told = {key: round(v, 6) if isinstance(v, float) else v for key, v in asdict(row).items()}
+        if sure is not None:
+            known = {key: None if v is None else round(v, 6) for key, v in asdict(sure).items()}
+            told["uncertainty_95"] = known
+        return told
+
+    sure = report.sure
+    sures = [None] * len(report.strokes) if sure is None else sure.strokes
 
     return (
         json.dumps(
@@ -196,8 +205,9 @@ def to_json(report: Report) -> str:
                 "compensation": report.compensation,
                 "tolerance_mm": report.tolerance_mm,
                 "time_s": round(report.time_s, 3),
-                "total": figures(report.total),
-                "strokes": [figures(row) for row in report.strokes],
+                "uncertainty_from": None if sure is None else sure.source,
+                "total": figures(report.total, None if sure is None else sure.total),
+                "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
                 "warnings": [{"where": where, "sentence": sentence} for where, sentence in report.warnings],
                 "refused": [{"where": where, "sentence": sentence} for where, sentence in report.refused],
             },
@@ -221,6 +231,7 @@ def to_text(report: Report) -> str:
         ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
+        *_sure_columns(report.sure),
     ]
     table = _table(columns)
     rule = "-" * len(table[0])
@@ -236,6 +247,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
         "of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        *_sure_words(report.sure),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.refused:
@@ -245,6 +257,26 @@ def to_text(report: Report) -> str:
         lines += ["", f"Warnings: {len(report.warnings)}"]
         lines += ["  " + ": ".join(filter(None, warning)) for warning in report.warnings]
     return "\n".join([*lines, ""])
+
+
+def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
+    if sure is None:
+        return []
+    rows = [*sure.strokes, sure.total]
+    return [
+        ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
+        ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
+        ("width +-", [_figure(row.width_mm, 2) for row in rows]),
+    ]
+
+
+def _sure_words(sure: Uncertainty | None) -> list[str]:
+    if sure is None:
+        return ["How far the paint may lie off nobody can say: the brush has neither covariance nor RMSE."]
+    return [
+        "+-: how far the mark's middle may lie off across, its tip along the line, and its width;",
+        f"{sure.words}.",
+    ]
 
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:

@@ -288,7 +288,7 @@ def test_equations_name_code_and_tests_that_exist():
         ("python/brushsvg/program.py", "from brushsvg import find_brush", "touches __init__"),
         ("python/brushsvg/program.py", "if TYPE_CHECKING:\n    from .design import Design", "touches design"),
         ("python/brushsvg/report.py", "import importlib\nimportlib.import_module('cv2')", "touches cv2"),
-        ("python/brushsvg/chart.py", "", "room chart, which has no row"),
+        ("python/brushsvg/scan.py", "", "room scan, which has no row"),
     ],
 )
 def test_a_planted_fault_is_named(path, text, named):
