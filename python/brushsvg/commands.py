@@ -210,12 +210,19 @@ def import_file(args) -> None:
         try:
             strokes, notices = strokes_of(design, args.paths_as)
         except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+            if args.editable:
+                raise
             strokes, notices = [], [Notice(nothing.where, str(nothing))]
         notices = [*design.notices, *notices]
         warn(args.input, [(notice.where, notice.sentence) for notice in notices])
-        from .overview import overview
+        if args.editable:
+            from .lines_svg import lines_svg
 
-        picture = overview(_suffix(args.output), design, strokes, notices)
+            picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
+        else:
+            from .overview import overview
+
+            picture = overview(_suffix(args.output), design, strokes, notices)
     _write({args.output: picture})
 
 

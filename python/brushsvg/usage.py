@@ -105,6 +105,11 @@ def _parser() -> argparse.ArgumentParser:
     look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
     look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     _add_layout(look)
+    look.add_argument(
+        "--editable",
+        action="store_true",
+        help="the strokes as lines with a width, to go on drawing with (.svg)",
+    )
     look.set_defaults(run="import_file", parser=look, brush=None, lag=None)
 
     text = commands.add_parser("text", help="set a text in a font, as a drawing")
@@ -487,6 +492,8 @@ def _check_operands(args) -> None:
         args.parser.error("--units is for drawings that do not say them; an SVG does")
     if args.select and drawing == ".dxf":
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
+    if getattr(args, "editable", False) and os.path.splitext(args.output)[1].lower() != ".svg":
+        args.parser.error("--editable writes an SVG")
     if args.lag is not None and args.compensation != "constant":
         args.parser.error("--lag needs --compensation constant")
     if args.run == "predict_file" and args.band and os.path.splitext(args.output)[1].lower() == ".json":

@@ -126,9 +126,9 @@ def complaints(path: Path, text: str) -> list[str]:
     ]
     if "ceres" in touched and path.suffix == ".hpp":
         found.append(f"{where} includes Ceres in a header: whoever includes it would have to have it")
-    private = (CPP / "src" / "region.cpp", CPP / "src" / "medial_axis.cpp")
+    private = (CPP / "src" / "region.cpp", CPP / "src" / "voronoi_axis.cpp")
     if "boost" in touched and path.parent != CPP / "fit" and path not in private:
-        found.append(f"{where} includes Boost, which is private to cpp/src/region.cpp and medial_axis.cpp")
+        found.append(f"{where} includes Boost, which is private to cpp/src/region.cpp and voronoi_axis.cpp")
     return found
 
 
