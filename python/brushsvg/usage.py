@@ -282,7 +282,7 @@ def _add_choices(command: argparse.ArgumentParser) -> None:
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     _add_layout(command)
     _add_wide(command)
-    add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
+    add("--compensation", choices=("none", "constant", "closed", "refined"), help="default: closed")
     add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
     add("--tolerance", metavar="MM", type=_tolerance, help="of the painted middle line; default: 0.05")
     add("--lenient", action="store_true", help="take what is sound of damaged geometry")
