@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import _core, convert, machine
+from . import _core, convert, machine, report
 from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -38,7 +38,7 @@ def convert_file(args) -> None:
     with about(args.input):
         if _suffix(args.output) != ".json":
             machine.post_for(_suffix(args.output), cell)
-        marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
+        marks = convert.predict(work, _suffix(args.preview) == ".svg", stage)
         problems = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
         problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
         if damaged:
@@ -159,13 +159,13 @@ def check_file(args) -> None:
             problems = problems + checking.paint_problems(ran, expected, cell)
             strokes = None if len(strokes) != len(ran.plan.passes) else strokes
             drawn = work.strokes if made.first_stroke == 1 else None
-        outlined = convert.outlined(ran.marks, brush, stage)
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
+            outlined = convert.outlined(ran.marks, brush, stage)
             _write({args.preview: convert.picture(_suffix(args.preview), shown, outlined)})
         seconds = duration_s(again) if again else 0.0
         suffix = ".json" if args.json else ".txt"
-        tell(convert.report_text(suffix, shown, outlined, cell, drawn=drawn, seconds=seconds))
+        tell(convert.report_text(suffix, shown, ran.marks, cell, drawn=drawn, seconds=seconds))
     if problems:
         raise RefusedError([(args.program, *problem) for problem in folded(problems)])
     if not args.json:
@@ -244,16 +244,44 @@ def text_file(args) -> None:
 
 
 def report_file(args) -> None:
+    _check_places(args.preview)
+    if args.all_brushes:
+        return _all_brushes(args)
+    args.brush = args.brush[0] if args.brush else None
     _settle(args)
     cell = _cell(args)
-    work, marks, warnings = _look(args, cell, outlines=True, partly=True)
+    work, marks, warnings = _look(args, cell, outlines=_suffix(args.preview) == ".svg", partly=True)
     with about(args.input):
-        text = convert.report_text(".json" if args.json else ".txt", work, marks, cell, warnings)
+        stage("trying other sizes")
+        advice = convert.advice(work)
+        if args.preview:
+            _write({args.preview: convert.misses_picture(_suffix(args.preview), work, marks)})
+        suffix = ".json" if args.json else ".txt"
+        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice)
     if work.plan.passes or args.json:
         tell(text)
+    elif advice:
+        tell(advice + "\n")
     if work.refused:
         refused = folded((notice.where, notice.sentence) for notice in work.refused)
         raise RefusedError([(args.input, *each) for each in refused])
+
+
+def _all_brushes(args) -> None:
+    from . import suit
+
+    given, args.brush = args.brush or [], None
+    _settle(args)
+    asked = [*brush_names(), *(name for name in given if name not in brush_names())]
+    brushes = []
+    for name in asked:
+        with about(name):
+            brushes.append(find_brush(name))
+    cell = _cell(args)
+    with about(args.input):
+        suits = convert.suits(args.input, _options(args, cell), brushes, stage)
+        title = arrange(read_drawing(args.input, _reading(args)), _layout(args)).title
+        tell(suit.to_json(title, suits) if args.json else report.brushes_text(title, suits))
 
 
 def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
@@ -276,7 +304,12 @@ def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
-    options = convert.Options(
+    with about(args.input):
+        return convert.prepare(args.input, _options(args, cell, brush), stage, partly)
+
+
+def _options(args, cell: Cell, brush=None) -> convert.Options:
+    return convert.Options(
         brush=brush or _brush(args),
         reading=_reading(args),
         layout=_layout(args),
@@ -287,8 +320,6 @@ def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work
         wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
-    with about(args.input):
-        return convert.prepare(args.input, options, stage, partly)
 
 
 def _settle(args) -> None:

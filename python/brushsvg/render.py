@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from .errors import Error
-from .svg_marks import BAND, known_colour
+from .svg_marks import BAND, BOTH, MISSES, MISSING, SPILT, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -59,6 +59,24 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
         _lay(image, box, BAND)
         left += round(2.5 * size)
     _write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)
+
+
+def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
+    """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
+    common = np.minimum(wanted, painted)
+    rows, columns = common.shape
+    size = max(14, round(0.016 * max(rows, columns)))
+    image = _canvas((rows + 2 * size, columns), "#ffffff")
+    shares = ((common, BOTH), (wanted - common, MISSING), (painted - common, SPILT))
+    page = np.full((rows, columns, 3), 255.0)
+    for share, colour in shares:  # side by side in a pixel, not over each other
+        page -= share[..., None] * (255.0 - np.array(_bgr(colour)))
+    image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
+    x = size
+    for colour, words in MISSES:
+        image[rows + size // 2 : rows + 3 * size // 2, x : x + size] = _bgr(colour)
+        x = _write(image, words, (x + 3 * size // 2, rows + 11 * size // 8), size, 400, TEXT) + 2 * size
+    return _png(image)
 
 
 @dataclass(frozen=True)

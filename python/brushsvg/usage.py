@@ -144,7 +144,11 @@ def _parser() -> argparse.ArgumentParser:
 
     report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
     _add_input(report)
-    _add_choices(report)
+    _add_choices(report, several_brushes=True)
+    report.add_argument("--all-brushes", action="store_true", help="one line for each brush, the best first")
+    report.add_argument(
+        "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"
+    )
     report.add_argument("--json", action="store_true", help="as JSON")
     report.set_defaults(run="report_file", parser=report)
 
@@ -276,9 +280,13 @@ def _add_input(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)}) or plan (.json)")
 
 
-def _add_choices(command: argparse.ArgumentParser) -> None:
+def _add_choices(command: argparse.ArgumentParser, several_brushes: bool = False) -> None:
     add = command.add_argument
-    add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
+    default = "default: round-6; for a plan, the brush it names"
+    if several_brushes:
+        add("--brush", metavar="NAME|FILE", action="append", help=f"{default}; with --all-brushes any number")
+    else:
+        add("--brush", metavar="NAME|FILE", help=default)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     _add_layout(command)
     _add_wide(command)
@@ -505,10 +513,13 @@ def _check_operands(args) -> None:
         "check_file": lambda: [(args.preview, PREVIEWS)],
         "predict_file": lambda: [(args.output, PREDICTIONS)],
         "import_file": lambda: [(args.output, PREVIEWS)],
-        "report_file": lambda: [],
+        "report_file": lambda: [(args.preview, PREVIEWS)],
     }[args.run]()
     inputs = tuple(READERS) if args.run in ("import_file", "check_file") else DRAWINGS
-    read = (args.input, args.brush, getattr(args, "program", None))
+    brushes = args.brush if isinstance(args.brush, list) else [args.brush]
+    if args.run == "report_file":
+        _check_report(args, drawing)
+    read = (args.input, *brushes, getattr(args, "program", None))
     taken = [os.path.realpath(path) for path in read if path]
     for path, suffixes in [(args.input, inputs), *outputs]:
         if path is None:
@@ -518,6 +529,17 @@ def _check_operands(args) -> None:
             if os.path.realpath(path) in taken:
                 args.parser.error(f"{path} cannot be two files at once")
             taken.append(os.path.realpath(path))
+
+
+def _check_report(args, drawing: str) -> None:
+    if len(args.brush or ()) > 1 and not args.all_brushes:
+        args.parser.error("--brush is given more than once, which needs --all-brushes")
+    if args.all_brushes and args.preview:
+        args.parser.error("--preview shows one brush, not --all-brushes")
+    if args.all_brushes and drawing == ".json":
+        args.parser.error("--all-brushes needs a drawing: a plan is made for one brush")
+    if args.preview and drawing == ".json":
+        args.parser.error("--preview needs a drawing: a plan does not say what was wanted")
 
 
 def _check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
