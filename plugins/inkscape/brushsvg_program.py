@@ -69,15 +69,17 @@ def executable(chosen: str) -> str:
 
 
 class Run:
-    """One brushsvg command on a copy of the drawing, started at once. In a `with`, so that its folder goes away."""
+    """One brushsvg command on a copy of the drawing, if it needs one, started at once. In a `with`, so that its folder
+    goes away."""
 
-    def __init__(self, chosen: str, drawing: str, command: str, *words: str):
+    def __init__(self, chosen: str, drawing: str | None, command: str, *words: str):
         self.program = executable(chosen)
         self.folder = tempfile.TemporaryDirectory(prefix="brushsvg")
-        shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
+        if drawing:
+            shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, command, DRAWING, *words],
+                [self.program, command, *([DRAWING] if drawing else []), *words],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,

@@ -112,7 +112,7 @@ def test_a_refusal_is_shown_and_nothing_written(plugin, tmp_path):
     assert told.startswith("brushsvg refuses:\np: width 30.000 mm is outside the range")
 
 
-@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes"])
+@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes", "chart"])
 def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, script):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
@@ -136,7 +136,7 @@ def programs(tmp_path, text):
         ("echo something else; exit 3", "is not the program brushsvg"),
     ],
 )
-@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes"])
+@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes", "chart"])
 def test_another_program_is_told(plugin, tmp_path, script, does, told):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
