@@ -118,7 +118,9 @@ def _parser() -> argparse.ArgumentParser:
         "check", help="read a program back, simulate it and hold it against a drawing"
     )
     check.add_argument("program", metavar="PROGRAM", help=_programs(plan=False))
-    check.add_argument("input", metavar="IN", nargs="?", help="the drawing that it should paint")
+    check.add_argument(
+        "input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint"
+    )
     check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
     _add_layout(check)
@@ -458,7 +460,7 @@ def _check_operands(args) -> None:
         "import_file": lambda: [(args.output, PREVIEWS)],
         "report_file": lambda: [],
     }[args.run]()
-    inputs = tuple(READERS) if args.run in ("import_file", "check_file") else DRAWINGS
+    inputs = tuple(READERS) if args.run == "import_file" else DRAWINGS
     read = (args.input, args.brush, getattr(args, "program", None))
     taken = [os.path.realpath(path) for path in read if path]
     for path, suffixes in [(args.input, inputs), *outputs]:
