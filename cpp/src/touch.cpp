@@ -18,6 +18,8 @@ constexpr double kLiftSlackMm = 0.05;
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
 /// An arc turns the heading by no less: smaller ones say no more than their chord.
 constexpr double kLeastArcRad = 1e-3;
+/// Poses nearer than this are one: the way between them is rounding, and points anywhere.
+constexpr double kSamePoseMm = 1e-6;
 
 /// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
 bool may_press_while_running(const Brush& brush, double depth) {
@@ -33,7 +35,12 @@ bool may_press_while_running(const Brush& brush, double depth) {
 
 void PoseList::add(const Vector2d& tcp_mm, double depth_mm) {
     const std::array<double, 3> pose{tcp_mm.x(), tcp_mm.y(), depth_mm > 0.0 ? -depth_mm : 0.0};
-    if (poses_.empty() || poses_.back() != pose) poses_.push_back(pose);
+    if (!poses_.empty()) {
+        const auto& last = poses_.back();
+        const double way = std::hypot(pose[0] - last[0], pose[1] - last[1], pose[2] - last[2]);
+        if (way < kSamePoseMm) return;
+    }
+    poses_.push_back(pose);
 }
 
 void PoseList::arc(std::int64_t first, const Vector2d& centre_mm, double angle_rad) {

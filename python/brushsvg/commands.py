@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import _core, convert, machine, report
+from . import _core, convert, machine, paint, report
+from . import cell_check as cell_checks
 from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -33,8 +34,9 @@ def convert_file(args) -> None:
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
     job = Job(args.z_offset, args.from_stroke)
+    notes = convert.notes(work)
     if args.order == "nearest":
-        work = convert.nearest_first(work)
+        work, notes = convert.nearest_first(work), (*notes, "order: nearest first")
     with about(args.input):
         if _suffix(args.output) != ".json":
             machine.post_for(_suffix(args.output), cell)
@@ -46,13 +48,15 @@ def convert_file(args) -> None:
             problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")
         if problems:
             raise RefusedError([(args.input, *problem) for problem in problems])
-        notes = convert.notes(work)
         program = machine.encode(_suffix(args.output), work.plan, work.brush, work.title, notes, cell, job)
         files = {args.output: program}
         if args.preview:
             files[args.preview] = convert.picture(_suffix(args.preview), work, marks)
         if args.report:
             files[args.report] = convert.report_text(_suffix(args.report), work, marks, cell)
+        too_long = paint.too_long(convert.in_loads(work, cell).plan, work.brush, cell)
+    if _suffix(args.output) != ".json":
+        warn(args.input, too_long)
     _warn_of_example(args, cell)
     _write(files)
 
@@ -127,38 +131,43 @@ def chart_file(args) -> None:
 
 
 def check_file(args) -> None:
-    from . import checking  # here and below: what only one command needs is loaded by it
+    from . import checking, comparing  # here and below: what only one command needs is loaded by it
     from .readback import read_program
+    from .readback.header import made as made_of
 
     _check_places(args.preview)
     with about(args.program):
         text = read_bytes(args.program).decode("latin-1")
-        made = checking.made(text)
+        made = made_of(text)
+        for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
+            if getattr(args, kind) is None and name not in names:
+                raise Error(
+                    f"the program names {kind} {name!r}, which does not come along: give --{kind} FILE"
+                )
         cell = find_cell(args.cell if args.cell is not None else made.cell)
         brush = _brush(args) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, _suffix(args.program), cell)
-    args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
-    work = _prepare(args, cell, brush) if args.input else None
-    cell = machine.as_exact_as(cell, made.tolerance_mm)
+    work = _as_made(args, made, cell, brush) if args.input else None
+    cell = machine.as_exact_as(cell, made.tolerance_mm or machine.DEFAULT_TOLERANCE_MM)
     with about(args.program):
         sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
         if sheet_mm is None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
-        again = checking.again(ran, read, brush, cell, z_offset_mm)
         problems = ran.problems
-        if again and not cell.servo:  # whose steps of height cannot be told from the plan's
-            changed = checking.differing_line(text, checking.rewritten(again, cell))
-            problems = problems + ([("", changed)] if changed else [])
+        again = comparing.again(ran, brush, cell, z_offset_mm)
+        changed = again and comparing.differing_line(text, again, cell)
+        problems = problems + ([("", changed)] if changed else [])
         strokes, drawn = None, None
         if work:
-            expected = convert.in_loads(work, cell).plan
-            strokes, unmatched = checking.matched(ran.plan, work.strokes, made.first_stroke > 1)
-            problems = problems + unmatched + checking.strayed(ran.plan, expected, cell)
-            problems = problems + checking.paint_problems(ran, expected, cell)
-            strokes = None if len(strokes) != len(ran.plan.passes) else strokes
-            drawn = work.strokes if made.first_stroke == 1 else None
+            loads = convert.in_loads(work, cell).plan
+            which, unlike = comparing.with_plan(ran, loads, cell)
+            problems = problems + unlike
+            if work.strokes is not None:
+                whole = convert.whole_strokes(work, loads)
+                strokes = None if None in which else [whole[k] for k in which]
+                drawn = work.strokes if ran.first_stroke == 1 else None
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
             outlined = convert.outlined(ran.marks, brush, stage)
@@ -171,6 +180,14 @@ def check_file(args) -> None:
     if not args.json:
         known = "" if work else "; without its drawing nobody can say whether it is the right one"
         tell(f"{args.program}: nothing forbids to run it{known}\n")
+
+
+def _as_made(args, made, cell: Cell, brush) -> convert.Work:
+    """The drawing or plan that a program should paint, prepared as its header says."""
+    if _suffix(args.input) != ".json":
+        args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
+    work = _prepare(args, cell, brush)
+    return convert.nearest_first(work) if made.nearest_first else work
 
 
 def predict_file(args) -> None:
@@ -291,16 +308,19 @@ def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
         if in_loads:
             work = convert.in_loads(work, cell)
+            too_long = paint.too_long(work.plan, work.brush, cell)
         marks = convert.predict(work, outlines, stage, whole)
         warnings = [(n.where, n.sentence) for n in work.notices]
         if work.plan.passes or not work.refused:
             warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+        warnings += too_long if in_loads else []
     warn(args.input, warnings)
     return work, marks, warnings
 
 
 def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
-    if _suffix(args.input) == ".json":
+    is_plan = _suffix(args.input) == ".json"
+    if is_plan:
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
@@ -315,7 +335,7 @@ def _options(args, cell: Cell, brush=None) -> convert.Options:
         layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
-        tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
+        tolerance_mm=(not is_plan and args.tolerance) or convert.Options.tolerance_mm,
         paths_as=args.paths_as,
         wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
@@ -491,6 +511,9 @@ def cell_check(args) -> None:
             "language",
             f"no program can be written in {cell.language!r} yet, only plans; known: {known}",
         )
+    if problems := cell_checks.out_of_reach(cell):
+        raise RefusedError([(args.input, *problem) for problem in problems])
+    warn(args.input, cell_checks.remarks(cell))
     tell(f"{args.input}: cell {cell.name} can be used\n")
 
 
@@ -522,5 +545,6 @@ def cell_new(args) -> None:
             else cell.paper
         )
         text = write_cell(replace(cell, name=name, paper=paper))
-        read_cell(text)
+        made = read_cell(text)
     _write({args.output: text})
+    warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))

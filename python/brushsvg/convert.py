@@ -19,6 +19,7 @@ from .errors import Error
 from .files import read_bytes
 from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
 from .paint import in_loads as in_loads_of
+from .paint import is_later_part
 from .reach import within_reach
 from .strokes import strokes as strokes_of
 from .svg_marks import marks_svg, misses_svg
@@ -188,6 +189,17 @@ def in_loads(work: Work, cell: Cell) -> Work:
     """The work as the cell paints it: strokes longer than a load of paint in parts. Fit to be looked at, not measured:
     strokes and misses are those of the whole drawing."""
     return replace(work, plan=in_loads_of(work.plan, work.brush, cell))
+
+
+def whole_strokes(work: Work, loads) -> list:
+    """For each pass of the work's plan in loads the stroke that it paints whole; None for the parts of one."""
+    whole, left = [], iter(work.strokes)
+    for a_pass in loads.passes:
+        if is_later_part(a_pass):
+            whole[-1:] = [None, None]
+        else:
+            whole.append(next(left))
+    return whole
 
 
 def nearest_first(work: Work) -> Work:

@@ -129,7 +129,9 @@ def _parser() -> argparse.ArgumentParser:
         "check", help="read a program back, simulate it and hold it against a drawing"
     )
     check.add_argument("program", metavar="PROGRAM", help=_programs(plan=False))
-    check.add_argument("input", metavar="IN", nargs="?", help="the drawing that it should paint")
+    check.add_argument(
+        "input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint"
+    )
     check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
     _add_layout(check)
@@ -515,7 +517,7 @@ def _check_operands(args) -> None:
         "import_file": lambda: [(args.output, PREVIEWS)],
         "report_file": lambda: [(args.preview, PREVIEWS)],
     }[args.run]()
-    inputs = tuple(READERS) if args.run in ("import_file", "check_file") else DRAWINGS
+    inputs = tuple(READERS) if args.run == "import_file" else DRAWINGS
     brushes = args.brush if isinstance(args.brush, list) else [args.brush]
     if args.run == "report_file":
         _check_report(args, drawing)
