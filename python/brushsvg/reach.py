@@ -39,6 +39,8 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
             raise Error(sentence, where=stroke.id, value=2 * worst, range=(2 * least, 2 * greatest))
         beside = _beside(stroke, greatest) if wide == "passes" and worst > greatest else []
         how = f"painted in {1 + len(beside)} passes" if beside else "painted at the nearest"
+        if wide == "clamp" and worst > greatest:
+            how += "; --wide passes fills it"
         count = (
             f"{off.sum()} of {len(off)} widths of its outline, up to"
             if len(off) > 1
