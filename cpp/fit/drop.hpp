@@ -43,6 +43,20 @@ inline void nearest_on_quarter(double a, double b, double px, double py, double&
     }
 }
 
+/// No more than the distance, and hardly less close to the edge: that from a straight line that touches the drop, on
+/// the flank or where the ray from the ellipse's centre to the point meets it. x, y: the point in the drop's frame.
+inline double least_distance(const Drop& drop, double x, double y) {
+    const double up = std::abs(y), ahead = x - drop.widest;
+    if (ahead <= 0.0) {
+        const double length = std::sqrt(drop.widest * drop.widest + drop.half * drop.half);
+        return std::max((up * drop.widest - x * drop.half) / length, up - drop.half);
+    }
+    // with (c, s) = (ahead / front, up / half) / rho the line is c X / front + s Y / half = 1
+    const double c = ahead / drop.front, s = up / drop.half, rho = std::sqrt(c * c + s * s);
+    const double nx = c / drop.front, ny = s / drop.half;
+    return (rho - 1.0) * rho / std::sqrt(nx * nx + ny * ny);
+}
+
 /// x, y: the point in the drop's frame.
 inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
     const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y);
@@ -94,6 +108,37 @@ inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
     out.nx = nx;
     out.ny = side * ny;
     return out;
+}
+
+/// Where a line runs inside a drop: (x, y) + t (dx, dy) for t in [from, to]; empty where to < from. In the drop's
+/// frame, which flank and front divide into a triangle and half an ellipse.
+struct Span {
+    double from, to;
+};
+inline Span span_inside(const Drop& drop, double x, double y, double dx, double dy) {
+    const auto cut = [](Span span, double value, double rate) {  // to where value + t rate >= 0
+        if (rate > 0.0)
+            span.from = std::max(span.from, -value / rate);
+        else if (rate < 0.0)
+            span.to = std::min(span.to, -value / rate);
+        else if (value < 0.0)
+            span.to = -INFINITY;
+        return span;
+    };
+    const Span all{-1e9, 1e9};
+    Span flank = cut(all, drop.widest - x, -dx);
+    flank = cut(flank, drop.half * x - drop.widest * y, drop.half * dx - drop.widest * dy);
+    flank = cut(flank, drop.half * x + drop.widest * y, drop.half * dx + drop.widest * dy);
+    const double px = (x - drop.widest) / drop.front, py = y / drop.half, vx = dx / drop.front, vy = dy / drop.half;
+    const double a = vx * vx + vy * vy, b = px * vx + py * vy, square = b * b - a * (px * px + py * py - 1.0);
+    Span front{0.0, -INFINITY};
+    if (square > 0.0) {
+        const double root = std::sqrt(square);
+        front = cut({(-b - root) / a, (-b + root) / a}, x - drop.widest, dx);
+    }
+    if (flank.to < flank.from) return front;
+    if (front.to < front.from) return flank;
+    return {std::min(flank.from, front.from), std::max(flank.to, front.to)};
 }
 
 }  // namespace brushsvg::fit

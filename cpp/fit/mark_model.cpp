@@ -20,6 +20,8 @@ constexpr double kAboveMm = 2.0;       // whence the brush comes: above any erro
 constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its derivatives
 constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
 constexpr double kLeastRingMm2 = 0.2;  // specks
+constexpr double kGapMm = 0.3;         // between footprints that count as side by side: more than they are apart
+constexpr double kGrazing = 0.3;       // cosine below which an edge that is met aslant says nothing more exact
 
 double at(const std::vector<double>& c, double d) {
     double y = 0.0;
@@ -71,10 +73,20 @@ void add_points(const Ring& ring, double spacing, std::vector<double>& xy) {
 
 }  // namespace
 
+/// Unit normals to the right of a closed row of points, from the neighbours of each.
+void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
+    const Index n = end - begin;
+    for (Index k = 0; k < n; ++k) {
+        const Eigen::RowVector2d along = points.row(begin + (k + 1) % n) - points.row(begin + (k + n - 1) % n);
+        const double length = std::max(1e-12, along.norm());
+        normals.row(begin + k) << along.y() / length, -along.x() / length;
+    }
+}
+
 /// The footprint at one instant.
 struct MarkModel::Instant {
-    Eigen::Vector2d contact, heading;
-    double depth, gap, half, half_slope, gap_slope;
+    Eigen::Vector2d contact, heading, middle;  ///< of a circle round the footprint
+    double radius, depth, gap, half, half_slope, gap_slope;
     double gone;  ///< no point of the footprint has moved farther than this since the first instant
     Drop drop;
     Eigen::Matrix<double, 2, kMostTerms + 1> contact_by, heading_by;
@@ -91,7 +103,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     centre_.setZero();
     Index poses = 0;
     for (const PaintedMark& mark : marks) {
-        Painted painted{from_above(mark.poses_mm), {}, {}, {0}};
+        Painted painted{from_above(mark.poses_mm), {}, {}, {}, {0}};
         painted.at = close_places(painted.poses_mm);
         std::vector<double> xy;
         for (const Ring& ring : mark.outline_mm) {
@@ -100,6 +112,9 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
             painted.rings.push_back(Index(xy.size() / 2));
         }
         painted.point_mm = Eigen::Map<const Ring>(xy.data(), Index(xy.size() / 2), 2);
+        painted.outward.resize(painted.point_mm.rows(), 2);
+        for (std::size_t r = 0; r + 1 < painted.rings.size(); ++r)
+            add_normals(painted.point_mm, painted.rings[r], painted.rings[r + 1], painted.outward);
         painted_.push_back(std::move(painted));
         centre_ += mark.poses_mm.leftCols<2>().colwise().sum().transpose();
         poses += mark.poses_mm.rows();
@@ -210,6 +225,9 @@ bool MarkModel::instants(const Painted& mark, const VectorXd& shared, std::vecto
         corners << tip, widest + side, widest - side, front + side, front - side;
         now.gone = i ? out[i - 1].gone + (corners - before).colwise().norm().maxCoeff() : 0.0;
         before = corners;
+        const double to_middle = 0.5 * (now.drop.widest + now.drop.front);
+        now.middle = tip + to_middle * now.heading;
+        now.radius = std::max(to_middle, std::hypot(now.drop.widest - to_middle, now.half));
     }
     return !out.empty();
 }
@@ -225,6 +243,37 @@ Ring MarkModel::placed(Index mark, const double* shared, const double* displacem
         out.row(k) = (centre_ + back * seen - Eigen::Vector2d(displacement[0], displacement[1])).transpose();
     }
     return out;
+}
+
+Eigen::Vector2d MarkModel::in_frame_of(const Instant& now, const Eigen::Vector2d& x) {
+    const Eigen::Vector2d from_tip = x - now.contact + now.gap * now.heading;
+    return {from_tip.dot(now.heading), now.heading.x() * from_tip.y() - now.heading.y() * from_tip.x()};
+}
+
+double MarkModel::way_out(const std::vector<Instant>& rows, const Eigen::Vector2d& x, const Eigen::Vector2d& out,
+                          std::size_t& last) {
+    struct Part {
+        Span span;
+        std::size_t row;
+    };
+    thread_local std::vector<Part> parts;
+    parts.clear();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Eigen::Vector2d to = rows[i].middle - x;
+        if (std::abs(out.x() * to.y() - out.y() * to.x()) >= rows[i].radius || out.dot(to) <= -rows[i].radius) continue;
+        const Eigen::Vector2d at = in_frame_of(rows[i], x), u = rows[i].heading;
+        const Span span = span_inside(rows[i].drop, at.x(), at.y(), out.dot(u), u.x() * out.y() - u.y() * out.x());
+        if (span.to >= span.from && span.to >= 0.0) parts.push_back({span, i});
+    }
+    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.span.from < b.span.from; });
+    double far = 0.0;
+    for (const Part& part : parts) {
+        if (part.span.from > far + kGapMm) break;
+        if (part.span.to <= far) continue;
+        far = part.span.to;
+        last = part.row;
+    }
+    return far;
 }
 
 bool MarkModel::distances(Index mark, const double* shared_data, const double* displacement, VectorXd& distance_mm,
@@ -243,22 +292,22 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     std::size_t nearest = 0;
     for (Index k = 0; k < points.rows(); ++k) {
         const Eigen::Vector2d x = points.row(k).transpose();
-        const auto edge_of = [&](const Instant& now) {
-            const Eigen::Vector2d from_tip = x - now.contact + now.gap * now.heading;
-            return nearest_edge(now.drop, from_tip.dot(now.heading),
-                                now.heading.x() * from_tip.y() - now.heading.y() * from_tip.x());
-        };
         // From the footprint that was nearest to the point before. Between instants a distance changes by no more than
         // the footprint moves: where it is so much too long, so many instants are passed over.
         const std::size_t begin = nearest;
-        NearestEdge best = edge_of(rows[begin]);
-        const auto look = [&](std::size_t i, double& reaches) {
-            const NearestEdge edge = edge_of(rows[i]);
-            if (edge.distance < best.distance) {
-                best = edge;
-                nearest = i;
+        const Eigen::Vector2d first = in_frame_of(rows[begin], x);
+        NearestEdge best = nearest_edge(rows[begin].drop, first.x(), first.y());
+        const auto look = [&](std::size_t i, double& spare) {
+            const Eigen::Vector2d here = in_frame_of(rows[i], x);
+            const double least = least_distance(rows[i].drop, here.x(), here.y());
+            if (least < best.distance) {
+                const NearestEdge edge = nearest_edge(rows[i].drop, here.x(), here.y());
+                if (edge.distance < best.distance) {
+                    best = edge;
+                    nearest = i;
+                }
             }
-            reaches = edge.distance - best.distance;
+            spare = least - best.distance;
         };
         double spare = 0.0;
         for (std::size_t i = begin + 1, from = begin; i < rows.size(); ++i) {
@@ -273,6 +322,17 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
             from = i;
         }
         distance_mm[k] = best.distance;
+        double aslant = 1.0;  // cosine between the painted edge's normal and the predicted one's
+        if (best.distance < 0.0) {
+            const Eigen::Vector2d out = back * painted.outward.row(k).transpose();
+            const double far = way_out(rows, x, out, nearest);
+            const Instant& last = rows[nearest];
+            const Eigen::Vector2d edge = in_frame_of(last, x + far * out);
+            best = nearest_edge(last.drop, edge.x(), edge.y());
+            distance_mm[k] = -far;
+            aslant = std::max(kGrazing, best.nx * out.dot(last.heading) +
+                                            best.ny * (last.heading.x() * out.y() - last.heading.y() * out.x()));
+        }
         if (!by_shared) continue;
         const Instant& now = rows[nearest];
         const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
@@ -303,7 +363,8 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
         out.segment<2>(layout_.shift()) = -n * back;
         const Eigen::Vector2d seen = painted.point_mm.row(k).transpose() - shared.segment<2>(layout_.shift()) - centre_;
         out[layout_.turn()] = n * back_by_turn * seen;
-        if (by_displacement) by_displacement->row(k) = -n;
+        if (by_displacement) by_displacement->row(k) = -n / aslant;
+        out /= aslant;
     }
     return true;
 }

@@ -46,8 +46,10 @@ class MarkModel {
     /// Least value of each shared unknown; the lag stays above 0, the half width rises.
     VectorXd least() const;
 
-    /// Distance [mm] of every point of a mark from the predicted edge, negative inside; derivatives by the shared
-    /// unknowns and by the mark's displacement where asked for. False where there is no prediction.
+    /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
+    /// mark's displacement where asked for. Outside it is that from the nearest footprint. Inside it is negative: how
+    /// far it is out of all footprints along the painted edge's normal, and not how deep it lies in one of them, of
+    /// which slim footprints would make little. False where there is no prediction.
     bool distances(Index mark, const double* shared, const double* displacement, VectorXd& distance_mm,
                    RowMajor* by_shared, RowMajor* by_displacement) const;
     /// The points of a mark in the frame of the plan.
@@ -57,10 +59,14 @@ class MarkModel {
     struct Painted {
         Poses poses_mm;  ///< from above the paper and back there
         std::vector<double> at;
-        Ring point_mm;
+        Ring point_mm, outward;    ///< of the paint, unit vectors
         std::vector<Index> rings;  ///< where each begins, and the end
     };
     struct Instant;
+    static Eigen::Vector2d in_frame_of(const Instant& now, const Eigen::Vector2d& x);
+    /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
+    static double way_out(const std::vector<Instant>& rows, const Eigen::Vector2d& x, const Eigen::Vector2d& out,
+                          std::size_t& last);
     bool instants(const Painted& mark, const VectorXd& shared, std::vector<Instant>& out) const;
 
     std::vector<Painted> painted_;

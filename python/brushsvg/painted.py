@@ -115,7 +115,7 @@ def _ring(points, where: str) -> np.ndarray:
 
 def _oriented(rings: list[np.ndarray]) -> list[np.ndarray]:
     """The shape they fill, outer rings counter-clockwise, holes clockwise."""
-    return [np.array(ring) for ring in _core.fill(rings, _core.FillRule.evenodd)] or rings
+    return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
 
 
 def _some(names: list[str]) -> str:

@@ -28,11 +28,13 @@ TEST_CASE("the nearest place on a drop's edge is that of its densely sampled out
             for (const auto& p : edge) least = std::min(least, (p - Eigen::Vector2d(x, std::abs(y))).norm());
             const NearestEdge found = nearest_edge(drop, x, y);
             CHECK(std::abs(found.distance) == doctest::Approx(least).epsilon(2e-3));
+            CHECK(least_distance(drop, x, y) <= found.distance + 1e-9);
             CHECK(found.x == doctest::Approx(found.by_widest * drop.widest + found.by_front * drop.front));
             CHECK(found.y == doctest::Approx(found.by_half * drop.half));
             // a step along the normal leads straight away
             const NearestEdge out = nearest_edge(drop, found.x + 0.01 * found.nx, found.y + 0.01 * found.ny);
             CHECK(out.distance == doctest::Approx(0.01).epsilon(0.05));
+            CHECK(least_distance(drop, found.x, found.y) > -0.02);
         }
     }
 }

@@ -112,7 +112,7 @@ def paint(rng, brush, strokes, faults, vertices=33):
     height = rng.normal(0, faults.height)
     plans = np.array([_stepped(poses, height) for _, poses in strokes])
     laws = [brush.law("lag")] * len(strokes)
-    contacts = oracle.step_all(plans, laws, 12, "rope")
+    contacts = oracle.step_all(plans, laws, 20, "rope")
     shift, turn = rng.normal(0, faults.placement, 2), rng.normal(0, faults.turn)
     centre = np.mean(np.concatenate([poses[:, :2] for _, poses in strokes]), axis=0)
     sheet = Sheet(height=height)
@@ -133,7 +133,7 @@ def paint(rng, brush, strokes, faults, vertices=33):
 
 def _stepped(poses, height):
     """POSES poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
-    poses = np.vstack([[*poses[:1], 0, 0, 0], poses, poses[-1:]])
+    poses = np.vstack([poses[:1], poses, poses[-1:]])
     poses[0, 2] = poses[-1, 2] = 1.0
     poses[:, 2] -= height
     size = np.hypot(*np.diff(poses[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(poses[:, 2]))
