@@ -12,8 +12,9 @@ import shapely
 core = pytest.importorskip("brushsvg._core")
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-STEP_MM = 0.05
-OUTLINE_EVERY = 3  # a hull of neighbours 0.15 mm apart leaves 1e-3 mm out on the tightest bends
+STEP_MM = 0.08
+PARTS = 45  # of a move at least: pressing in place has no length
+OUTLINE_EVERY = 3  # a hull of neighbours 0.24 mm apart leaves 1e-3 mm out on the tightest bends
 
 
 def law_of(value):
@@ -27,7 +28,7 @@ def stepped(plan, brush):
         [(shape["depth_mm"], np.array(shape["outline_mm"])) for shape in brush["footprints"].get(kind, [])]
         for kind in ("dragged", "pressed")
     ]
-    passes = [oracle.subdivide(each["poses_mm"], 4, STEP_MM) for each in plan["passes"]]
+    passes = [oracle.subdivide(each["poses_mm"], PARTS, STEP_MM) for each in plan["passes"]]
     longest = max(map(len, passes))
     padded = np.stack([np.vstack([p, np.repeat(p[-1:], longest - len(p), axis=0)]) for p in passes])
     contacts = oracle.step_all(padded, [law] * len(passes), 2)
@@ -124,7 +125,7 @@ def random_stroke(rng, name):
     )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_overlap_of_random_strokes(seed):
     rng = np.random.default_rng(seed)
-    check_figures([random_stroke(rng, f"s{k}") for k in range(5)], "closed")
+    check_figures([random_stroke(rng, f"s{k}") for k in range(4)], "closed")
