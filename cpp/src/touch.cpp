@@ -96,7 +96,10 @@ void lift(const Stance& last, const Brush& brush, PoseList& out) {
             slope = 0.5 * (least + most);
             to = k;
         }
-        if (to == from) slope = (reach(depth_at(++to)) - at) / (depth_at(from) - depth_at(to));
+        if (to == from) {
+            ++to;
+            slope = (reach(depth_at(to)) - at) / (depth_at(from) - depth_at(to));
+        }
         at += slope * (depth_at(from) - depth_at(to));
         add(at, depth_at(to));
         from = to;

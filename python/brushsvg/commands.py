@@ -101,6 +101,7 @@ def chart_file(args) -> None:
     from .chart import chart
     from .chart_json import write_chart
     from .chart_page import chart_page
+    from .chart_report import chart_report
 
     _check_places(args.output, args.page, args.chart)
     brush = _brush(args) or find_brush(convert.DEFAULT_BRUSH)
@@ -123,11 +124,7 @@ def chart_file(args) -> None:
         files[args.chart] = write_chart(made).encode()
     _warn_of_example(args, cell)
     _write(files)
-    depths = sorted({stroke.depth_mm for stroke in made.strokes if stroke.kind == "angular"})
-    count, width, height = len(made.strokes), *args.sheet
-    tell(
-        f"{count} strokes on {width:g} x {height:g} mm, depths {', '.join(f'{depth:g}' for depth in depths)} mm\n"
-    )
+    tell(chart_report(made, brush, args.noise))
 
 
 def check_file(args) -> None:

@@ -172,6 +172,13 @@ def _parser() -> argparse.ArgumentParser:
         "--page", metavar="FILE", help="also write the page to print, markers and labels (.svg)"
     )
     chart.add_argument("--chart", metavar="FILE", help="also write what the painted chart is read by (.json)")
+    chart.add_argument(
+        "--noise",
+        metavar="MM",
+        type=_noise,
+        default=0.1,
+        help="how exactly an edge will be seen, for the intervals to expect; default: 0.1",
+    )
     _add_z_offset(chart)
     chart.set_defaults(run="chart_file", parser=chart)
 
@@ -342,6 +349,10 @@ def _size(text: str) -> tuple[float, float]:
     from .units import size_mm
 
     return _read(size_mm, text)
+
+
+def _noise(text: str) -> float:
+    return _length(text, 0.001, 10.0)
 
 
 def _sheet(text: str) -> tuple[float, float]:

@@ -198,6 +198,20 @@ def test_a_damaged_file_names_the_key(change, where, said):
         read_chart(b"{")
 
 
+def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
+    """A larger sheet makes surer, uneven edges less sure."""
+
+    def lag_bands(*flags):
+        assert main(["chart", str(tmp_path / "p.json"), *flags]) == 0
+        told = capsys.readouterr().out
+        return np.array([float(half) for half in re.findall(r"(?m)^ +[\d.]+ +[\d.]+ \+- ([\d.]+)", told)])
+
+    a5, a4 = lag_bands("--sheet", "a5"), lag_bands("--sheet", "a4")
+    rough = lag_bands("--sheet", "a5", "--noise", "0.3")
+    assert len(a5) == 4 and a4.mean() < a5.mean() < 0.2
+    assert rough.mean() > 1.5 * a5.mean()
+
+
 def test_wrong_usage(tmp_path, capsys):
     out = str(tmp_path / "plan.json")
     for flags, said in (
