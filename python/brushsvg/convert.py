@@ -23,6 +23,7 @@ from .reach import within_reach
 from .strokes import strokes as strokes_of
 from .svg_marks import marks_svg, misses_svg
 from .timeline import timeline
+from .uncertainty import uncertainty
 
 DEFAULT_BRUSH = "round-6"
 SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
@@ -307,19 +308,20 @@ def notes(work: Work) -> tuple[str, ...]:
     return (made, count) if work.strokes is not None else (count,)
 
 
-def picture(suffix: str, work: Work, marks) -> bytes:
-    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines."""
+def picture(suffix: str, work: Work, marks, band=None) -> bytes:
+    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
+    uncertainty.Band to draw around them."""
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"
-        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made)
+        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made, band)
         return text.encode()
     from . import render  # brings OpenCV, which the others do not need
 
-    return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
+    return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band)
 
 
 def misses_picture(suffix: str, work: Work, marks) -> bytes:
@@ -396,6 +398,7 @@ def report_text(
         time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
         warnings=tuple(known),
         refused=tuple((notice.where, notice.sentence) for notice in work.refused),
+        sure=uncertainty(work.plan, work.brush, marks),
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from .errors import Error
-from .svg_marks import BOTH, MISSES, MISSING, SPILT, known_colour
+from .svg_marks import BAND, BOTH, MISSES, MISSING, SPILT, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -25,8 +25,9 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -> bytes:
-    """The sheet with its paint, anti-aliased, colours over each other in painting order."""
+def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None) -> bytes:
+    """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
+    with a legend."""
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
     image = None
@@ -42,7 +43,22 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -
         first = last
     if image is None:
         raise Error("there is nothing to draw")
+    if band is not None:
+        _draw_band(image, band, window, px_per_mm)
     return _png(image)
+
+
+def _draw_band(image, band, window, px_per_mm: float) -> None:
+    size = max(12, round(min(image.shape[:2]) / 40))
+    left, low = size, image.shape[0] - size
+    for rings in filter(None, band.rings):
+        _lay(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
+    if any(band.rings):
+        box = np.zeros(image.shape[:2])
+        box[low - size : low, left : left + 2 * size] = 0.45
+        _lay(image, box, BAND)
+        left += round(2.5 * size)
+    _write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)
 
 
 def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core, score
 from .reasons import reason
+from .uncertainty import Uncertainty
 
 RING_TOLERANCE_MM = 0.01
 LEAST_SQUARE_MM = 0.5  # in which paint and drawing differ most; half a width of a wide stroke
@@ -68,6 +69,7 @@ class Report:
     time_s: float
     warnings: tuple[tuple[str, str], ...] = ()
     refused: tuple[tuple[str, str], ...] = ()  # strokes that are not among those of the report
+    sure: Uncertainty | None = None  # None: nothing is known of how sure the brush is
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
 
@@ -178,8 +180,12 @@ def to_json(report: Report) -> str:
             return [rounded(each) for each in value]
         return round(value, 6) if isinstance(value, float) else value
 
-    def figures(row: Figures) -> dict:
-        return rounded(asdict(row))
+    def figures(row: Figures, sure) -> dict:
+        known = {} if sure is None else {"uncertainty_95": rounded(asdict(sure))}
+        return rounded(asdict(row)) | known
+
+    sure = report.sure
+    sures = [None] * len(report.strokes) if sure is None else sure.strokes
 
     return (
         json.dumps(
@@ -191,8 +197,9 @@ def to_json(report: Report) -> str:
                 "compensation": report.compensation,
                 "tolerance_mm": report.tolerance_mm,
                 "time_s": round(report.time_s, 3),
-                "total": figures(report.total),
-                "strokes": [figures(row) for row in report.strokes],
+                "uncertainty_from": None if sure is None else sure.source,
+                "total": figures(report.total, None if sure is None else sure.total),
+                "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
                 "warnings": [{"where": where, "sentence": sentence} for where, sentence in report.warnings],
                 "refused": [{"where": where, "sentence": sentence} for where, sentence in report.refused],
                 "groups": [
@@ -221,6 +228,7 @@ def to_text(report: Report) -> str:
         ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
+        *_sure_columns(report.sure),
     ]
     notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
     table = _table(columns, notes)
@@ -237,6 +245,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
         "of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        *_sure_words(report.sure),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.groups:
@@ -256,6 +265,26 @@ def to_text(report: Report) -> str:
         lines += ["", f"Warnings: {len(report.warnings)}"]
         lines += ["  " + ": ".join(filter(None, warning)) for warning in report.warnings]
     return "\n".join([*lines, ""])
+
+
+def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
+    if sure is None:
+        return []
+    rows = [*sure.strokes, sure.total]
+    return [
+        ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
+        ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
+        ("width +-", [_figure(row.width_mm, 2) for row in rows]),
+    ]
+
+
+def _sure_words(sure: Uncertainty | None) -> list[str]:
+    if sure is None:
+        return ["How far the paint may lie off nobody can say: the brush has neither covariance nor RMSE."]
+    return [
+        "+-: how far the mark's middle may lie off across, its tip along the line, and its width;",
+        f"{sure.words}.",
+    ]
 
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:

@@ -7,13 +7,22 @@ from html import escape
 
 import numpy as np
 
+BAND = "#e0862b"  # where an edge lies with 95 %
+
 
 def marks_svg(
-    marks, sheet_mm: tuple[float, float], colours: list[str], title: str = "", misses=(), made: str = ""
+    marks,
+    sheet_mm: tuple[float, float],
+    colours: list[str],
+    title: str = "",
+    misses=(),
+    made: str = "",
+    band=None,
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; misses: of the passes, if known; made: how, in words.
+    marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
+    legend.
     """
     width, height = sheet_mm
     lines = [
@@ -28,7 +37,24 @@ def marks_svg(
             lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
+    if band is not None:
+        lines += _band(band, width, height)
     return "\n".join([*lines, "</svg>", ""])
+
+
+def _band(band, width: float, height: float) -> list[str]:
+    size = round(min(width, height) / 40, 3)
+    lines = []
+    for rings in filter(None, band.rings):
+        data = " ".join(_path_data(ring, height) for ring in rings)
+        lines.append(f'<path class="band" fill="{BAND}" fill-opacity="0.45" d="{data}"/>')
+    left, low = size, height - size
+    if lines:
+        box = f'x="{left:g}" y="{low - size:g}" width="{2 * size:g}" height="{size:g}"'
+        lines.append(f'<rect {box} fill="{BAND}" fill-opacity="0.45"/>')
+        left += 2.5 * size
+    text = f'x="{left:g}" y="{low - 0.15 * size:g}" font-family="sans-serif" font-size="{size:g}"'
+    return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
 
 
 BOTH, MISSING, SPILT = "#b4b8c0", "#d1431f", "#2f6fd0"
