@@ -226,7 +226,12 @@ def picture(strokes, predicted, shifts, score, path: Path) -> None:
         )
         for ring in edge:
             cv2.polylines(
-                image, [np.round(np.add(ring, (dx, dy))).astype(np.int32)], True, (40, 40, 220), 1, cv2.LINE_AA
+                image,
+                [np.round(np.add(ring, (dx, dy))).astype(np.int32)],
+                True,
+                (40, 40, 220),
+                1,
+                cv2.LINE_AA,
             )
         left, bottom, _, height = stroke.window
         way = (
