@@ -321,7 +321,7 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         bool turns = false;
         Pass trial = pass;
         closed_form(stroke, brush, line, step_tolerance, turns).into(trial);
-        if (options.few_poses && thin_out(trial, 0.85, 0.97 * options.tolerance_mm, stroke, brush, options.tolerance_mm,
+        if (options.few_poses && thin_out(trial, 0.8, 0.9 * options.tolerance_mm, stroke, brush, options.tolerance_mm,
                                           result.pass, result.miss)) {
             result.miss.has_turn_in_place = turns;
             return result;

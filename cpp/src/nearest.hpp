@@ -7,6 +7,21 @@
 
 namespace brushsvg {
 
+/// Visits the points of rows `begin` to `end` of a polyline and points between them, so that no two are farther apart
+/// than the step: what curves away between two rows must not be missed.
+template <class Points, class Visit>
+void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step_mm, Visit&& visit) {
+    for (Eigen::Index i = begin; i < end; ++i) {
+        const Eigen::Vector2d here = rows.row(i).transpose();
+        if (i > begin) {
+            const Eigen::Vector2d before = rows.row(i - 1).transpose();
+            const int n = int(std::min(1e4, std::ceil((here - before).norm() / step_mm)));
+            for (int k = 1; k < n; ++k) visit(Eigen::Vector2d(before + double(k) / n * (here - before)));
+        }
+        visit(here);
+    }
+}
+
 /// Distance to a polyline (columns x, y and any others), block by block; successive queries lie close to each other.
 template <class Polyline>
 class Nearest {

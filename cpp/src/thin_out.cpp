@@ -248,9 +248,13 @@ Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tol
 double apart(const PassMarks& marks, const Brush& brush, const Ring& middle) {
     const Ring widest = widest_points(marks, brush);
     Nearest<Ring> nearest(middle);
+    const Index n = Index(marks.taut.size());
+    Index begin = 0, end = n;
+    while (begin < end && !marks.taut[begin]) ++begin;
+    while (end > begin && !marks.taut[end - 1]) --end;
     double largest = 0.0;
-    for (std::size_t i = 0; i < marks.taut.size(); ++i)
-        if (marks.taut[i]) largest = std::max(largest, nearest.distance(widest.row(Index(i)).transpose()));
+    along(widest, begin, end, 0.5,
+          [&](const Vector2d& point) { largest = std::max(largest, nearest.distance(point)); });
     return largest;
 }
 
