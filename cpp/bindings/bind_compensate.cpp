@@ -102,7 +102,7 @@ too sharp for the lever.)")
             out.plan.sheet_mm = sheet_mm;
             if (!brush.width_follows_depth())
                 out.warnings.emplace_back("", "brush " + brush.name + " has one width: drawn widths are ignored");
-            constexpr std::size_t at_once = 16;
+            constexpr std::size_t at_once = 8;  // or Ctrl-C waits too long
             const std::size_t chunks = (strokes.size() + at_once - 1) / at_once;
             const auto in_strokes = progress.is_none() ? progress : py::cpp_function([&](std::size_t now, std::size_t) {
                 progress(std::min(strokes.size(), now * at_once), strokes.size());

@@ -53,6 +53,11 @@ void splines(double t, int n, Eigen::Ref<Eigen::RowVectorXd> out) {
 
 double unwrapped(double angle, double near) { return angle - 2.0 * kPi * std::round((angle - near) / (2.0 * kPi)); }
 
+PatchSample between(const PatchSample& a, const PatchSample& b, double c) {
+    return {a.contact_mm + c * (b.contact_mm - a.contact_mm), a.heading_rad + c * (b.heading_rad - a.heading_rad),
+            a.depth_mm + c * (b.depth_mm - a.depth_mm)};
+}
+
 Vector2d direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
 }  // namespace
@@ -121,6 +126,8 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
     const PassMarks marks = simulate(pass, brush, 0.02, false);
     std::size_t begin = 0, end = marks.taut.size();
     while (begin < end && !marks.taut[begin]) ++begin;
+    // the landing ends at a pose where the brush is about to be taut
+    if (begin > 0 && begin < end && marks.pose[begin - 1] == std::floor(marks.pose[begin - 1])) --begin;
     while (end > begin && !marks.taut[end - 1]) --end;
     PatchSamples rows;
     std::vector<double> way;
@@ -149,15 +156,28 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
         const double at = way.back() * double(i) / double(n - 1);
         while (j + 2 < way.size() && way[j + 1] < at) ++j;
         const double c = std::clamp((at - way[j]) / (way[j + 1] - way[j]), 0.0, 1.0);
-        const PatchSample &a = rows[j], &b = rows[j + 1];
-        out.push_back({a.contact_mm + c * (b.contact_mm - a.contact_mm),
-                       a.heading_rad + c * (b.heading_rad - a.heading_rad),
-                       a.depth_mm + c * (b.depth_mm - a.depth_mm)});
+        out.push_back(between(rows[j], rows[j + 1], c));
     }
     return out;
 }
 
-Poses poses_along(const PatchSamples& samples, const Brush& brush, double tolerance_mm) {
+namespace {
+
+/// The way with as many samples more as turns ask for: the heading between poses is never far from what it says.
+PatchSamples turns_in_steps(const PatchSamples& samples) {
+    PatchSamples out{samples[0]};
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        const PatchSample &a = samples[i - 1], &b = samples[i];
+        const int n = std::max(1, int(std::ceil(std::abs(b.heading_rad - a.heading_rad) / kTurnStepRad)));
+        for (int k = 1; k <= n; ++k) out.push_back(between(a, b, double(k) / n));
+    }
+    return out;
+}
+
+}  // namespace
+
+Poses poses_along(const PatchSamples& coarse, const Brush& brush, double tolerance_mm) {
+    const PatchSamples samples = turns_in_steps(coarse);
     const auto tcp = [&](const PatchSample& s) {
         return Vector2d(s.contact_mm + brush.lag(s.depth_mm) * direction(s.heading_rad));
     };

@@ -46,7 +46,7 @@ class PatchPath {
 /// Length of the patch's way [mm].
 double way_of(const PatchSamples& samples);
 
-/// The way of the patch that a pass draws, from the first taut row to the last, evenly resampled.
+/// The way of the patch that a pass draws, from where the brush is taut to where it was so last, evenly resampled.
 PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, std::size_t most);
 
 /// The pass that draws it: landing, q = P + r(depth) u, lift. Chords stay within the tolerance.

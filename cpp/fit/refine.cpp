@@ -26,8 +26,8 @@ constexpr int kMostControls = 60;
 constexpr double kLeastDepthMm = 0.2;
 // Reach of the TCP beyond the sheet, that of a machine which says nothing else.
 constexpr double kBeyondSheetMm = 30.0;
-// Pixels judge by themselves where marks differ by more than they err (0.0006 at 15 pixels to a half width).
-constexpr double kSurely = 0.003;
+// Pixels judge by themselves where marks differ by more than they err (0.0017 on a taper).
+constexpr double kSurely = 0.005;
 constexpr double kPixelsToHalfWidth = 15.0, kLeastPixels = 8.0, kMostPixels = 2000.0;
 constexpr double kRingTolerance = 0.01;  // as in the report
 
