@@ -64,11 +64,13 @@ Root root(double d, double c) {
 class Outlines : public ceres::CostFunction {
  public:
     Outlines(const PatchPath& path, const Brush& brush, const Rings& wanted, double width)
-        : path_(path), edge_(brush, kCornersOff * width), squared_(kSquared * width) {
+        : path_(path), edge_(brush, kCornersOff * width), wanted_(wanted), squared_(kSquared * width) {
+        edge_.place(path.base());
+        corners_ = edge_.footprint(0).size();
         places_ = places_along(wanted, kSpacing * width);
         near_.assign(places_.at.size(), 0);
         const int k = path.controls();
-        set_num_residuals(int(places_.at.size()) + 3 * (k - 2) + 2 * k);
+        set_num_residuals(int(places_.at.size()) + 2 * int(corners_) + 3 * (k - 2) + 2 * k);
         mutable_parameter_block_sizes()->push_back(path.unknowns());
     }
 
@@ -79,7 +81,8 @@ class Outlines : public ceres::CostFunction {
         Eigen::Map<Rows> out(derive ? jacobians[0] : nullptr, derive ? num_residuals() : 0, n);
         if (derive) out.setZero();
         PatchPath::Slopes slopes;
-        edge_.place(derive ? path_.at(x, slopes) : path_.at(x));
+        const PatchSamples samples = derive ? path_.at(x, slopes) : path_.at(x);
+        edge_.place(samples);
         const double weight = std::sqrt(places_.spacing_mm);
         int row = 0;
         for (std::size_t j = 0; j < places_.at.size(); ++j, ++row) {
@@ -87,13 +90,23 @@ class Outlines : public ceres::CostFunction {
             near_[j] = found.sample;
             const Root f = root(found.distance_mm, squared_);
             residuals[row] = weight * f.value;
-            if (!derive) continue;
-            const EdgeSlope d = edge_.slope(places_.at[j], found);
-            const Index i = Index(found.sample);
-            out.row(row) = weight * f.slope *
-                           (d.x * slopes.x.row(i) + d.y * slopes.y.row(i) + d.heading * slopes.heading.row(i) +
-                            d.depth * slopes.depth.row(i));
+            if (derive)
+                out.row(row) = weight * f.slope * chained(edge_.slope(places_.at[j], found), found.sample, slopes);
         }
+        // the wanted outline sees no tail that runs far out of it: the first and the last footprint must not
+        for (const std::size_t i : {std::size_t(0), samples.size() - 1})
+            for (Index k = 0; k < corners_; ++k, ++row) {
+                EdgePoint corner;
+                corner.sample = i;
+                corner.edge = k;
+                const Vector2d p = edge_.footprint(i).place(k, 0.0);
+                const EdgePoint found = wanted_.nearest(p);
+                const Root f = root(std::max(0.0, found.distance_mm), squared_);
+                residuals[row] = weight * f.value;
+                if (derive && found.distance_mm > 0.0)
+                    out.row(row) =
+                        weight * f.slope * chained(edge_.moves(corner, wanted_.outwards(p, found)), i, slopes);
+            }
         const int k = path_.controls(), turns = 2, longer = 2 + k;
         for (int first : {turns, longer, 2 + 2 * k})
             for (int at = first + 1; at + 1 < first + k; ++at, ++row) {
@@ -109,9 +122,17 @@ class Outlines : public ceres::CostFunction {
     }
 
  private:
+    /// By the unknowns, for one of the samples.
+    static Eigen::RowVectorXd chained(const EdgeSlope& d, std::size_t sample, const PatchPath::Slopes& by) {
+        const Index i = Index(sample);
+        return d.x * by.x.row(i) + d.y * by.y.row(i) + d.heading * by.heading.row(i) + d.depth * by.depth.row(i);
+    }
+
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const PatchPath& path_;
     mutable PaintedEdge edge_;
+    Edges wanted_;
+    Index corners_;
     double squared_;
     Places places_;
     mutable std::vector<std::size_t> near_;  ///< whose footprint was nearest the last time
@@ -119,8 +140,8 @@ class Outlines : public ceres::CostFunction {
 
 }  // namespace
 
-VectorXd fit_outline(const PatchPath& path, const Brush& brush, const Rings& wanted, double width, int iterations) {
-    VectorXd x = VectorXd::Zero(path.unknowns());
+VectorXd fit_outline(const PatchPath& path, const Brush& brush, const Rings& wanted, double width, int iterations,
+                     VectorXd x) {
     ceres::Problem problem;
     problem.AddResidualBlock(new Outlines(path, brush, wanted, width), nullptr, x.data());
     ceres::Solver::Options options;

@@ -39,6 +39,52 @@ Ring outline_about_contact(const FootprintTable& table, const Brush& brush, doub
 
 }  // namespace
 
+Edges::Edges(const Rings& rings) {
+    Index n = 0;
+    for (const Ring& ring : rings) n += ring.rows();
+    for (auto* column : {&ax_, &ay_, &bx_, &by_}) column->resize(n);
+    Index first = 0;
+    for (const Ring& ring : rings) {
+        const Index rows = ring.rows();
+        for (Index k = 0; k < rows; ++k) {
+            const Index next = k + 1 == rows ? 0 : k + 1;
+            ax_[first + k] = ring(k, 0);
+            ay_[first + k] = ring(k, 1);
+            bx_[first + k] = ring(next, 0) - ring(k, 0);
+            by_[first + k] = ring(next, 1) - ring(k, 1);
+        }
+        first += rows;
+    }
+    over_length2_ = (bx_.square() + by_.square()).max(1e-18).inverse();
+    x_per_y_ = (by_.abs() > 1e-12).select(bx_ / by_, 0.0);
+    centre_ = {ax_.mean(), ay_.mean()};
+    radius_ = std::sqrt(((ax_ - centre_.x()).square() + (ay_ - centre_.y()).square()).maxCoeff());
+}
+
+EdgePoint Edges::nearest(const Vector2d& p) const {
+    EdgePoint found;
+    double best = 1e300;
+    int crossed = 0;
+    for (Index k = 0; k < ax_.size(); ++k) {
+        const double px = p.x() - ax_[k], py = p.y() - ay_[k], bx = bx_[k], by = by_[k];
+        const double t = std::min(1.0, std::max(0.0, (px * bx + py * by) * over_length2_[k]));
+        const double dx = px - t * bx, dy = py - t * by, d2 = dx * dx + dy * dy;
+        const bool better = d2 < best;
+        best = better ? d2 : best;
+        found.t = better ? t : found.t;
+        found.edge = better ? k : found.edge;
+        crossed += int((py < 0.0) != (py < by)) & int(px < x_per_y_[k] * py);
+    }
+    found.distance_mm = crossed % 2 ? -std::sqrt(best) : std::sqrt(best);
+    return found;
+}
+
+Vector2d Edges::outwards(const Vector2d& p, const EdgePoint& found) const {
+    const Vector2d away = found.distance_mm < 0.0 ? place(found.edge, found.t) - p : p - place(found.edge, found.t);
+    if (away.norm() > 1e-6) return away.normalized();
+    return Vector2d(by_[found.edge], -bx_[found.edge]).normalized();
+}
+
 PaintedEdge::PaintedEdge(const Brush& brush, double tolerance_mm) : brush_(brush) {
     const Index n = brush.footprints.vertex_count();
     std::vector<bool> keep(std::size_t(n), false);
@@ -62,57 +108,26 @@ PaintedEdge::PaintedEdge(const Brush& brush, double tolerance_mm) : brush_(brush
 
 void PaintedEdge::place(const PatchSamples& samples) {
     samples_ = samples;
-    outlines_.resize(samples.size());
+    footprints_.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double c = std::cos(samples[i].heading_rad), s = std::sin(samples[i].heading_rad);
-        const Ring ring = outline_about_contact(few_, brush_, samples[i].depth_mm);
-        Outline& o = outlines_[i];
-        o.ax = samples[i].contact_mm.x() + c * ring.col(0).array() - s * ring.col(1).array();
-        o.ay = samples[i].contact_mm.y() + s * ring.col(0).array() + c * ring.col(1).array();
-        const Index n = ring.rows();
-        o.bx.resize(n);
-        o.by.resize(n);
-        o.bx.head(n - 1) = o.ax.tail(n - 1) - o.ax.head(n - 1);
-        o.by.head(n - 1) = o.ay.tail(n - 1) - o.ay.head(n - 1);
-        o.bx[n - 1] = o.ax[0] - o.ax[n - 1];
-        o.by[n - 1] = o.ay[0] - o.ay[n - 1];
-        o.over_length2 = (o.bx.square() + o.by.square()).max(1e-18).inverse();
-        o.x_per_y = (o.by.abs() > 1e-12).select(o.bx / o.by, 0.0);
-        o.centre = {o.ax.mean(), o.ay.mean()};
-        o.radius = std::sqrt(((o.ax - o.centre.x()).square() + (o.ay - o.centre.y()).square()).maxCoeff());
+        Eigen::Matrix2d turn;  // of rows
+        turn << c, s, -s, c;
+        Ring ring = outline_about_contact(few_, brush_, samples[i].depth_mm) * turn;
+        ring.rowwise() += samples[i].contact_mm.transpose();
+        footprints_[i] = Edges({ring});
     }
-}
-
-double PaintedEdge::to_outline(const Outline& o, const Vector2d& p, EdgePoint& found) const {
-    const Index n = o.ax.size();
-    double best = 1e300, best_t = 0.0;
-    Index edge = 0;
-    int crossed = 0;
-    for (Index k = 0; k < n; ++k) {
-        const double px = p.x() - o.ax[k], py = p.y() - o.ay[k], bx = o.bx[k], by = o.by[k];
-        const double t = std::min(1.0, std::max(0.0, (px * bx + py * by) * o.over_length2[k]));
-        const double dx = px - t * bx, dy = py - t * by, d2 = dx * dx + dy * dy;
-        const bool better = d2 < best;
-        best = better ? d2 : best;
-        best_t = better ? t : best_t;
-        edge = better ? k : edge;
-        crossed += int((py < 0.0) != (py < by)) & int(px < o.x_per_y[k] * py);
-    }
-    found.edge = edge;
-    found.t = best_t;
-    found.distance_mm = crossed % 2 ? -std::sqrt(best) : std::sqrt(best);
-    return found.distance_mm;
 }
 
 EdgePoint PaintedEdge::nearest(const Vector2d& p, std::size_t near) const {
-    EdgePoint best, other;
+    EdgePoint best = footprints_[near].nearest(p);
     best.sample = near;
-    to_outline(outlines_[near], p, best);
-    for (std::size_t i = 0; i < outlines_.size(); ++i) {
+    for (std::size_t i = 0; i < footprints_.size(); ++i) {
         // outside no nearer than its circle; inside no deeper than the point lies in the circle
-        const double reach = best.distance_mm + outlines_[i].radius;
-        if (reach <= 0.0 || (p - outlines_[i].centre).squaredNorm() >= reach * reach || i == near) continue;
-        if (to_outline(outlines_[i], p, other) >= best.distance_mm) continue;
+        const double reach = best.distance_mm + footprints_[i].radius();
+        if (reach <= 0.0 || (p - footprints_[i].centre()).squaredNorm() >= reach * reach || i == near) continue;
+        EdgePoint other = footprints_[i].nearest(p);
+        if (other.distance_mm >= best.distance_mm) continue;
         best = other;
         best.sample = i;
     }
@@ -120,23 +135,22 @@ EdgePoint PaintedEdge::nearest(const Vector2d& p, std::size_t near) const {
 }
 
 EdgeSlope PaintedEdge::slope(const Vector2d& p, const EdgePoint& found) const {
-    const PatchSample& s = samples_[found.sample];
-    const Outline& o = outlines_[found.sample];
-    const Index k = found.edge, next = k + 1 == o.ax.size() ? 0 : k + 1;
-    const Vector2d along(o.bx[k], o.by[k]), on = Vector2d(o.ax[k], o.ay[k]) + found.t * along, arm = on - s.contact_mm;
-    Vector2d outwards = found.distance_mm < 0.0 ? on - p : p - on;
-    if (outwards.norm() > 1e-6)
-        outwards.normalize();
-    else
-        outwards = Vector2d(along.y(), -along.x()).normalized();
+    return moves(found, -footprints_[found.sample].outwards(p, found));
+}
+
+EdgeSlope PaintedEdge::moves(const EdgePoint& place, const Vector2d& direction) const {
+    const PatchSample& s = samples_[place.sample];
+    const Edges& edges = footprints_[place.sample];
+    const Index k = place.edge, next = k + 1 == edges.size() ? 0 : k + 1;
+    const Vector2d arm = edges.place(k, place.t) - s.contact_mm;
     constexpr double kStepMm = 1e-4;
     const auto spot = [&](double depth) {
         const Ring r = outline_about_contact(few_, brush_, depth);
-        return Vector2d((r.row(k) + found.t * (r.row(next) - r.row(k))).transpose());
+        return Vector2d((r.row(k) + place.t * (r.row(next) - r.row(k))).transpose());
     };
     const Vector2d by_depth =
         Eigen::Rotation2Dd(s.heading_rad) * Vector2d((spot(s.depth_mm + kStepMm) - spot(s.depth_mm)) / kStepMm);
-    return {-outwards.x(), -outwards.y(), outwards.x() * arm.y() - outwards.y() * arm.x(), -outwards.dot(by_depth)};
+    return {direction.x(), direction.y(), direction.y() * arm.x() - direction.x() * arm.y(), direction.dot(by_depth)};
 }
 
 }  // namespace brushsvg::fit

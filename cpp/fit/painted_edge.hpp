@@ -8,7 +8,7 @@
 
 namespace brushsvg::fit {
 
-/// Where a point lies to what a brush paints on its way.
+/// Where a point lies to rings, or to what a brush paints on its way.
 struct EdgePoint {
     std::size_t sample = 0;    ///< whose footprint is nearest, or holds the point deepest
     Eigen::Index edge = 0;     ///< of that footprint's outline, the nearest one,
@@ -16,7 +16,29 @@ struct EdgePoint {
     double distance_mm = 0.0;  ///< to it, negative inside
 };
 
-/// How the distance grows when the patch is moved, turned, pressed.
+/// Filled rings, edge by edge, as columns that are worked on at once.
+class Edges {
+ public:
+    Edges() = default;
+    explicit Edges(const Rings& rings);
+
+    EdgePoint nearest(const Eigen::Vector2d& point_mm) const;
+    Eigen::Index size() const { return ax_.size(); }
+    Eigen::Vector2d place(Eigen::Index edge, double t) const {
+        return {ax_[edge] + t * bx_[edge], ay_[edge] + t * by_[edge]};
+    }
+    /// Unit vector from the inside to the outside where a point was found to lie.
+    Eigen::Vector2d outwards(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
+    const Eigen::Vector2d& centre() const { return centre_; }
+    double radius() const { return radius_; }
+
+ private:
+    Eigen::ArrayXd ax_, ay_, bx_, by_, over_length2_, x_per_y_;
+    Eigen::Vector2d centre_;
+    double radius_ = 0.0;
+};
+
+/// How a distance grows when the patch is moved, turned, pressed.
 struct EdgeSlope {
     double x, y;     ///< per mm
     double heading;  ///< mm per rad
@@ -37,20 +59,15 @@ class PaintedEdge {
     /// `near`: a sample to begin with, the nearest known.
     EdgePoint nearest(const Eigen::Vector2d& point_mm, std::size_t near) const;
     EdgeSlope slope(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
+    /// How far a place on a footprint's outline moves in a direction.
+    EdgeSlope moves(const EdgePoint& place, const Eigen::Vector2d& direction) const;
+    const Edges& footprint(std::size_t sample) const { return footprints_[sample]; }
 
  private:
-    /// An outline on the paper, edge by edge, as rows that are worked on at once.
-    struct Outline {
-        Eigen::ArrayXd ax, ay, bx, by, over_length2, x_per_y;
-        Eigen::Vector2d centre;
-        double radius;
-    };
-    double to_outline(const Outline& outline, const Eigen::Vector2d& point_mm, EdgePoint& found) const;
-
     const Brush& brush_;
     FootprintTable few_;
     PatchSamples samples_;
-    std::vector<Outline> outlines_;
+    std::vector<Edges> footprints_;
 };
 
 }  // namespace brushsvg::fit

@@ -26,6 +26,10 @@ constexpr int kMostControls = 60;
 constexpr double kLeastDepthMm = 0.2;
 // Reach of the TCP beyond the sheet, that of a machine which says nothing else.
 constexpr double kBeyondSheetMm = 30.0;
+// A blunt beginning needs a patch that comes in from the side, which no small step finds: where the overlap stays below
+// what is good, the way is turned at its beginning by so much [rad] and tried again.
+constexpr std::array<double, 3> kFirstTurns{0.0, 1.2, -1.2};
+constexpr double kGood = 0.93;
 // Pixels judge by themselves where marks differ by more than they err (0.0017 on a taper).
 constexpr double kSurely = 0.005;
 constexpr double kPixelsToHalfWidth = 15.0, kLeastPixels = 8.0, kMostPixels = 2000.0;
@@ -117,25 +121,35 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
 
     const int controls = std::clamp(int(std::lround(way / (kControl * half_width))) + 3, 5, kMostControls);
     const PatchPath path(base, controls, depths_for(base, brush));
-    const Eigen::VectorXd found = fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations);
-
-    RefinedPass moved = closed;
-    moved.plan.pass.arcs.clear();
-    moved.plan.pass.poses_mm = poses_along(path.at(found), brush, 0.5 * options.tolerance_mm);
-    const Judge judge(brush, wanted, half_width, closed.plan.pass, moved.plan.pass);
-    moved.overlap_closed = closed.overlap_closed = closed.overlap = judge.overlap(0);
-    moved.overlap = judge.overlap(1);
     const auto stays = [&](const std::array<double, 4>& box, const std::array<double, 4>& before, double reach) {
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
-    const bool in_bounds =
-        anywhere || (stays(judge.painted(1), judge.painted(0), 0.0) &&
-                     stays(box_of(moved.plan.pass.poses_mm), box_of(closed.plan.pass.poses_mm), kBeyondSheetMm));
-    if (!in_bounds || !(moved.overlap > closed.overlap)) return closed;
-    moved.plan.miss = miss_of(moved.plan.pass, stroke, brush, options.tolerance_mm);
-    moved.bettered = true;
-    return moved;
+    const auto painted_before = painted_bounds(simulate(closed.plan.pass, brush, 0.03), brush);
+    RefinedPass best = closed;
+    for (double turn : kFirstTurns) {
+        Eigen::VectorXd start = Eigen::VectorXd::Zero(path.unknowns());
+        start[2] = turn;
+        start[3] = 0.3 * turn;
+        RefinedPass moved = closed;
+        moved.plan.pass.arcs.clear();
+        moved.plan.pass.poses_mm =
+            poses_along(path.at(fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations, start)), brush,
+                        0.5 * options.tolerance_mm);
+        const Judge judge(brush, wanted, half_width, best.plan.pass, moved.plan.pass);
+        best.overlap = judge.overlap(0);
+        if (!best.bettered) best.overlap_closed = best.overlap;
+        moved.overlap_closed = best.overlap_closed;
+        moved.overlap = judge.overlap(1);
+        moved.bettered = true;
+        const bool in_bounds =
+            anywhere || (stays(judge.painted(1), painted_before, 0.0) &&
+                         stays(box_of(moved.plan.pass.poses_mm), box_of(closed.plan.pass.poses_mm), kBeyondSheetMm));
+        if (in_bounds && moved.overlap > best.overlap) best = moved;
+        if (best.overlap >= kGood) break;
+    }
+    if (best.bettered) best.plan.miss = miss_of(best.plan.pass, stroke, brush, options.tolerance_mm);
+    return best;
 }
 
 }  // namespace brushsvg::fit

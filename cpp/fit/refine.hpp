@@ -27,7 +27,8 @@ struct RefinedPass {
 };
 
 /// The plan in closed form, moved until the outline of its mark lies best on the wanted one: where the patch goes, how
-/// deep it is pressed, where it starts and ends. The patch is never pushed, so q = P + r(depth) u holds all along. The
+/// deep it is pressed, where it starts and ends; where that is not good, again from a beginning that comes in from the
+/// side. The patch is never pushed, so q = P + r(depth) u holds all along. The
 /// plan is simulated, and kept only where its mark overlaps better, as coverage and overlap() judge, and stays in
 /// bounds. Its miss is that from the drawn middle line, which it leaves on purpose.
 /// Throws Error as compensate() does.

@@ -316,8 +316,7 @@ def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool
 
 
 def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
-    is_plan = _suffix(args.input) == ".json"
-    if is_plan:
+    if _suffix(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
@@ -326,6 +325,7 @@ def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work
 
 
 def _options(args, cell: Cell, brush=None) -> convert.Options:
+    is_plan = _suffix(args.input) == ".json"
     return convert.Options(
         brush=brush or _brush(args),
         reading=_reading(args),
