@@ -95,7 +95,9 @@ struct MarkModel::Instant {
 };
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options)
-    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms}, deepest_(options.deepest_mm) {
+    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms},
+      deepest_(options.deepest_mm),
+      round_tail_(options.round_tail) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
     const MatrixXd sums = MatrixXd::Ones(layout_.half, layout_.half).triangularView<Eigen::Lower>();
@@ -169,6 +171,7 @@ MarkLaws MarkModel::laws(const VectorXd& shared) const {
     }
     out.widest_per_half = shared[layout_.widest()];
     out.front_per_half = shared[layout_.front()];
+    out.round_tail = round_tail_;
     return out;
 }
 
@@ -213,21 +216,21 @@ bool MarkModel::instants(const Painted& mark, const VectorXd& shared, std::vecto
             }
         first = i + 1;
     }
-    Eigen::Matrix<double, 2, 5> before;
+    Eigen::Matrix<double, 2, 6> before;
     for (std::size_t i = 0; i < out.size(); ++i) {
         Instant& now = out[i];
-        now.drop = {laws.widest_per_half * now.half, now.half, laws.front_per_half * now.half};
+        now.drop = {laws.widest_per_half * now.half, now.half, laws.front_per_half * now.half, round_tail_};
         // every point of the drop is a mean of these corners, with the same weights at all instants
         const Eigen::Vector2d left(-now.heading.y(), now.heading.x()), tip = now.contact - now.gap * now.heading;
         const Eigen::Vector2d widest = tip + now.drop.widest * now.heading, side = now.half * left;
         const Eigen::Vector2d front = widest + now.drop.front * now.heading;
-        Eigen::Matrix<double, 2, 5> corners;
-        corners << tip, widest + side, widest - side, front + side, front - side;
+        Eigen::Matrix<double, 2, 6> corners;
+        corners << tip + side, tip - side, widest + side, widest - side, front + side, front - side;
         now.gone = i ? out[i - 1].gone + (corners - before).colwise().norm().maxCoeff() : 0.0;
         before = corners;
         const double to_middle = 0.5 * (now.drop.widest + now.drop.front);
         now.middle = tip + to_middle * now.heading;
-        now.radius = std::max(to_middle, std::hypot(now.drop.widest - to_middle, now.half));
+        now.radius = std::hypot(to_middle, now.half);
     }
     return !out.empty();
 }
