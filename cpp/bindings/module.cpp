@@ -35,5 +35,6 @@ PYBIND11_MODULE(_core, m) {
     bind_io(m);
 #ifdef BRUSHSVG_FIT
     bind_fit(m);
+    bind_mark_fit(m);
 #endif
 }

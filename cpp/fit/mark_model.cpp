@@ -21,6 +21,7 @@ constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its deriva
 constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
 constexpr double kLeastRingMm2 = 0.2;  // specks
 constexpr double kGapMm = 0.3;         // between footprints that count as side by side: more than they are apart
+constexpr double kNearMm = 0.5;        // a way out that is shorter than a brush's hairs are wide is not improved on
 constexpr double kGrazing = 0.3;       // cosine below which an edge that is met aslant says nothing more exact
 
 double at(const std::vector<double>& c, double d) {
@@ -327,8 +328,20 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
         distance_mm[k] = best.distance;
         double aslant = 1.0;  // cosine between the painted edge's normal and the predicted one's
         if (best.distance < 0.0) {
-            const Eigen::Vector2d out = back * painted.outward.row(k).transpose();
-            const double far = way_out(rows, x, out, nearest);
+            Eigen::Vector2d out = back * painted.outward.row(k).transpose();
+            double far = way_out(rows, x, out, nearest);
+            if (far > kNearMm) {  // another way may be shorter: outside it is the shortest that counts, too
+                const Eigen::Vector2d normal = out, across(-out.y(), out.x());
+                for (const auto& way : {Eigen::Vector2d(-normal), Eigen::Vector2d(0.5 * normal + 0.866 * across),
+                                        Eigen::Vector2d(0.5 * normal - 0.866 * across)}) {
+                    std::size_t other = nearest;
+                    const double length = way_out(rows, x, way.normalized(), other);
+                    if (length >= far) continue;
+                    far = length;
+                    out = way.normalized();
+                    nearest = other;
+                }
+            }
             const Instant& last = rows[nearest];
             const Eigen::Vector2d edge = in_frame_of(last, x + far * out);
             best = nearest_edge(last.drop, edge.x(), edge.y());

@@ -2,7 +2,7 @@
 #include "mark_fit.hpp"
 #include "track_fit.hpp"
 
-void bind_fit_marks(py::module_& m) {
+void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<py::gil_scoped_release>();
     py::class_<Track>(m, "Track",
