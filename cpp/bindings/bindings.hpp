@@ -27,7 +27,7 @@ void bind_interrupt(py::module_& m);
 void bind_thin_out(py::module_& m);
 void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
-void bind_fit_marks(py::module_& m);
+void bind_mark_fit(py::module_& m);
 
 /// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which Ctrl-C is heard and
 /// `progress(done, n)` is called where one is given.

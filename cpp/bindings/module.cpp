@@ -36,6 +36,6 @@ PYBIND11_MODULE(_core, m) {
     bind_io(m);
 #ifdef BRUSHSVG_FIT
     bind_fit(m);
-    bind_fit_marks(m);
+    bind_mark_fit(m);
 #endif
 }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-// The drop that stands for a round brush's footprint: tip at (0, 0), straight flanks to the widest section at x =
-// widest, half width `half`, in front of it half an ellipse that ends at widest + front. Lengths in mm.
+// The drop that stands for a round brush's footprint: tip at (0, 0), the widest section at x = widest, half width
+// `half`, in front of it half an ellipse that ends at widest + front. Behind it straight flanks, or half an ellipse
+// where the tail is round. Lengths in mm.
 namespace brushsvg::fit {
 
 struct Drop {
     double widest, half, front;
+    bool round_tail = false;
 };
 
 /// The place of a drop's edge that is nearest to a point, and how far the point is from it.
@@ -47,66 +49,61 @@ inline void nearest_on_quarter(double a, double b, double px, double py, double&
 /// the flank or where the ray from the ellipse's centre to the point meets it. x, y: the point in the drop's frame.
 inline double least_distance(const Drop& drop, double x, double y) {
     const double up = std::abs(y), ahead = x - drop.widest;
-    if (ahead <= 0.0) {
+    if (ahead <= 0.0 && !drop.round_tail) {
         const double length = std::sqrt(drop.widest * drop.widest + drop.half * drop.half);
         return std::max((up * drop.widest - x * drop.half) / length, up - drop.half);
     }
     // with (c, s) = (ahead / front, up / half) / rho the line is c X / front + s Y / half = 1
-    const double c = ahead / drop.front, s = up / drop.half, rho = std::sqrt(c * c + s * s);
-    const double nx = c / drop.front, ny = s / drop.half;
+    const double axis = ahead <= 0.0 ? drop.widest : drop.front;
+    const double c = ahead / axis, s = up / drop.half, rho = std::sqrt(c * c + s * s);
+    if (!(rho > 0.0)) return -std::min(std::min(drop.front, drop.widest), drop.half);
+    const double nx = c / axis, ny = s / drop.half;
     return (rho - 1.0) * rho / std::sqrt(nx * nx + ny * ny);
 }
 
 /// x, y: the point in the drop's frame.
 inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
-    const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y);
-    const double length2 = drop.widest * drop.widest + drop.half * drop.half;
-    const double t = std::clamp((x * drop.widest + up * drop.half) / length2, 0.0, 1.0);
-    const double fx = t * drop.widest, fy = t * drop.half;
-    const double flank2 = (x - fx) * (x - fx) + (up - fy) * (up - fy);
-    NearestEdge out;
+    const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y), ahead = x - drop.widest;
+    const bool behind = ahead <= 0.0;
     bool inside;
-    if (x <= drop.widest) {
+    if (behind && !drop.round_tail) {
         inside = x > 0.0 && up * drop.widest < x * drop.half;
     } else {
-        const double ex = (x - drop.widest) / drop.front, ey = up / drop.half;
+        const double ex = ahead / (behind ? drop.widest : drop.front), ey = up / drop.half;
         inside = ex * ex + ey * ey < 1.0;
     }
-    double c = 0.0, s = 1.0;
-    if (x > drop.widest || inside) nearest_on_quarter(drop.front, drop.half, x - drop.widest, up, c, s);
-    const double ax = drop.widest + drop.front * c, ay = drop.half * s;
-    const double arc2 = (x - ax) * (x - ax) + (up - ay) * (up - ay);
-    const bool on_flank = (x <= drop.widest && !inside) || flank2 < arc2;
-    const double distance = std::sqrt(on_flank ? flank2 : arc2);
-    double nx, ny;
-    if (on_flank) {
-        out.x = fx;
-        out.y = side * fy;
-        out.by_widest = t;
-        out.by_front = 0.0;
-        out.by_half = side * t;
-        const double length = std::sqrt(length2);
-        nx = -drop.half / length;
-        ny = drop.widest / length;
-        if ((t == 0.0 || t == 1.0) && !inside && distance > 1e-9) {
-            nx = (x - fx) / distance;
-            ny = (up - fy) / distance;
-        }
-    } else {
-        out.x = ax;
-        out.y = side * ay;
-        out.by_widest = 1.0;
-        out.by_front = c;
-        out.by_half = side * s;
-        nx = c / drop.front;
-        ny = s / drop.half;
-        const double length = std::sqrt(nx * nx + ny * ny);
-        nx /= length;
-        ny /= length;
+    NearestEdge out{INFINITY, 0, 0, 0, 0, 0, 0, 0};
+    const auto offer = [&](double px, double py, double nx, double ny, double by_widest, double by_front,
+                           double by_half) {
+        const double distance = std::hypot(x - px, up - py);
+        if (distance < out.distance)
+            out = {distance, px, side * py, nx, side * ny, by_widest, by_front, side * by_half};
+    };
+    if (!behind || inside) {
+        double c, s;
+        nearest_on_quarter(drop.front, drop.half, ahead, up, c, s);
+        const double nx = c / drop.front, ny = s / drop.half, length = std::hypot(nx, ny);
+        offer(drop.widest + drop.front * c, drop.half * s, nx / length, ny / length, 1.0, c, s);
     }
-    out.distance = inside ? -distance : distance;
-    out.nx = nx;
-    out.ny = side * ny;
+    if (drop.round_tail) {
+        if (behind || inside) {
+            double c, s;
+            nearest_on_quarter(drop.widest, drop.half, -ahead, up, c, s);
+            const double nx = -c / drop.widest, ny = s / drop.half, length = std::hypot(nx, ny);
+            offer(drop.widest * (1.0 - c), drop.half * s, nx / length, ny / length, 1.0 - c, 0.0, s);
+        }
+    } else if (behind || inside) {
+        const double length = std::hypot(drop.widest, drop.half);
+        const double t = std::clamp((x * drop.widest + up * drop.half) / (length * length), 0.0, 1.0);
+        double nx = -drop.half / length, ny = drop.widest / length;
+        const double px = t * drop.widest, py = t * drop.half, distance = std::hypot(x - px, up - py);
+        if ((t == 0.0 || t == 1.0) && !inside && distance > 1e-9) {  // beyond the flank's ends
+            nx = (x - px) / distance;
+            ny = (up - py) / distance;
+        }
+        offer(px, py, nx, ny, t, 0.0, t);
+    }
+    if (inside) out.distance = -out.distance;
     return out;
 }
 
@@ -125,17 +122,22 @@ inline Span span_inside(const Drop& drop, double x, double y, double dx, double 
             span.to = -INFINITY;
         return span;
     };
-    const Span all{-1e9, 1e9};
-    Span flank = cut(all, drop.widest - x, -dx);
-    flank = cut(flank, drop.half * x - drop.widest * y, drop.half * dx - drop.widest * dy);
-    flank = cut(flank, drop.half * x + drop.widest * y, drop.half * dx + drop.widest * dy);
-    const double px = (x - drop.widest) / drop.front, py = y / drop.half, vx = dx / drop.front, vy = dy / drop.half;
-    const double a = vx * vx + vy * vy, b = px * vx + py * vy, square = b * b - a * (px * px + py * py - 1.0);
-    Span front{0.0, -INFINITY};
-    if (square > 0.0) {
+    const auto in_ellipse = [&](double axis) {
+        const double px = (x - drop.widest) / axis, py = y / drop.half, vx = dx / axis, vy = dy / drop.half;
+        const double a = vx * vx + vy * vy, b = px * vx + py * vy, square = b * b - a * (px * px + py * py - 1.0);
+        if (!(square > 0.0)) return Span{0.0, -INFINITY};
         const double root = std::sqrt(square);
-        front = cut({(-b - root) / a, (-b + root) / a}, x - drop.widest, dx);
+        return Span{(-b - root) / a, (-b + root) / a};
+    };
+    const Span front = cut(in_ellipse(drop.front), x - drop.widest, dx);
+    Span flank{-1e9, 1e9};
+    if (drop.round_tail) {
+        flank = in_ellipse(drop.widest);
+    } else {
+        flank = cut(flank, drop.half * x - drop.widest * y, drop.half * dx - drop.widest * dy);
+        flank = cut(flank, drop.half * x + drop.widest * y, drop.half * dx + drop.widest * dy);
     }
+    flank = cut(flank, drop.widest - x, -dx);
     if (flank.to < flank.from) return front;
     if (front.to < front.from) return flank;
     return {std::min(flank.from, front.from), std::max(flank.to, front.to)};

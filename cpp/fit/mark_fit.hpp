@@ -25,10 +25,12 @@ struct Prior {
 };
 
 /// The laws as polynomials (ascending powers of depth), and the footprint's shape: a drop, straight flanks from the tip
-/// to the widest section at x_w = widest_per_half h, in front of it half an ellipse that reaches front_per_half h on.
+/// to the widest section at x_w = widest_per_half h, in front of it half an ellipse that reaches front_per_half h on;
+/// where the tail is round, half an ellipse instead of the flanks.
 struct MarkLaws {
     std::vector<double> lag, tip_gap, half_width;
     double widest_per_half = 1.8, front_per_half = 1.0;
+    bool round_tail = false;
 };
 
 struct MarkOptions {
@@ -37,6 +39,7 @@ struct MarkOptions {
     int lag_terms = 4, tip_gap_terms = 1, half_width_terms = 2;
     Prior widest_per_half{1.8, 0.5};  ///< the shape that the project assumes of round brushes, and round-6's spread
     Prior front_per_half{1.0, 0.3};
+    bool round_tail = false;
     Prior height_mm{0.0, 0.3};     ///< the paper lies higher than taught by so much: touching by eye is as good
     double placement_mm = 2.0;     ///< sigma of the sheet's shift in x and in y: laid against a stop by hand
     double turn_rad = 0.02;        ///< sigma of the sheet's turn: 1 mm on 50 mm

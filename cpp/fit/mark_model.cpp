@@ -21,6 +21,7 @@ constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its deriva
 constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
 constexpr double kLeastRingMm2 = 0.2;  // specks
 constexpr double kGapMm = 0.3;         // between footprints that count as side by side: more than they are apart
+constexpr double kNearMm = 0.5;        // a way out that is shorter than a brush's hairs are wide is not improved on
 constexpr double kGrazing = 0.3;       // cosine below which an edge that is met aslant says nothing more exact
 
 double at(const std::vector<double>& c, double d) {
@@ -95,7 +96,9 @@ struct MarkModel::Instant {
 };
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options)
-    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms}, deepest_(options.deepest_mm) {
+    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms},
+      deepest_(options.deepest_mm),
+      round_tail_(options.round_tail) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
     const MatrixXd sums = MatrixXd::Ones(layout_.half, layout_.half).triangularView<Eigen::Lower>();
@@ -169,6 +172,7 @@ MarkLaws MarkModel::laws(const VectorXd& shared) const {
     }
     out.widest_per_half = shared[layout_.widest()];
     out.front_per_half = shared[layout_.front()];
+    out.round_tail = round_tail_;
     return out;
 }
 
@@ -213,21 +217,21 @@ bool MarkModel::instants(const Painted& mark, const VectorXd& shared, std::vecto
             }
         first = i + 1;
     }
-    Eigen::Matrix<double, 2, 5> before;
+    Eigen::Matrix<double, 2, 6> before;
     for (std::size_t i = 0; i < out.size(); ++i) {
         Instant& now = out[i];
-        now.drop = {laws.widest_per_half * now.half, now.half, laws.front_per_half * now.half};
+        now.drop = {laws.widest_per_half * now.half, now.half, laws.front_per_half * now.half, round_tail_};
         // every point of the drop is a mean of these corners, with the same weights at all instants
         const Eigen::Vector2d left(-now.heading.y(), now.heading.x()), tip = now.contact - now.gap * now.heading;
         const Eigen::Vector2d widest = tip + now.drop.widest * now.heading, side = now.half * left;
         const Eigen::Vector2d front = widest + now.drop.front * now.heading;
-        Eigen::Matrix<double, 2, 5> corners;
-        corners << tip, widest + side, widest - side, front + side, front - side;
+        Eigen::Matrix<double, 2, 6> corners;
+        corners << tip + side, tip - side, widest + side, widest - side, front + side, front - side;
         now.gone = i ? out[i - 1].gone + (corners - before).colwise().norm().maxCoeff() : 0.0;
         before = corners;
         const double to_middle = 0.5 * (now.drop.widest + now.drop.front);
         now.middle = tip + to_middle * now.heading;
-        now.radius = std::max(to_middle, std::hypot(now.drop.widest - to_middle, now.half));
+        now.radius = std::hypot(to_middle, now.half);
     }
     return !out.empty();
 }
@@ -324,8 +328,20 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
         distance_mm[k] = best.distance;
         double aslant = 1.0;  // cosine between the painted edge's normal and the predicted one's
         if (best.distance < 0.0) {
-            const Eigen::Vector2d out = back * painted.outward.row(k).transpose();
-            const double far = way_out(rows, x, out, nearest);
+            Eigen::Vector2d out = back * painted.outward.row(k).transpose();
+            double far = way_out(rows, x, out, nearest);
+            if (far > kNearMm) {  // another way may be shorter: outside it is the shortest that counts, too
+                const Eigen::Vector2d normal = out, across(-out.y(), out.x());
+                for (const auto& way : {Eigen::Vector2d(-normal), Eigen::Vector2d(0.5 * normal + 0.866 * across),
+                                        Eigen::Vector2d(0.5 * normal - 0.866 * across)}) {
+                    std::size_t other = nearest;
+                    const double length = way_out(rows, x, way.normalized(), other);
+                    if (length >= far) continue;
+                    far = length;
+                    out = way.normalized();
+                    nearest = other;
+                }
+            }
             const Instant& last = rows[nearest];
             const Eigen::Vector2d edge = in_frame_of(last, x + far * out);
             best = nearest_edge(last.drop, edge.x(), edge.y());

@@ -72,6 +72,7 @@ class MarkModel {
     std::vector<Painted> painted_;
     Layout layout_;
     double deepest_;
+    bool round_tail_;
     MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
     Eigen::Vector2d centre_;
 };

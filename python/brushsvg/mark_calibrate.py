@@ -150,9 +150,9 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     least, deepest = depth_range_mm
     brush.paint_depth_mm = (least + deepest) / 2
     depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
-    brush.footprints = _core.FootprintTable([_outline(brush, depth, laws.front_per_half) for depth in depths])
+    brush.footprints = _core.FootprintTable([_outline(brush, depth, laws) for depth in depths])
     brush.extra = outlines_assumed(
-        f"drops whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long in "
+        f"{'eggs' if laws.round_tail else 'drops'} whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long in "
         "front of it."
     )
     if covariance is not None:
@@ -181,9 +181,10 @@ def _over_brush(laws, covariance: np.ndarray) -> np.ndarray:
     return to @ covariance @ to.T
 
 
-def _outline(brush: _core.Brush, depth: float, front_per_half: float) -> _core.Footprint:
+def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     half = brush.half_width(depth)
-    return _core.Footprint(depth, shapes.drop(half, brush.tip_to_widest(depth), front_per_half * half))
+    shape = shapes.egg if laws.round_tail else shapes.drop
+    return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), laws.front_per_half * half))
 
 
 def _refuse_unlike(fit, painted: Painted) -> None:

@@ -22,6 +22,14 @@ def drop(half_mm: float, widest_mm: float, front_mm: float, vertices: int = VERT
     return _rounded([(0.0, 0.0), *right, *left])
 
 
+def egg(half_mm: float, widest_mm: float, front_mm: float, vertices: int = 64) -> list[list[float]]:
+    """Half an ellipse from the tip to the widest section, another in front of it; counter-clockwise from the tip."""
+    turns = [2.0 * math.pi * i / vertices for i in range(vertices)]
+    axes = [widest_mm if math.cos(t) > 0 else front_mm for t in turns]
+    points = [(widest_mm - a * math.cos(t), -half_mm * math.sin(t)) for a, t in zip(axes, turns, strict=True)]
+    return _rounded(points)
+
+
 def disc(half_mm: float, vertices: int = 64) -> list[list[float]]:
     """A disc whose tip is the point of its rim farthest from where it is going."""
     turns = [2.0 * math.pi * i / vertices for i in range(vertices)]

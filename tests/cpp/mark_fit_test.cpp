@@ -15,11 +15,15 @@ using namespace brushsvg::fit;
 TEST_CASE("the nearest place on a drop's edge is that of its densely sampled outline") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> where(-6.0, 10.0);
-    for (const Drop& drop : {Drop{3.6, 2.0, 2.0}, Drop{3.6, 2.0, 1.2}, Drop{1.5, 1.0, 1.6}, Drop{0.6, 2.0, 3.0}}) {
+    for (const Drop& drop : {Drop{3.6, 2.0, 2.0}, Drop{3.6, 2.0, 1.2}, Drop{1.5, 1.0, 1.6}, Drop{0.6, 2.0, 3.0},
+                             Drop{3.6, 2.0, 1.2, true}, Drop{1.5, 2.0, 3.0, true}}) {
         std::vector<Eigen::Vector2d> edge;
         for (int i = 0; i <= 20000; ++i) {
             const double t = i / 20000.0, phi = 0.5 * M_PI * (1.0 - t);
-            edge.emplace_back(t * drop.widest, t * drop.half);
+            if (drop.round_tail)
+                edge.emplace_back(drop.widest * (1.0 - std::cos(phi)), drop.half * std::sin(phi));
+            else
+                edge.emplace_back(t * drop.widest, t * drop.half);
             edge.emplace_back(drop.widest + drop.front * std::cos(phi), drop.half * std::sin(phi));
         }
         for (int i = 0; i < 50; ++i) {
@@ -31,6 +35,14 @@ TEST_CASE("the nearest place on a drop's edge is that of its densely sampled out
             CHECK(least_distance(drop, x, y) <= found.distance + 1e-9);
             CHECK(found.x == doctest::Approx(found.by_widest * drop.widest + found.by_front * drop.front));
             CHECK(found.y == doctest::Approx(found.by_half * drop.half));
+            const Span span = span_inside(drop, x, y, 0.6, -0.8);
+            if (found.distance < 0.0) {
+                REQUIRE(span.from < 0.0);
+                REQUIRE(span.to > 0.0);
+            }
+            if (span.to > span.from)
+                CHECK(nearest_edge(drop, x + 0.6 * span.to, y - 0.8 * span.to).distance ==
+                      doctest::Approx(0.0).epsilon(1e-4));
             // a step along the normal leads straight away
             const NearestEdge out = nearest_edge(drop, found.x + 0.01 * found.nx, found.y + 0.01 * found.ny);
             CHECK(out.distance == doctest::Approx(0.01).epsilon(0.05));

@@ -2,7 +2,7 @@
 #include "mark_fit.hpp"
 #include "track_fit.hpp"
 
-void bind_fit_marks(py::module_& m) {
+void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<py::gil_scoped_release>();
     py::class_<Track>(m, "Track",
@@ -60,17 +60,18 @@ stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(
         .def_readwrite("sigma", &Prior::sigma);
     py::class_<MarkLaws>(m, "MarkLaws", "Laws as coefficients (ascending powers of depth), and a drop's shape.")
         .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
-                         double widest_per_half, double front_per_half) {
-                 return MarkLaws{std::move(lag), std::move(tip_gap), std::move(half_width), widest_per_half,
-                                 front_per_half};
+                         double widest_per_half, double front_per_half, bool round_tail) {
+                 return MarkLaws{std::move(lag),  std::move(tip_gap), std::move(half_width),
+                                 widest_per_half, front_per_half,     round_tail};
              }),
              py::arg("lag"), py::arg("tip_gap"), py::arg("half_width"), py::arg("widest_per_half") = 1.8,
-             py::arg("front_per_half") = 1.0)
+             py::arg("front_per_half") = 1.0, py::arg("round_tail") = false)
         .def_readonly("lag", &MarkLaws::lag)
         .def_readonly("tip_gap", &MarkLaws::tip_gap)
         .def_readonly("half_width", &MarkLaws::half_width)
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
-        .def_readonly("front_per_half", &MarkLaws::front_per_half);
+        .def_readonly("front_per_half", &MarkLaws::front_per_half)
+        .def_readonly("round_tail", &MarkLaws::round_tail);
     py::class_<MarkOptions>(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
 
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
@@ -83,6 +84,7 @@ and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, s
         .def_readwrite("half_width_terms", &MarkOptions::half_width_terms)
         .def_readwrite("widest_per_half", &MarkOptions::widest_per_half)
         .def_readwrite("front_per_half", &MarkOptions::front_per_half)
+        .def_readwrite("round_tail", &MarkOptions::round_tail)
         .def_readwrite("height_mm", &MarkOptions::height_mm)
         .def_readwrite("placement_mm", &MarkOptions::placement_mm)
         .def_readwrite("turn_rad", &MarkOptions::turn_rad)
