@@ -281,7 +281,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert plan.json plan.json",
         "convert a.svg out.ngc --preview a.svg",
         "convert a.svg out.json --report ./out.json",
-        "convert a.svg out.ngc --compensation refined",
+        "convert a.svg out.ngc --compensation best",
         "convert a.svg out.ngc --comp none",
         "convert a.svg out.ngc --lag 5",
         "convert a.svg out.ngc --compensation constant --lag -1",
