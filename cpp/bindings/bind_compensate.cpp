@@ -90,11 +90,12 @@ too sharp for the lever.)")
         "compensate",
         [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,
            const std::string& method, double tolerance_mm, std::optional<double> lag_mm, double speed_mm_s,
-           const py::object& progress) {
+           const py::object& progress, bool few_poses) {
             CompensateOptions options;
             options.tolerance_mm = tolerance_mm;
             options.lag_mm = lag_mm;
             options.speed_mm_s = speed_mm_s;
+            options.few_poses = few_poses;
             const Way way = way_of(method, brush, options, sheet_mm);
             Compensated out;
             out.plan.brush = brush.name;
@@ -121,14 +122,16 @@ too sharp for the lever.)")
         },
         py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed",
         py::arg("tolerance_mm") = 0.05, py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0,
-        py::arg("progress") = py::none(),
+        py::arg("progress") = py::none(), py::arg("few_poses") = true,
         R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
 
 sheet_mm: (w, h), kept in the plan. method: "none", the TCP on the line; "constant", ahead by lag_mm (None: the lag at
 each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
 the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
 point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
-miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most the brush's. progress: called with (strokes done, strokes).
+miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
+the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
+asks for.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
     m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,

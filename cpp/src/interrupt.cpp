@@ -1,5 +1,6 @@
 #include "brushsvg/interrupt.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "brushsvg/error.hpp"
@@ -12,6 +13,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
+/// Long moves may be cut every so often.
+constexpr double kPlaceEveryMm = 1.0;
 /// A brush that hardly touches has no patch to land in.
 constexpr double kLeastDepthMm = 0.05;
 
@@ -53,14 +56,49 @@ std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vecto
     return out;
 }
 
+/// A pass with poses added on its long straight moves, which change nothing.
+struct Finer {
+    Pass pass;
+    std::vector<bool> is_added;
+};
+
+Finer with_places(const Pass& pass) {
+    Finer out{pass, {}};
+    std::vector<Eigen::RowVector3d> poses;
+    std::vector<std::int64_t> at;
+    for (Index i = 0; i < pass.poses_mm.rows(); ++i) {
+        const double length = i > 0 ? (pass.poses_mm.row(i) - pass.poses_mm.row(i - 1)).norm() : 0.0;
+        const bool on_arc = std::any_of(pass.arcs.begin(), pass.arcs.end(),
+                                        [&](const Arc& arc) { return arc.first < i && i <= arc.last; });
+        const int parts = on_arc ? 1 : std::max(1, int(std::ceil(length / kPlaceEveryMm)));
+        for (int k = 1; k < parts; ++k) {
+            const double t = double(k) / parts;
+            poses.push_back((1.0 - t) * pass.poses_mm.row(i - 1) + t * pass.poses_mm.row(i));
+            out.is_added.push_back(true);
+        }
+        at.push_back(std::int64_t(poses.size()));
+        poses.push_back(pass.poses_mm.row(i));
+        out.is_added.push_back(false);
+    }
+    out.pass.poses_mm.resize(Index(poses.size()), 3);
+    for (Index i = 0; i < out.pass.poses_mm.rows(); ++i) out.pass.poses_mm.row(i) = poses[i];
+    for (Arc& arc : out.pass.arcs) {
+        arc.first = at[arc.first];
+        arc.last = at[arc.last];
+    }
+    return out;
+}
+
 /// Poses of the pass from one to another with its arcs, between a landing and a lift.
-Pass part(const Pass& pass, const Brush& brush, const Place* from, const Place* to, int number) {
+Pass part(const Finer& finer, const Brush& brush, const Place* from, const Place* to, int number) {
+    const Pass& pass = finer.pass;
     PoseList list;
     if (from) land(from->stance, brush, list);
     const Index first = from ? from->pose : 0, last = to ? to->pose : pass.poses_mm.rows() - 1;
     std::vector<std::int64_t> at;
     for (Index i = first; i <= last; ++i) {
-        list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
+        const bool is_end = i == first || i == last;
+        if (!finer.is_added[i] || is_end) list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
         at.push_back(list.last());
     }
     if (to) lift(to->stance, brush, list);
@@ -79,9 +117,10 @@ Pass part(const Pass& pass, const Brush& brush, const Place* from, const Place* 
 std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const InterruptOptions& options) {
     if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
         throw Error("paint must last for more than twice the backtrack", pass.stroke, options.every_mm);
-    const std::vector<double> along = path_lengths(pass.poses_mm);
-    if (along.back() <= options.first_mm) return {pass};
-    const std::vector<Place> all = places(pass, brush, along);
+    if (path_lengths(pass.poses_mm).back() <= options.first_mm) return {pass};
+    const Finer finer = with_places(pass);
+    const std::vector<double> along = path_lengths(finer.pass.poses_mm);
+    const std::vector<Place> all = places(finer.pass, brush, along);
     std::vector<Pass> parts;
     const Place* from = nullptr;
     double lasts_to = options.first_mm;
@@ -100,12 +139,12 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const Interr
             if (!back || place.along_mm <= cut->along_mm - options.backtrack_mm) back = &place;
         }
         if (!back) back = cut;
-        parts.push_back(part(pass, brush, from, cut, int(parts.size()) + 1));
+        parts.push_back(part(finer, brush, from, cut, int(parts.size()) + 1));
         from = back;
         const double landing = brush.lag(back->stance.depth_mm);
         lasts_to = back->along_mm + options.every_mm - landing;
     }
-    parts.push_back(part(pass, brush, from, nullptr, int(parts.size()) + 1));
+    parts.push_back(part(finer, brush, from, nullptr, int(parts.size()) + 1));
     return parts;
 }
 

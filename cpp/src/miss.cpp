@@ -4,59 +4,11 @@
 #include <cmath>
 
 #include "brushsvg/simulate.hpp"
+#include "nearest.hpp"
 
 namespace brushsvg {
-namespace {
 
 using Eigen::Index;
-using Eigen::Vector2d;
-
-/// Distance to a polyline, block by block; successive queries lie close to each other.
-class Nearest {
- public:
-    explicit Nearest(const MiddlePolyline& line) : line_(line) {
-        for (Index i = 0; i < std::max<Index>(1, line.rows() - 1); i += kBlock) {
-            const Index n = std::min<Index>(kBlock + 1, line.rows() - i);
-            const Vector2d lo = line.block(i, 0, n, 2).colwise().minCoeff().transpose();
-            const Vector2d hi = line.block(i, 0, n, 2).colwise().maxCoeff().transpose();
-            blocks_.push_back({0.5 * (lo + hi), 0.5 * (hi - lo).norm()});
-        }
-    }
-    double distance(const Vector2d& p) {
-        double best = in_block(last_, p);
-        for (std::size_t k = 0; k < blocks_.size(); ++k) {
-            if ((p - blocks_[k].centre).norm() - blocks_[k].radius >= best) continue;
-            const double d = in_block(k, p);
-            if (d < best) {
-                best = d;
-                last_ = k;
-            }
-        }
-        return best;
-    }
-
- private:
-    static constexpr Index kBlock = 16;
-    struct Block {
-        Vector2d centre;
-        double radius;
-    };
-    double in_block(std::size_t k, const Vector2d& p) const {
-        const Index first = Index(k) * kBlock, last = std::min<Index>(first + kBlock, line_.rows() - 1);
-        double best = (p - line_.row(first).head<2>().transpose()).squaredNorm();
-        for (Index i = first; i < last; ++i) {
-            const Vector2d a = line_.row(i).head<2>().transpose(), d = line_.row(i + 1).head<2>().transpose() - a;
-            const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-            best = std::min(best, (p - a - t * d).squaredNorm());
-        }
-        return std::sqrt(best);
-    }
-    const MiddlePolyline& line_;
-    std::vector<Block> blocks_;
-    std::size_t last_ = 0;
-};
-
-}  // namespace
 
 Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
