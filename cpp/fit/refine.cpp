@@ -111,9 +111,12 @@ class Judge {
 
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options) {
     RefinedPass closed;
-    closed.plan = compensate(stroke, brush, {Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s});
+    CompensateOptions how{Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s};
+    closed.plan = compensate(stroke, brush, how);
+    how.few_poses = false;  // poses that lie beside the path would be taken for its bends
+    const Pass dense = compensate(stroke, brush, how).pass;
     const double half_width = mean_half_width(stroke, brush);
-    const PatchSamples base = patch_path(closed.plan.pass, brush, kStep * half_width, kMostSamples);
+    const PatchSamples base = patch_path(dense, brush, kStep * half_width, kMostSamples);
     const Rings wanted = wanted_outline(stroke, kRingTolerance);
     if (base.size() < 2 || brush.is_rigid() || wanted.empty()) return closed;
     const double way = way_of(base);

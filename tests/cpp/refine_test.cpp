@@ -75,7 +75,9 @@ Eigen::VectorXd anything(int n, std::mt19937& random) {
 }
 
 PatchPath path_of(const Stroke& stroke, const Brush& brush, int controls) {
-    return PatchPath(patch_path(compensate(stroke, brush).pass, brush, 0.5, 500), controls, {0.5, 10.0});
+    CompensateOptions all_poses;
+    all_poses.few_poses = false;
+    return PatchPath(patch_path(compensate(stroke, brush, all_poses).pass, brush, 0.5, 500), controls, {0.5, 10.0});
 }
 
 }  // namespace
