@@ -151,8 +151,9 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     brush.paint_depth_mm = (least + deepest) / 2
     depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
     brush.footprints = _core.FootprintTable([_outline(brush, depth, laws) for depth in depths])
+    what = "eggs" if laws.round_tail else "drops"
     brush.extra = outlines_assumed(
-        f"{'eggs' if laws.round_tail else 'drops'} whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long in "
+        f"{what} whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long in "
         "front of it."
     )
     if covariance is not None:
