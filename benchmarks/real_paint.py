@@ -234,7 +234,8 @@ def by_overlap(strokes, fit, options, most=120):
 
 
 def our_marks(strokes, fit, options) -> list[np.ndarray]:
-    reach = options.deepest_mm + max(0.0, fit.height_mm)
+    deepest = max(options.deepest_mm, *(-stroke.poses[:, 2].min() for stroke in strokes))
+    reach = deepest + max(0.0, fit.height_mm)
     brush = brush_of(fit.laws, "fitted", (0.0, reach))
     passes = []
     for k, stroke in enumerate(strokes):
