@@ -16,7 +16,7 @@ from brushsvg.render import MIDDLE_LINE, Panel, panels_png
 
 def main(drawing: Path, directory: Path) -> None:
     cell = find_cell()
-    ways = ("none", "constant", "closed")
+    ways = ("none", "constant", "closed", "refined")
     works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ways}
     work = works["closed"]
     works["best"] = convert.best_constant(work)
@@ -34,6 +34,7 @@ def main(drawing: Path, directory: Path) -> None:
         "best": f"constant, {works['best'].options.lag_mm:g} mm for all, the best",
         "constant": "constant, by each stroke's depth",
         "closed": "closed",
+        "refined": "refined",
     }
     table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
     files = {

@@ -24,6 +24,7 @@ void bind_curve_fit(py::module_& m);
 void bind_coverage(py::module_& m);
 void bind_compensate(py::module_& m);
 void bind_interrupt(py::module_& m);
+void bind_thin_out(py::module_& m);
 void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);

@@ -32,6 +32,7 @@ PYBIND11_MODULE(_core, m) {
     bind_coverage(m);
     bind_compensate(m);
     bind_interrupt(m);
+    bind_thin_out(m);
     bind_io(m);
 #ifdef BRUSHSVG_FIT
     bind_fit(m);

@@ -7,6 +7,7 @@
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
+#include "brushsvg/thin_out.hpp"
 #include "middle_line.hpp"
 #include "touch.hpp"
 
@@ -26,7 +27,7 @@ Vector2d turned(const Vector2d& u, double angle) {
 /// some rounding lets the patch creep by (1 + turn^2 / 2) times that, 0.6 um for 1e-4 mm and half a turn.
 void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, PoseList& out) {
     const double angle = angle_between(from.heading, to.heading);
-    const int n = int(std::ceil(std::abs(angle) / kTurnStepRad));
+    const int n = int(std::ceil(std::abs(angle) / kTurnChordRad));
     for (int k = 1; k < n; ++k) {
         const double c = double(k) / n, depth = from.depth + c * (to.depth - from.depth);
         out.add(from.contact + brush.lag(depth) * turned(from.heading, c * angle), depth);
@@ -274,6 +275,21 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
     warnings.push_back({stroke.id, text + brush.name + " was measured"});
 }
 
+/// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
+/// of it for that, less only costs time.
+constexpr double kStepShare = 0.4;
+
+/// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
+bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
+              double tolerance_mm, Pass& pass, Miss& miss) {
+    const Pass fewer = thin_out(from, brush, share * tolerance_mm);
+    const Miss remains = miss_of(fewer, stroke, brush, tolerance_mm);
+    if (remains.largest_mm > limit_mm) return false;
+    pass = fewer;
+    miss = remains;
+    return true;
+}
+
 }  // namespace
 
 CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
@@ -300,10 +316,16 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         return result;
     }
     // the plan is simulated before it is handed over; finer steps as long as they help
+    if (options.few_poses) step_tolerance *= kStepShare;
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = pass;
         closed_form(stroke, brush, line, step_tolerance, turns).into(trial);
+        if (options.few_poses && thin_out(trial, 0.8, 0.9 * options.tolerance_mm, stroke, brush, options.tolerance_mm,
+                                          result.pass, result.miss)) {
+            result.miss.has_turn_in_place = turns;
+            return result;
+        }
         Miss miss = miss_of(trial, stroke, brush, options.tolerance_mm);
         miss.has_turn_in_place = turns;
         const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
@@ -311,10 +333,18 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
             result.miss = miss;
             pass = trial;
         }
-        // rows of the check lie a tenth of the tolerance off the truth between them
-        const bool sure = miss.largest_mm <= 0.9 * options.tolerance_mm;
-        if (sure || (turns && !better) || trial.poses_mm.rows() >= Index(kMostSamples)) break;
+        // rows of the check lie a tenth of the tolerance off the truth between them; fewer poses need more to spare
+        const bool sure = !options.few_poses && miss.largest_mm <= 0.9 * options.tolerance_mm;
+        if (sure || ((turns || (options.few_poses && result.miss.within_tolerance)) && !better) ||
+            trial.poses_mm.rows() >= Index(kMostSamples))
+            break;
     }
+    // a line that cannot be followed to the tolerance: as well as with all poses, then
+    const bool turns = result.miss.has_turn_in_place;
+    const double limit_mm = std::max(options.tolerance_mm, result.miss.largest_mm);
+    if (options.few_poses)
+        thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
+    result.miss.has_turn_in_place = turns;
     return result;
 }
 

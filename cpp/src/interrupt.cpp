@@ -15,6 +15,44 @@ using Eigen::Vector2d;
 /// A brush that hardly touches has no patch to land in.
 constexpr double kLeastDepthMm = 0.05;
 
+/// Places on long straight moves, whose ends alone would not do: so many for one load of paint. Fewer would leave more
+/// of it unused, more only cost time.
+constexpr double kPlacesPerLoad = 200.0;
+
+/// The pass with more poses along its straight moves. own[i]: whether it is one of the pass's.
+struct Fine {
+    Pass pass;
+    std::vector<bool> own;
+};
+
+Fine refined(const Pass& pass, double between_mm) {
+    const Index count = pass.poses_mm.rows();
+    Fine out{pass, {}};
+    std::vector<Eigen::RowVector3d> poses;
+    std::vector<Index> at;
+    for (Index i = 0; i < count; ++i) {
+        at.push_back(Index(poses.size()));
+        poses.push_back(pass.poses_mm.row(i));
+        out.own.push_back(true);
+        bool on_arc = i + 1 == count;
+        for (const Arc& arc : pass.arcs) on_arc = on_arc || (arc.first <= i && i < arc.last);
+        if (on_arc) continue;
+        const Eigen::RowVector3d way = pass.poses_mm.row(i + 1) - pass.poses_mm.row(i);
+        const auto parts = Index(std::ceil(way.norm() / between_mm));
+        for (Index k = 1; k < parts; ++k) {
+            poses.push_back(pass.poses_mm.row(i) + way * (double(k) / double(parts)));
+            out.own.push_back(false);
+        }
+    }
+    out.pass.poses_mm.resize(Index(poses.size()), 3);
+    for (std::size_t i = 0; i < poses.size(); ++i) out.pass.poses_mm.row(Index(i)) = poses[i];
+    for (Arc& arc : out.pass.arcs) {
+        arc.first = at[std::size_t(arc.first)];
+        arc.last = at[std::size_t(arc.last)];
+    }
+    return out;
+}
+
 /// Where the pass may be cut: poses that the brush passes taut and pressed, inside no arc.
 struct Place {
     Index pose;
@@ -54,13 +92,15 @@ std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vecto
 }
 
 /// Poses of the pass from one to another with its arcs, between a landing and a lift.
-Pass part(const Pass& pass, const Brush& brush, const Place* from, const Place* to, int number) {
+Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* to, int number) {
+    const Pass& pass = fine.pass;
     PoseList list;
     if (from) land(from->stance, brush, list);
     const Index first = from ? from->pose : 0, last = to ? to->pose : pass.poses_mm.rows() - 1;
     std::vector<std::int64_t> at;
     for (Index i = first; i <= last; ++i) {
-        list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
+        if (fine.own[std::size_t(i)] || i == first || i == last)
+            list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
         at.push_back(list.last());
     }
     if (to) lift(to->stance, brush, list);
@@ -79,9 +119,11 @@ Pass part(const Pass& pass, const Brush& brush, const Place* from, const Place* 
 std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const InterruptOptions& options) {
     if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
         throw Error("paint must last for more than twice the backtrack", pass.stroke, options.every_mm);
-    const std::vector<double> along = path_lengths(pass.poses_mm);
-    if (along.back() <= options.first_mm) return {pass};
-    const std::vector<Place> all = places(pass, brush, along);
+    if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
+    for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
+    const Fine fine = refined(pass, options.every_mm / kPlacesPerLoad);
+    const std::vector<double> along = path_lengths(fine.pass.poses_mm);
+    const std::vector<Place> all = places(fine.pass, brush, along);
     std::vector<Pass> parts;
     const Place* from = nullptr;
     double lasts_to = options.first_mm;
@@ -100,12 +142,12 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const Interr
             if (!back || place.along_mm <= cut->along_mm - options.backtrack_mm) back = &place;
         }
         if (!back) back = cut;
-        parts.push_back(part(pass, brush, from, cut, int(parts.size()) + 1));
+        parts.push_back(part(fine, brush, from, cut, int(parts.size()) + 1));
         from = back;
         const double landing = brush.lag(back->stance.depth_mm);
         lasts_to = back->along_mm + options.every_mm - landing;
     }
-    parts.push_back(part(pass, brush, from, nullptr, int(parts.size()) + 1));
+    parts.push_back(part(fine, brush, from, nullptr, int(parts.size()) + 1));
     return parts;
 }
 

@@ -9,8 +9,11 @@
 
 namespace brushsvg {
 
-/// A chord of a turn in place: at most this angle, so that the heading between poses is never far from what it says.
+/// Between two samples the heading turns by at most this angle, so that it is never far from what they say.
 constexpr double kTurnStepRad = 0.2;
+/// A chord of a turn in place. The patch rests whatever it is; much more lets the bristles relax half way, by its
+/// cosine.
+constexpr double kTurnChordRad = 0.4;
 /// Where a line asks for more (a taper far too steep for the lever), finer steps no longer help: the miss is reported.
 constexpr std::size_t kMostSamples = 20000;
 

@@ -4,6 +4,8 @@
 #include <boost/polygon/polygon.hpp>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -156,8 +158,9 @@ Rings unite(const Rings& rings) {
 
 namespace {
 
-// a ring can run round a point any number of times; who winds more than this draws a spiral by mistake
-constexpr int kMostTurns = 32;
+// Each turn costs a sweep over everything. Letters turn twice; nested contours are cheaper one by one; one ring that
+// winds more than the most is a star or a spiral of a hundred points, no lettering.
+constexpr int kFewTurns = 3, kMostTurns = 32;
 
 /// Where the outlines run counter-clockwise `turns` times or more round a point; reversed: clockwise. The sweep keeps
 /// what is counted once or more, so a frame about everything takes turns - 1 away.
@@ -187,17 +190,50 @@ Set wound(const Rings& outlines, int turns, bool reversed) {
     return set;
 }
 
-}  // namespace
-
-Rings fill(const Rings& outlines, FillRule rule) {
+/// Where the outlines run round a point an odd number of times, if none does so more than `most` times.
+std::optional<Set> wound_oddly(const Rings& outlines, int most) {
     Set filled;
     for (bool reversed : {false, true}) {
-        for (int turns = 1; turns <= (rule == FillRule::nonzero ? 1 : kMostTurns); ++turns) {
+        for (int turns = 1;; ++turns) {
             const Set level = wound(outlines, turns, reversed);
             if (level.empty()) break;
+            if (turns > most) return std::nullopt;
             filled.insert(level, turns % 2 == 0);  // each level lies in the one before
         }
     }
+    filled.clean();
+    return filled;
+}
+
+/// The same of outlines however often nested: each by itself, then what an odd number of them fills, in a tree.
+Set in_an_odd_number(const Rings& outlines) {
+    using namespace bp::operators;
+    std::vector<Set> level;
+    for (const Ring& ring : outlines) {
+        std::optional<Set> alone = wound_oddly({ring}, kMostTurns);
+        if (!alone) throw Error("an outline runs more than " + std::to_string(kMostTurns) + " times round a point");
+        level.push_back(std::move(*alone));
+    }
+    while (level.size() > 1) {
+        std::vector<Set> next;
+        for (std::size_t i = 0; i < level.size(); i += 2) {
+            if (i + 1 < level.size()) level[i] ^= level[i + 1];
+            next.push_back(std::move(level[i]));
+        }
+        level = std::move(next);
+    }
+    return level.empty() ? Set() : level.front();
+}
+
+}  // namespace
+
+Rings fill(const Rings& outlines, FillRule rule) {
+    if (rule == FillRule::evenodd) {
+        const std::optional<Set> filled = wound_oddly(outlines, kFewTurns);
+        return to_rings(filled ? *filled : in_an_odd_number(outlines));
+    }
+    Set filled;
+    for (bool reversed : {false, true}) filled.insert(wound(outlines, 1, reversed));
     filled.clean();
     return to_rings(filled);
 }

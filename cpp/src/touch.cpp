@@ -14,8 +14,12 @@ using Eigen::Vector2d;
 /// How far inside q = P + r u a lift stays: 0 slips on straight moves (0.25 mm from depth 10), much more lets the patch
 /// relax towards its pressed shape.
 constexpr double kLiftSlackMm = 0.05;
+/// How far from there straight moves may stray: not so far that the patch slips, or relaxes.
+constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
 /// An arc turns the heading by no less: smaller ones say no more than their chord.
 constexpr double kLeastArcRad = 1e-3;
+/// Poses nearer than this are one: the way between them is rounding, and points anywhere.
+constexpr double kSamePoseMm = 1e-6;
 
 /// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
 bool may_press_while_running(const Brush& brush, double depth) {
@@ -31,7 +35,12 @@ bool may_press_while_running(const Brush& brush, double depth) {
 
 void PoseList::add(const Vector2d& tcp_mm, double depth_mm) {
     const std::array<double, 3> pose{tcp_mm.x(), tcp_mm.y(), depth_mm > 0.0 ? -depth_mm : 0.0};
-    if (poses_.empty() || poses_.back() != pose) poses_.push_back(pose);
+    if (!poses_.empty()) {
+        const auto& last = poses_.back();
+        const double way = std::hypot(pose[0] - last[0], pose[1] - last[1], pose[2] - last[2]);
+        if (way < kSamePoseMm) return;
+    }
+    poses_.push_back(pose);
 }
 
 void PoseList::arc(std::int64_t first, const Vector2d& centre_mm, double angle_rad) {
@@ -61,26 +70,40 @@ void land(const Stance& first, const Brush& brush, PoseList& out) {
 }
 
 void lift(const Stance& last, const Brush& brush, PoseList& out) {
-    const auto back = [&](double depth) {
-        return Vector2d(last.contact_mm + std::max(0.0, brush.lag(depth) - kLiftSlackMm) * last.heading);
-    };
     if (brush.is_rigid()) {
         out.add(last.contact_mm, 0.0);
         return;
     }
-    out.add(back(last.depth_mm), last.depth_mm);
-    // straight moves must not leave the curve by more than the slack: |r''| dd^2 / 8
-    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
-    double curved = 0.0;
-    for (const auto& piece : law.pieces) curved = std::max(curved, piece.most_curved);
-    const double step = curved > 0.0 ? std::sqrt(8.0 * 0.6 * kLiftSlackMm / curved) : last.depth_mm;
-    std::vector<double> depths;
-    const int n = std::max(1, int(std::ceil(last.depth_mm / step)));
-    for (int k = n - 1; k >= 0; --k) depths.push_back(last.depth_mm * k / n);
-    for (const auto& piece : law.pieces)
-        if (piece.hi < last.depth_mm) depths.push_back(piece.hi);
-    std::sort(depths.rbegin(), depths.rend());
-    for (double depth : depths) out.add(back(depth), depth);
+    const auto add = [&](double reach_mm, double depth) {
+        out.add(last.contact_mm + std::max(0.0, reach_mm) * last.heading, depth);
+    };
+    const auto reach = [&](double depth) { return brush.lag(depth) - kLiftSlackMm; };
+    add(reach(last.depth_mm), last.depth_mm);
+    // straight moves that stay inside the curve, but not far: each as long as some straight line does
+    constexpr int n = 128;
+    const auto depth_at = [&](int k) { return last.depth_mm * (n - k) / n; };
+    int from = 0;
+    double at = reach(last.depth_mm);
+    while (from < n) {
+        double least = -1e300, most = 1e300;
+        int to = from;
+        double slope = 0.0;
+        for (int k = from + 1; k <= n; ++k) {
+            const double by = depth_at(from) - depth_at(k), wanted = reach(depth_at(k));
+            least = std::max(least, (wanted - kLiftBandMm - at) / by);
+            most = std::min(most, (wanted + kLiftBandMm - at) / by);
+            if (least > most) break;
+            slope = 0.5 * (least + most);
+            to = k;
+        }
+        if (to == from) {
+            ++to;
+            slope = (reach(depth_at(to)) - at) / (depth_at(from) - depth_at(to));
+        }
+        at += slope * (depth_at(from) - depth_at(to));
+        add(at, depth_at(to));
+        from = to;
+    }
 }
 
 }  // namespace brushsvg

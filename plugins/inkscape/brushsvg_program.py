@@ -69,15 +69,17 @@ def executable(chosen: str) -> str:
 
 
 class Run:
-    """One brushsvg command on a copy of the drawing, started at once. In a `with`, so that its folder goes away."""
+    """One brushsvg command on a copy of the drawing, if it needs one, started at once. In a `with`, so that its folder
+    goes away."""
 
-    def __init__(self, chosen: str, drawing: str, command: str, *words: str):
+    def __init__(self, chosen: str, drawing: str | None, command: str, *words: str):
         self.program = executable(chosen)
         self.folder = tempfile.TemporaryDirectory(prefix="brushsvg")
-        shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
+        if drawing:
+            shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, command, DRAWING, *words],
+                [self.program, command, *([DRAWING] if drawing else []), *words],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
@@ -171,3 +173,17 @@ def choices(args: argparse.Namespace) -> list[str]:
         if said and said != "document":
             words += [f"--{flag}", said]
     return words
+
+
+def selection(args: argparse.Namespace, *but: str) -> list[str]:
+    """Flags for what is selected, if anything is; but: ids that do not count."""
+    chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in args.ids if each not in but]
+    return ["--select", ", ".join(f'[id="{each}"]' for each in chosen)] if chosen else []
+
+
+def element_of(by_id: dict, where: str):
+    """The element of a stroke, None if unknown: id, id/2 for a part of it, id#2 for a pass, use/id for a copy."""
+    for name in (where, where.rpartition("#")[0], where.rpartition("/")[0], where.partition("/")[0]):
+        if name in by_id:
+            return by_id[name]
+    return None

@@ -28,7 +28,9 @@ def choices(command):
         click.option(
             "--brush", "brush_name", default="round-6", metavar="NAME|FILE", help="default: round-6"
         ),
-        click.option("--compensation", type=click.Choice(("none", "constant", "closed")), default="closed"),
+        click.option(
+            "--compensation", type=click.Choice(("none", "constant", "closed", "refined")), default="closed"
+        ),
         click.option("--tolerance", type=click.FloatRange(1e-5, 10), default=0.05, help="mm; default: 0.05"),
         click.option(
             "--width", type=vpype_cli.LengthType(), help="of all marks; default: the layers' pen widths"

@@ -57,6 +57,8 @@ def blended(poses_mm: np.ndarray, radii_mm: np.ndarray) -> tuple[np.ndarray, np.
     (m,) the poses that its points belong to, as fractional indices."""
     indices = np.arange(len(poses_mm), dtype=float)
     cut_mm = radii_mm * np.tan(turns_rad(poses_mm) / 4)
+    still = ~np.diff(poses_mm, axis=0).any(axis=1)  # as a program that was changed by hand may have it
+    cut_mm[:-1][still] = cut_mm[1:][still] = 0.0
     corners = np.flatnonzero(cut_mm > SEEN_MM)
     if not len(corners):
         return poses_mm, indices

@@ -6,8 +6,7 @@ from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 
 import numpy as np
 
-from .errors import Error
-from .frame import frame_of_points, frame_of_pose, normal_tilt_deg
+from .frame import frame_of_points, frame_of_pose
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ class Paper:
 class Tool:
     """The brush's tip, seen from the robot's flange; the brush stands on the paper's normal."""
 
-    tcp_mm: tuple = _key("the brush's tip in the flange's frame", (3,))
+    tcp_mm: tuple = _key("the brush's tip in the flange's frame", (3,), -2000, 2000)
     rotation_deg: tuple = _key(
         "of the tool's frame, z along the brush; about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
     )
@@ -68,22 +67,24 @@ class Tool:
 class Heights:
     """Over the paper: z up, 0 where the unbent brush just touches."""
 
-    safe_mm: float = _number("travel between strokes, clear of clips, vessels and wet paint", 0.1, 1e4)
+    safe_mm: float = _number("travel between strokes, clear of clips, vessels and wet paint", 0.5, 1000)
     clearance_mm: float = _number("below this only at press_mm_s", 0.01, 1e3)
-    lowest_mm: float = _number("never lower than this", -1e3, -0.01)
+    lowest_mm: float = _number("never lower than this", -200, -0.01)
 
 
 @dataclass(frozen=True)
 class Speeds:
     """Of the tool's tip."""
 
-    travel_mm_s: float = _number("at or above the safe height", 0.01, 1e4)
+    travel_mm_s: float = _number("at or above the safe height", 0.01, 5000)
     approach_mm_s: float = _number(
-        "on the way down to the clearance; the brush's limit where that is less", 0.01, 1e4
+        "on the way down to the clearance; the brush's limit where that is less", 0.01, 5000
     )
-    press_mm_s: float = _number("straight down into the paper or paint, and up again", 0.01, 1e4)
-    paint_mm_s: float = _number("the most while painting; the brush has a limit of its own", 0.01, 1e4)
-    acceleration_mm_s2: float = _number("for the time estimate, and where the language asks for one", 1, 1e5)
+    press_mm_s: float = _number("straight down into the paper or paint, and up again", 0.01, 5000)
+    paint_mm_s: float = _number("the most while painting; the brush has a limit of its own", 0.01, 5000)
+    acceleration_mm_s2: float = _number(
+        "for the time estimate, and where the language asks for one", 1, 50000
+    )
 
 
 @dataclass(frozen=True)
@@ -193,120 +194,10 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
     return frame
 
 
-def check(cell: Cell) -> None:
-    """Error, with the key in `where`, for what no single key tells."""
-    heights = cell.heights
-    if not heights.clearance_mm <= heights.safe_mm:
-        raise Error(
-            f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}",
-            where="heights.clearance_mm",
-        )
-    if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
-        raise Error(f"language {cell.language!r} needs a table {table}", where=table)
-    _check_paper(cell)
-    _check_workspace(cell)
-    if cell.servo:
-        _check_servo(cell)
-    _check_paint(cell)
-
-
-def _check_paper(cell: Cell) -> None:
-    if cell.paper.taught_mm and len(cell.paper.taught_mm) not in (3, 4):
-        raise Error(f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4", where="paper.taught_mm")
-    if cell.paper.taught_mm and (any(cell.paper.origin_mm) or any(cell.paper.rotation_deg)):
-        raise Error("the paper has both a pose and taught points: one must go", where="paper.taught_mm")
-    try:
-        tilt_deg = normal_tilt_deg(robot_from_paper(cell))
-    except Error as refusal:
-        refusal.where = "paper.taught_mm"
-        raise
-    limit_deg = cell.workspace.tilt_limit_deg
-    if tilt_deg > limit_deg + 1e-9:
-        raise Error(
-            f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
-            where="paper",
-        )
-
-
-def _check_workspace(cell: Cell) -> None:
-    box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
-    if box_mm and not all(low < high for low, high in zip(*box_mm, strict=True)):
-        raise Error("the first corner must be the lower one in x, y and z", where="workspace.box_mm")
-    if reach_mm and not reach_mm[0] < reach_mm[1]:
-        raise Error("the least distance must be below the greatest", where="workspace.reach_mm")
-
-
-def _check_servo(cell: Cell) -> None:
-    frame = robot_from_paper(cell)
-    lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
-    if NEEDED_BY.get(cell.language) == "servo" and not lies_level:
-        raise Error("a servo's heights are those over the paper: it must lie level, at z 0", where="paper")
-    table = np.array(cell.servo.table)
-    steps = np.diff(table, axis=0)
-    if len(table) < 2 or not ((steps[:, 0] > 0).all() or (steps[:, 0] < 0).all()):
-        raise Error("at least two heights are needed, steadily rising or falling", where="servo.table")
-    if not ((steps[:, 1] > 0).all() or (steps[:, 1] < 0).all()):
-        raise Error("the values must steadily rise or fall with the height", where="servo.table")
-    if (table[:, 1] < 0).any():
-        raise Error(f"value {table[:, 1].min():g} is below 0", where="servo.table")
-    low, high = table[:, 0].min(), table[:, 0].max()
-    if not (low <= cell.heights.lowest_mm and cell.heights.safe_mm <= high):
-        raise Error(
-            f"the heights [{low:g}, {high:g}] mm must hold lowest_mm {cell.heights.lowest_mm:g} and "
-            f"safe_mm {cell.heights.safe_mm:g}",
-            where="servo.table",
-        )
-
-
-def _check_paint(cell: Cell) -> None:
-    names = [station.name for station in cell.stations]
-    for number, station in enumerate(cell.stations, 1):
-        where = f"station {number}"
-        if names.index(station.name) != number - 1:
-            raise Error(f"the name {station.name!r} is given twice", where=where)
-        _check_heights_of(station, cell, where)
-        if station.by_hand and (station.depth_mm or station.wipe_mm):
-            raise Error("a person dips here: depth_mm and wipe_mm have no meaning", where=where)
-        if (
-            not station.by_hand
-            and not station.depth_mm
-            and station.name != getattr(cell.reload, "wash", None)
-        ):
-            raise Error("depth_mm 0 takes no paint", where=where)
-    if cell.stations and not cell.reload:
-        raise Error("stations need a table reload that says when to visit them", where="reload")
-    if not cell.reload:
-        return
-    if cell.reload.when not in RELOADS:
-        raise Error(f"{cell.reload.when!r} is none of {', '.join(RELOADS)}", where="reload.when")
-    if not cell.stations:
-        raise Error("there is no station to reload at", where="reload")
-    if cell.reload.wash and cell.reload.wash not in names:
-        raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash")
-
-
-def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
-    if station.by_hand:
-        if cell.servo:
-            raise Error("a servo's brush falls while the program waits: by_hand cannot be", where=where)
-        return
-    top = cell.heights.safe_mm - cell.heights.clearance_mm
-    if not station.surface_mm <= station.rim_mm <= top:
-        raise Error(
-            f"rim_mm {station.rim_mm:g} is outside the range [{station.surface_mm:g}, {top:g}] mm, from the paint's "
-            f"surface to clearance_mm below the safe height",
-            where=where,
-        )
-    bottom = station.surface_mm - station.depth_mm
-    if bottom < cell.heights.lowest_mm:
-        raise Error(f"it dips to {bottom:g} mm, below lowest_mm {cell.heights.lowest_mm:g}", where=where)
-    for point in station.wipe_mm:
-        if not station.rim_mm <= point[2] <= cell.heights.safe_mm:
-            raise Error(
-                f"a wipe at {point[2]:g} mm is outside the range [{station.rim_mm:g}, {cell.heights.safe_mm:g}] mm, "
-                f"from the rim to the safe height",
-                where=where,
-            )
+def value_mm(cell: Cell) -> float:
+    """The most that one value of the servo changes the height by [mm]."""
+    steps = np.diff(np.array(cell.servo.table), axis=0)
+    return float(np.abs(steps[:, 0] / steps[:, 1]).max())
 
 
 def entries(table) -> dict[str, Entry]:

@@ -10,7 +10,8 @@ import tomllib
 from dataclasses import fields
 from pathlib import Path
 
-from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, check, entries, required, tables_of
+from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
+from .cell_check import check
 from .errors import Error
 from .files import find_file, names_in, read_bytes
 
@@ -45,12 +46,14 @@ def read_cell(text: str) -> Cell:
     """The cell that a TOML text describes. Error naming the key that is missing, unknown or out of range."""
     try:
         document = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as problem:
+    except (ValueError, RecursionError) as problem:  # ValueError: also a whole number of thousands of digits
         raise Error(f"the cell file is not TOML: {str(problem)[:200]}") from None
     if document.pop("format", None) != FORMAT:
         raise Error(f'the file is not a cell: format = "{FORMAT}" is missing', where="format")
     if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
-        raise Error(f"version {version!r} of the cell file is not known; known: {VERSION}", where="version")
+        raise Error(
+            f"version {str(version)[:40]} of the cell file is not known; known: {VERSION}", where="version"
+        )
     parts = {name: document.pop(name) for name in TABLES if name in document}
     stations = document.pop("stations", [])
     if not isinstance(stations, list):
@@ -100,11 +103,11 @@ def _value(entry: Entry, value, where: str):
         return _text(value, where)
     if entry.kind == "texts":
         if not isinstance(value, list):
-            raise Error(f"{where} must be a list of texts, not {value!r}", where=where)
+            raise Error(f"{where} must be a list of texts, not {str(value)[:40]}", where=where)
         return tuple(_text(item, where) for item in value)
     if entry.kind == "yes":
         if not isinstance(value, bool):
-            raise Error(f"{where} must be true or false, not {value!r}", where=where)
+            raise Error(f"{where} must be true or false, not {str(value)[:40]}", where=where)
         return value
     if entry.kind in ("number", "whole"):
         return _number(entry, value, where)
@@ -119,13 +122,12 @@ def _text(value, where: str) -> str:
 
 def _number(entry: Entry, value, where: str):
     wanted = int if entry.kind == "whole" else int | float
-    if isinstance(value, bool) or not isinstance(value, wanted) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, wanted) or value != value or abs(value) == math.inf:
         said = "a whole number" if entry.kind == "whole" else "a finite number"
         raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where)
     if not entry.least <= value <= entry.greatest:
-        raise Error(
-            f"{where} {value:g} is outside the range [{entry.least:g}, {entry.greatest:g}]", where=where
-        )
+        said = str(value)[:40] if isinstance(value, int) else f"{value:g}"
+        raise Error(f"{where} {said} is outside the range [{entry.least:g}, {entry.greatest:g}]", where=where)
     return value if entry.kind == "whole" else float(value)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import convert, machine
+from . import _core, convert, machine, paint, report
+from . import cell_check as cell_checks
 from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -33,12 +34,13 @@ def convert_file(args) -> None:
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
     job = Job(args.z_offset, args.from_stroke)
+    notes = convert.notes(work)
     if args.order == "nearest":
-        work = convert.nearest_first(work)
+        work, notes = convert.nearest_first(work), (*notes, "order: nearest first")
     with about(args.input):
         if _suffix(args.output) != ".json":
             machine.post_for(_suffix(args.output), cell)
-        marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
+        marks = convert.predict(work, _suffix(args.preview) == ".svg", stage)
         problems = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
         problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
         if damaged:
@@ -46,13 +48,15 @@ def convert_file(args) -> None:
             problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")
         if problems:
             raise RefusedError([(args.input, *problem) for problem in problems])
-        notes = convert.notes(work)
         program = machine.encode(_suffix(args.output), work.plan, work.brush, work.title, notes, cell, job)
         files = {args.output: program}
         if args.preview:
             files[args.preview] = convert.picture(_suffix(args.preview), work, marks)
         if args.report:
             files[args.report] = convert.report_text(_suffix(args.report), work, marks, cell)
+        too_long = paint.too_long(convert.in_loads(work, cell).plan, work.brush, cell)
+    if _suffix(args.output) != ".json":
+        warn(args.input, too_long)
     _warn_of_example(args, cell)
     _write(files)
 
@@ -93,46 +97,81 @@ def height_file(args) -> None:
     _write({args.output: text})
 
 
+def chart_file(args) -> None:
+    from .chart import chart
+    from .chart_json import write_chart
+    from .chart_page import chart_page
+    from .chart_report import chart_report
+
+    _check_places(args.output, args.page, args.chart)
+    brush = _brush(args) or find_brush(convert.DEFAULT_BRUSH)
+    cell = machine.as_exact_as(_cell(args), machine.DEFAULT_TOLERANCE_MM)
+    with about(args.output):
+        if _suffix(args.output) != ".json":
+            machine.post_for(_suffix(args.output), cell)
+        stage("laying out the chart")
+        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm)
+        job = Job(args.z_offset)
+        marks = _core.simulate(made.plan, brush)
+        problems = machine.problems(made.plan, brush, marks, cell, machine.DEFAULT_TOLERANCE_MM, job)
+        if problems:
+            raise RefusedError([(args.output, *problem) for problem in folded(problems)])
+        title = f"calibration chart of brush {brush.name}"
+        files = {args.output: machine.encode(_suffix(args.output), made.plan, brush, title, (), cell, job)}
+    if args.page:
+        files[args.page] = chart_page(made).encode()
+    if args.chart:
+        files[args.chart] = write_chart(made).encode()
+    _warn_of_example(args, cell)
+    _write(files)
+    tell(chart_report(made, brush, args.noise))
+
+
 def check_file(args) -> None:
-    from . import checking  # here and below: what only one command needs is loaded by it
+    from . import checking, comparing  # here and below: what only one command needs is loaded by it
     from .readback import read_program
+    from .readback.header import made as made_of
 
     _check_places(args.preview)
     with about(args.program):
         text = read_bytes(args.program).decode("latin-1")
-        made = checking.made(text)
+        made = made_of(text)
+        for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
+            if getattr(args, kind) is None and name not in names:
+                raise Error(
+                    f"the program names {kind} {name!r}, which does not come along: give --{kind} FILE"
+                )
         cell = find_cell(args.cell if args.cell is not None else made.cell)
         brush = _brush(args) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, _suffix(args.program), cell)
-    args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
-    work = _prepare(args, cell, brush) if args.input else None
-    cell = machine.as_exact_as(cell, made.tolerance_mm)
+    work = _as_made(args, made, cell, brush) if args.input else None
+    cell = machine.as_exact_as(cell, made.tolerance_mm or machine.DEFAULT_TOLERANCE_MM)
     with about(args.program):
         sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
         if sheet_mm is None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
-        again = checking.again(ran, read, brush, cell, z_offset_mm)
         problems = ran.problems
-        if again and not cell.servo:  # whose steps of height cannot be told from the plan's
-            changed = checking.differing_line(text, checking.rewritten(again, cell))
-            problems = problems + ([("", changed)] if changed else [])
+        again = comparing.again(ran, brush, cell, z_offset_mm)
+        changed = again and comparing.differing_line(text, again, cell)
+        problems = problems + ([("", changed)] if changed else [])
         strokes, drawn = None, None
         if work:
-            expected = convert.in_loads(work, cell).plan
-            strokes, unmatched = checking.matched(ran.plan, work.strokes, made.first_stroke > 1)
-            problems = problems + unmatched + checking.strayed(ran.plan, expected, cell)
-            problems = problems + checking.paint_problems(ran, expected, cell)
-            strokes = None if len(strokes) != len(ran.plan.passes) else strokes
-            drawn = work.strokes if made.first_stroke == 1 else None
-        outlined = convert.outlined(ran.marks, brush, stage)
+            loads = convert.in_loads(work, cell).plan
+            which, unlike = comparing.with_plan(ran, loads, cell)
+            problems = problems + unlike
+            if work.strokes is not None:
+                whole = convert.whole_strokes(work, loads)
+                strokes = None if None in which else [whole[k] for k in which]
+                drawn = work.strokes if ran.first_stroke == 1 else None
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
+            outlined = convert.outlined(ran.marks, brush, stage)
             _write({args.preview: convert.picture(_suffix(args.preview), shown, outlined)})
         seconds = duration_s(again) if again else 0.0
         suffix = ".json" if args.json else ".txt"
-        tell(convert.report_text(suffix, shown, outlined, cell, drawn=drawn, seconds=seconds))
+        tell(convert.report_text(suffix, shown, ran.marks, cell, drawn=drawn, seconds=seconds))
     if problems:
         raise RefusedError([(args.program, *problem) for problem in folded(problems)])
     if not args.json:
@@ -140,13 +179,30 @@ def check_file(args) -> None:
         tell(f"{args.program}: nothing forbids to run it{known}\n")
 
 
+def _as_made(args, made, cell: Cell, brush) -> convert.Work:
+    """The drawing or plan that a program should paint, prepared as its header says."""
+    if _suffix(args.input) != ".json":
+        args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
+    work = _prepare(args, cell, brush)
+    return convert.nearest_first(work) if made.nearest_first else work
+
+
 def predict_file(args) -> None:
     _check_places(args.output)
     _settle(args)
     suffix = _suffix(args.output)
-    work, marks, _ = _look(args, _cell(args), outlines=suffix != ".png", whole=suffix == ".json")
+    outlines = suffix != ".png" or args.band
+    work, marks, _ = _look(args, _cell(args), outlines=outlines, whole=suffix == ".json")
     with about(args.input):
-        picture = convert.picture(_suffix(args.output), work, marks)
+        band = None
+        if args.band:
+            from .uncertainty import band as band_of
+
+            stage("finding how sure it is")
+            band = band_of(work.plan, work.brush, marks)
+            if not any(band.rings):
+                say(work.brush.name, band.words)
+        picture = convert.picture(_suffix(args.output), work, marks, band)
     _write({args.output: picture})
 
 
@@ -168,12 +224,19 @@ def import_file(args) -> None:
         try:
             strokes, notices = strokes_of(design, args.paths_as)
         except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+            if args.editable:
+                raise
             strokes, notices = [], [Notice(nothing.where, str(nothing))]
         notices = [*design.notices, *notices]
         warn(args.input, [(notice.where, notice.sentence) for notice in notices])
-        from .overview import overview
+        if args.editable:
+            from .lines_svg import lines_svg
 
-        picture = overview(_suffix(args.output), design, strokes, notices)
+            picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
+        else:
+            from .overview import overview
+
+            picture = overview(_suffix(args.output), design, strokes, notices)
     _write({args.output: picture})
 
 
@@ -195,16 +258,44 @@ def text_file(args) -> None:
 
 
 def report_file(args) -> None:
+    _check_places(args.preview)
+    if args.all_brushes:
+        return _all_brushes(args)
+    args.brush = args.brush[0] if args.brush else None
     _settle(args)
     cell = _cell(args)
-    work, marks, warnings = _look(args, cell, outlines=True, partly=True)
+    work, marks, warnings = _look(args, cell, outlines=_suffix(args.preview) == ".svg", partly=True)
     with about(args.input):
-        text = convert.report_text(".json" if args.json else ".txt", work, marks, cell, warnings)
+        stage("trying other sizes")
+        advice = convert.advice(work)
+        if args.preview:
+            _write({args.preview: convert.misses_picture(_suffix(args.preview), work, marks)})
+        suffix = ".json" if args.json else ".txt"
+        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice)
     if work.plan.passes or args.json:
         tell(text)
+    elif advice:
+        tell(advice + "\n")
     if work.refused:
         refused = folded((notice.where, notice.sentence) for notice in work.refused)
         raise RefusedError([(args.input, *each) for each in refused])
+
+
+def _all_brushes(args) -> None:
+    from . import suit
+
+    given, args.brush = args.brush or [], None
+    _settle(args)
+    asked = [*brush_names(), *(name for name in given if name not in brush_names())]
+    brushes = []
+    for name in asked:
+        with about(name):
+            brushes.append(find_brush(name))
+    cell = _cell(args)
+    with about(args.input):
+        suits = convert.suits(args.input, _options(args, cell), brushes, stage)
+        title = arrange(read_drawing(args.input, _reading(args)), _layout(args)).title
+        tell(suit.to_json(title, suits) if args.json else report.brushes_text(title, suits))
 
 
 def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
@@ -214,10 +305,12 @@ def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
         if in_loads:
             work = convert.in_loads(work, cell)
+            too_long = paint.too_long(work.plan, work.brush, cell)
         marks = convert.predict(work, outlines, stage, whole)
         warnings = [(n.where, n.sentence) for n in work.notices]
         if work.plan.passes or not work.refused:
             warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+        warnings += too_long if in_loads else []
     warn(args.input, warnings)
     return work, marks, warnings
 
@@ -227,19 +320,23 @@ def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
-    options = convert.Options(
+    with about(args.input):
+        return convert.prepare(args.input, _options(args, cell, brush), stage, partly)
+
+
+def _options(args, cell: Cell, brush=None) -> convert.Options:
+    is_plan = _suffix(args.input) == ".json"
+    return convert.Options(
         brush=brush or _brush(args),
         reading=_reading(args),
         layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
-        tolerance_mm=args.tolerance or convert.Options.tolerance_mm,
+        tolerance_mm=(not is_plan and args.tolerance) or convert.Options.tolerance_mm,
         paths_as=args.paths_as,
         wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
-    with about(args.input):
-        return convert.prepare(args.input, options, stage, partly)
 
 
 def _settle(args) -> None:
@@ -411,6 +508,9 @@ def cell_check(args) -> None:
             "language",
             f"no program can be written in {cell.language!r} yet, only plans; known: {known}",
         )
+    if problems := cell_checks.out_of_reach(cell):
+        raise RefusedError([(args.input, *problem) for problem in problems])
+    warn(args.input, cell_checks.remarks(cell))
     tell(f"{args.input}: cell {cell.name} can be used\n")
 
 
@@ -442,5 +542,6 @@ def cell_new(args) -> None:
             else cell.paper
         )
         text = write_cell(replace(cell, name=name, paper=paper))
-        read_cell(text)
+        made = read_cell(text)
     _write({args.output: text})
+    warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))

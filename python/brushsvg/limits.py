@@ -39,7 +39,10 @@ def broken_limits(plan, brush, cell: Cell, z_offset_mm: float = 0.0) -> list[tup
             sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
         problems += [(a_pass.stroke, sentence) for sentence in sentences]
     if cell.servo:
-        problems += [("", said) for said in _servo(plan, cell, z_offset_mm)]
+        heights = [np.min(a_pass.poses_mm[:, 2]) for a_pass in plan.passes if len(a_pass.poses_mm)]
+        heights += [height for each in cell.stations for height in station_points(each, cell)[:, 2]]
+        heights = np.array([0.0, *heights, cell.heights.safe_mm])
+        problems += [("", said) for said in _servo(heights, cell, z_offset_mm)]
     for station in cell.stations:
         points = station_points(station, cell)
         problems += [(station.name, said) for said in _workspace(moved(frame, points), cell)]
@@ -51,9 +54,15 @@ def broken_limits(plan, brush, cell: Cell, z_offset_mm: float = 0.0) -> list[tup
     return problems
 
 
-def workspace_problems(points_mm: np.ndarray, cell: Cell, z_offset_mm: float = 0.0) -> list[str]:
-    """A sentence for each side of the cell's box and reach that points (n, 3) of the paper's frame are beyond."""
-    return list(_workspace(moved(robot_from_paper(cell, z_offset_mm), points_mm), cell))
+def workspace_problems(
+    points_mm: np.ndarray, cell: Cell, z_offset_mm: float = 0.0, sheet_mm=None
+) -> list[str]:
+    """A sentence for each side of the cell's box and reach, and of a sheet with the margin round it, that points (n, 3)
+    of the paper's frame are beyond; and for heights that a servo does not know."""
+    sentences = list(_workspace(moved(robot_from_paper(cell, z_offset_mm), points_mm), cell))
+    if cell.servo:
+        sentences += _servo(points_mm[:, 2], cell, z_offset_mm)
+    return sentences if sheet_mm is None else [*sentences, *_sheet(points_mm, sheet_mm, cell)]
 
 
 def station_points(station: Station, cell: Cell) -> np.ndarray:
@@ -73,15 +82,15 @@ def _heights(poses: np.ndarray, cell: Cell) -> Iterator[str]:
         yield f"height {lowest:.1f} mm is outside the range [{cell.heights.lowest_mm:.1f}, 0.0] mm of cell {cell.name}"
 
 
-def _servo(plan, cell: Cell, z_offset_mm: float) -> Iterator[str]:
+def _servo(heights_mm: np.ndarray, cell: Cell, z_offset_mm: float) -> Iterator[str]:
     """A height beyond the table would silently become its end."""
-    low, high = np.array(cell.servo.table)[:, 0].min(), np.array(cell.servo.table)[:, 0].max()
-    lowest = min(
-        (float(np.min(a_pass.poses_mm[:, 2])) for a_pass in plan.passes if len(a_pass.poses_mm)), default=0.0
-    )
-    for height in (lowest + z_offset_mm, cell.heights.safe_mm + z_offset_mm):
-        if not low - ROUNDING_MM <= height <= high + ROUNDING_MM:
-            yield f"height {height:.1f} mm is outside the range [{low:g}, {high:g}] mm of the servo of cell {cell.name}"
+    known = np.array(cell.servo.table)[:, 0]
+    for height in (np.nanmin(heights_mm) + z_offset_mm, np.nanmax(heights_mm) + z_offset_mm):
+        if not known.min() - ROUNDING_MM <= height <= known.max() + ROUNDING_MM:
+            yield (
+                f"height {height:.1f} mm is outside the range [{known.min():g}, {known.max():g}] mm of the servo "
+                f"of cell {cell.name}"
+            )
 
 
 def _sheet(poses: np.ndarray, sheet_mm, cell: Cell) -> Iterator[str]:

@@ -10,6 +10,8 @@ from . import _core
 from .cell import Cell, Station
 from .errors import Error
 
+PART = "part"  # of the settings of a pass: which part of an interrupted stroke it is, from the second on
+
 
 def in_loads(plan, brush, cell: Cell):
     """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
@@ -22,10 +24,29 @@ def in_loads(plan, brush, cell: Cell):
     passes = []
     for a_pass in plan.passes:
         whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
-        passes += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+        parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+        for number, part in enumerate(
+            parts[1:], 2
+        ):  # names alone do not tell: a drawing may have its own "s+2"
+            part.settings = json.dumps(json.loads(part.settings) | {PART: number})
+        passes += parts
     if len(passes) == len(plan.passes):
         return plan
     return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, plan.extra)
+
+
+def too_long(plan, brush, cell: Cell) -> list[tuple[str, str]]:
+    """(stroke, sentence) for parts that are longer than a load of paint lasts, unless they may not be cut."""
+    if not cell.reload or cell.reload.when != "length":
+        return []
+    every_mm, deepest_mm = cell.reload.every_mm, brush.depth_range_mm[1]
+    last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the lift comes back over its own mark
+    sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
+    return [
+        (a_pass.stroke, f"{length_mm:.0f} {sentence} {every_mm:g}] mm of a load of paint")
+        for a_pass in plan.passes
+        if (length_mm := painted_mm(a_pass)) > last_mm and _asked(a_pass) is not False
+    ]
 
 
 def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
@@ -61,7 +82,7 @@ def painted_mm(a_pass) -> float:
 
 
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
-    if part_goes_on(last.stroke, a_pass.stroke):
+    if is_later_part(a_pass):
         return True
     asked = _asked(a_pass)
     if asked is not None:
@@ -73,10 +94,9 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
     return used_mm > cell.reload.every_mm
 
 
-def part_goes_on(before: str, name: str) -> bool:
-    """Whether a pass of this name is the next part of the stroke that the pass before it paints: s, s+2, s+3 ..."""
-    stroke, _, part = name.rpartition("+")
-    return part.isdecimal() and before == (stroke if part == "2" else f"{stroke}+{int(part) - 1}")
+def is_later_part(a_pass) -> bool:
+    """Whether a pass of a plan in loads goes on with the stroke that the pass before it paints."""
+    return PART in json.loads(a_pass.settings)
 
 
 def _asked(a_pass) -> bool | None:

@@ -10,6 +10,7 @@ from .errors import Error
 
 WIDE = ("clamp", "passes", "refuse")
 _SHARE = 0.9  # of a pass's width, the next one's middle line at most beside it: they overlap by the rest
+_FITTED = 0.03  # of a pass's half width, off its curve at most: as much lies outside of the shape
 _FLAT_MM = 0.02
 
 
@@ -38,6 +39,8 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
             raise Error(sentence, where=stroke.id, value=2 * worst, range=(2 * least, 2 * greatest))
         beside = _beside(stroke, greatest) if wide == "passes" and worst > greatest else []
         how = f"painted in {1 + len(beside)} passes" if beside else "painted at the nearest"
+        if wide == "clamp" and worst > greatest:
+            how += "; --wide passes fills it"
         count = (
             f"{off.sum()} of {len(off)} widths of its outline, up to"
             if len(off) > 1
@@ -93,7 +96,7 @@ def _beside(stroke, greatest: float) -> list:
                 points = _offset(stretch[:, :2], along, side * across, beyond * row / rows, round_ends)
                 if points is not None:
                     found.append(np.column_stack([points, np.full(len(points), greatest)]))
-    fitted = [_core.fit_curve(points, 0.1 * greatest) for points in found]
+    fitted = [_core.fit_curve(points, _FITTED * greatest) for points in found]
     return [
         _like(stroke, f"{stroke.id}~{number}", middle, knots)
         for number, (middle, knots) in enumerate(fitted, start=2)

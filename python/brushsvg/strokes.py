@@ -78,7 +78,8 @@ def _left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
         if len(elements) > 2
         else ", nor does another" * (len(elements) - 1)
     )
-    return [Notice(first, f"its outline {what}{others}: left out")]
+    why = "; --as stroke counts fills as none" if paths_as == "stroke" else ""
+    return [Notice(first, f"its outline {what}{others}: left out{why}")]
 
 
 def _lines(element: Element, paths_as: str | None) -> list[_Line]:

@@ -84,6 +84,31 @@ TEST_CASE("a paint that lasts leaves the pass as it is") {
     CHECK(parts[0].poses_mm == whole.poses_mm);
 }
 
+TEST_CASE("a straight line has places to stop at between its few poses") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "line";
+    stroke.middle_mm.resize(1, 8);
+    stroke.middle_mm << 20, 50, 140, 50, 260, 50, 380, 50;
+    for (const double h : {0.2, 1.5}) {  // at the first depth the brush has next to no patch
+        stroke.half_width = {{0.0, h}, {1.0, h}};
+        const Pass whole = compensate(stroke, brush).pass;
+        REQUIRE(whole.poses_mm.rows() < 20);
+        const std::vector<Pass> parts = interrupted(whole, brush, {100.0, 100.0, 5.0});
+        CHECK(parts.size() >= 4);
+        for (const Pass& part : parts) {
+            CHECK(length(part) < 100.0 + 7.0);
+            CHECK(part.poses_mm.rows() < 30);
+        }
+        for (const Pass& part : parts)  // the way between two poses that are one but for rounding points anywhere
+            for (Eigen::Index i = 1; i < part.poses_mm.rows(); ++i)
+                CHECK((part.poses_mm.row(i) - part.poses_mm.row(i - 1)).norm() > 1e-6);
+        const Rings found = painted(parts, brush);
+        CHECK(found.size() == 1);
+        CHECK(overlap(found, painted({whole}, brush)) > 0.995);
+    }
+}
+
 TEST_CASE("arcs stay whole in the part that holds them") {
     const Brush brush = shipped("round-6");
     Stroke stroke;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "brushsvg/error.hpp"
+
 using namespace brushsvg;
 
 namespace {
@@ -138,6 +140,24 @@ TEST_CASE("outlines fill as the rule says, whichever way they turn and however t
     CHECK(area(fill({outer, outer}, FillRule::evenodd)) == 0.0);
     CHECK(area(fill({outer, outer, outer}, FillRule::evenodd)) == doctest::Approx(100.0));
     CHECK(fill({}, FillRule::nonzero).empty());
+}
+
+TEST_CASE("an odd number of contours is filled, however many") {
+    Rings same, nested;
+    double rings_area = 0.0;
+    for (int n = 1; n <= 41; ++n) {
+        same.push_back(box(0, 0, 10, 10));
+        nested.push_back(box(n, n, 100 - 2 * n, 100 - 2 * n));
+        rings_area += (n % 2 == 1 ? 1 : -1) * (100.0 - 2 * n) * (100.0 - 2 * n);
+        CHECK(area(fill(same, FillRule::evenodd)) == doctest::Approx(n % 2 == 1 ? 100.0 : 0.0));
+        CHECK(area(fill(nested, FillRule::evenodd)) == doctest::Approx(rings_area));
+    }
+    Ring star(71, 2);  // its lines run 35 times round the middle
+    for (int i = 0; i < 71; ++i) {
+        const double a = 35.0 * 2.0 * 3.14159265358979323846 * i / 71;
+        star.row(i) << 50.0 * std::cos(a), 50.0 * std::sin(a);
+    }
+    CHECK_THROWS_AS(fill({star}, FillRule::evenodd), Error);
 }
 
 TEST_CASE("outlines that cross themselves: both lobes of an eight, the heart of a star by its rule") {

@@ -184,7 +184,7 @@ def test_widest_point_stays_within_the_tolerance(middle, half_width, tolerance):
 @pytest.mark.parametrize("half_width", [0.25, 1.0, 1.68, 2.5])
 def test_taut_rows_reach_from_the_landing_to_the_end(half_width):
     """The tolerance would mean little if the brush hung loose most of the way."""
-    painted = Painted(stroke_of(smooth(np.random.default_rng(6), 4), [(0.0, half_width)]), 1e-3)
+    painted = Painted(stroke_of(smooth(np.random.default_rng(6), 4), [(0.0, half_width)]), 1e-3, step=0.01)
     s = np.sort(painted.s[painted.taut])
     depth = half_width / 0.42
     assert s[0] <= max(0.0, WIDEST(depth) - half_width) + 0.01
@@ -238,7 +238,7 @@ def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
 @pytest.mark.parametrize(("degrees", "remains"), [(100, 0.02), (120, 0.19), (150, 0.69), (180, 1.38)])
 @pytest.mark.parametrize("tolerance", [0.05, 1e-3])
 def test_sharper_turns_report_what_remains(degrees, remains, tolerance):
-    painted = Painted(stroke_of(corner(degrees), [(0.0, 1.68)]), tolerance, step=0.04)
+    painted = Painted(stroke_of(corner(degrees), [(0.0, 1.68)]), tolerance, step=0.04, few_poses=False)
     measured = painted.once_taut().max()
     assert painted.miss.largest_mm == pytest.approx(measured, rel=0.02, abs=0.05 * tolerance)
     assert painted.miss.largest_mm == pytest.approx(remains, abs=0.01)
@@ -287,7 +287,9 @@ BENDS = {
 @pytest.mark.parametrize("bend", BENDS)
 def test_contact_comes_back(bend, wide):
     middle_mm, parts = BENDS[bend]
-    painted = Painted(stroke_of(middle_mm, [(0.0, wide[0]), (1.0, wide[1])]), 1e-6, parts=2, step=1.0)
+    painted = Painted(
+        stroke_of(middle_mm, [(0.0, wide[0]), (1.0, wide[1])]), 1e-6, parts=2, step=1.0, few_poses=False
+    )
     length = sum(p[0] for p in parts)
 
     def depth_at(s):

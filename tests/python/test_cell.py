@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from brushsvg.cell import Paper, Reload, Servo, Station, robot_from_paper
+from brushsvg.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
+from brushsvg.cell_check import out_of_reach, remarks
 from brushsvg.cell_file import SHIPPED, cell_names, find_cell, read_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.frame import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
@@ -31,11 +32,19 @@ def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
         ("press_mm_s = 8.0", 'press_mm_s = "8"', "speeds.press_mm_s", "must be a finite number, not 8"),
         ("press_mm_s = 8.0", "press_mm_s = nan", "speeds.press_mm_s", "finite number, not nan"),
         ("press_mm_s = 8.0", "press_mm_s = true", "speeds.press_mm_s", "finite number, not True"),
-        ("press_mm_s = 8.0", "press_mm_s = 0", "speeds.press_mm_s", "0 is outside the range [0.01, 10000]"),
+        ("press_mm_s = 8.0", "press_mm_s = 0", "speeds.press_mm_s", "0 is outside the range [0.01, 5000]"),
+        (
+            "press_mm_s = 8.0",
+            f"press_mm_s = 1{'0' * 400}",
+            "speeds.press_mm_s",
+            "0 is outside the range [0.01, 5000]",
+        ),
+        ("decimals = 4", f"decimals = -1{'0' * 400}", "decimals", "0 is outside the range [1, 6]"),
+        ("decimals = 4", f"decimals = 1{'0' * 5000}", "", "not TOML"),
         ("decimals = 4", "decimals = 4.0", "decimals", "a whole number"),
         ("decimals = 4", "decimals = 9", "decimals", "9 is outside the range [1, 6]"),
         ("safe_mm = 10.0", "safe_mm = 0.5", "heights.clearance_mm", "must not be above safe_mm 0.5"),
-        ("lowest_mm = -20.0", "lowest_mm = 20", "heights.lowest_mm", "outside the range [-1000, -0.01]"),
+        ("lowest_mm = -20.0", "lowest_mm = 20", "heights.lowest_mm", "outside the range [-200, -0.01]"),
         ("margin_mm = 30.0", "margin_mm = -1", "workspace.margin_mm", "outside the range [0, 10000]"),
         (
             "margin_mm = 30.0",
@@ -139,12 +148,103 @@ def test_what_is_written_is_read_back():
         ({"servo": Servo(((0.0, 1.0), (0.0, 2.0)))}, "servo.table", "steadily rising or falling"),
         ({"servo": Servo(((0.0, 1.0), (9.0, 2.0)))}, "servo.table", "must hold lowest_mm -20 and safe_mm 20"),
         ({"servo": Servo(((-30.0, -1.0), (30.0, 2.0)))}, "servo.table", "value -1 is below 0"),
+        (
+            {"servo": Servo(((-30.0, 0.0), (30.0, 50.0)))},
+            "servo.table",
+            "one value changes the height by 1.2 mm, outside the range [0, 0.5] mm",
+        ),
+        ({"reload": Reload("length", 10.0, 5.0)}, "reload.every_mm", "more than twice backtrack_mm 5"),
+        ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "99000 is outside the range [-2000, 2000]"),
     ],
 )
 def test_what_no_single_key_tells_is_refused_too(change, where, words):
     with pytest.raises(Error) as refusal:
         read_cell(write_cell(replace(FULL, **change)))
     assert (refusal.value.where, words in str(refusal.value)) == (where, True), str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("workspace", "words"),
+    [
+        (
+            {"box_mm": ((-450.0, -850.0, 50.0), (450.0, -200.0, 500.0))},
+            "has z below 50 mm, outside the range [50, 500]",
+        ),
+        ({"box_mm": ((-450.0, -850.0, -50.0), (450.0, -700.0, 500.0))}, "has y above -700 mm"),
+        (
+            {"box_mm": ((-450.0, -850.0, -50.0), (450.0, -200.0, 30.0))},
+            "at height 20 mm the whole sheet has z above 30",
+        ),
+        ({"reach_mm": (10.0, 150.0)}, "mm and more from the robot's origin, outside the range [10, 150] mm"),
+        ({"reach_mm": (1500.0, 1600.0)}, "lies at most 8"),
+    ],
+)
+def test_a_cell_that_reaches_no_paper_is_told(workspace, words):
+    cell = find_cell("ur5e")
+    assert out_of_reach(cell) == []
+    ((key, sentence),) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
+    assert key == f"workspace.{next(iter(workspace))}" and words in sentence, sentence
+
+
+def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
+    """Against points tried one by one, on papers that lie anywhere."""
+    random = np.random.default_rng(5)
+    found = {True: 0, False: 0}
+    for _ in range(200):
+        paper = Paper(
+            tuple(random.uniform(-400, 400, 3)), (*random.uniform(-40, 40, 2), random.uniform(0, 360))
+        )
+        low = random.uniform(-500, 300, 3)
+        workspace = replace(
+            find_cell("ur5e").workspace,
+            margin_mm=0.0,
+            box_mm=(tuple(low), tuple(low + random.uniform(50, 600, 3))),
+            reach_mm=(100.0, float(random.uniform(200, 600))),
+        )
+        cell = replace(find_cell("ur5e"), paper=paper, workspace=workspace)
+        x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 2000, 8.0), np.arange(0, 2000, 8.0)))
+        is_met = True
+        for height in (0.0, cell.heights.safe_mm):
+            points = moved(robot_from_paper(cell), np.column_stack([x, y, np.full(len(x), height)]))
+            away = np.linalg.norm(points, axis=1)
+            inside = ((points >= low) & (points <= workspace.box_mm[1])).all(axis=1)
+            is_met &= bool((inside & (away >= 100) & (away <= workspace.reach_mm[1])).any())
+        said = bool(out_of_reach(cell))
+        # box and reach may be met, though not at one point: that is left to the programs' own limits
+        assert not (said and is_met)
+        found[said] += 1
+    assert min(found.values()) > 20
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "words"),
+    [
+        ("heights", {"safe_mm": 1.0, "clearance_mm": 0.5}, "1 is outside the usual range [2, 200]"),
+        ("heights", {"lowest_mm": -120.0}, "-120 is outside the usual range [-50, -0.5]"),
+        ("speeds", {"travel_mm_s": 4000.0}, "4000 is outside the usual range [1, 1000]"),
+        ("speeds", {"paint_mm_s": 0.1}, "0.1 is outside the usual range [1, 500]"),
+        ("speeds", {"acceleration_mm_s2": 40000.0}, "outside the usual range [10, 10000]"),
+        ("tool", {"tcp_mm": (0.0, 0.0, 1800.0)}, "the tip is 1800 mm from the flange"),
+        (
+            "workspace",
+            {"box_mm": ((-100.0, -850.0, -50.0), (450.0, -200.0, 500.0))},
+            "lower left corner the tool goes",
+        ),
+        ("workspace", {"reach_mm": (200.0, 600.0)}, "lower left corner the tool goes 668"),
+    ],
+)
+def test_what_is_odd_is_remarked_on(table, change, words):
+    cell = replace(find_cell("ur5e"), paper=replace(find_cell("ur5e").paper, example=False))
+    assert remarks(cell) == []
+    ((key, sentence),) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
+    assert key.startswith(table) and words in sentence, sentence
+
+
+@pytest.mark.parametrize("name", cell_names())
+def test_nothing_is_odd_about_shipped_cells(name):
+    cell = find_cell(name)
+    assert [key for key, _ in remarks(cell)] == (["paper"] if cell.paper.example else [])
+    assert out_of_reach(cell) == []
 
 
 def test_the_frame_of_taught_points_is_where_they_were():
@@ -155,6 +255,31 @@ def test_the_frame_of_taught_points_is_where_they_were():
     assert robot_from_paper(cell) == pytest.approx(truth, abs=1e-9)
     higher = robot_from_paper(cell, 2.0)
     assert higher[:3, 3] - truth[:3, 3] == pytest.approx(2.0 * truth[:3, 2])
+
+
+@pytest.mark.parametrize(
+    ("language", "where"), [("grbl-servo", "servo"), ("urscript", "tool"), ("linuxcnc", None), ("grbl", None)]
+)
+def test_a_language_that_needs_a_table_says_so(language, where):
+    text = TEXT.replace('language = "linuxcnc"', f'language = "{language}"')
+    if where is None:
+        assert read_cell(text).language == language
+        return
+    with pytest.raises(Error, match=f"language '{language}' needs a table {where}") as refusal:
+        read_cell(text)
+    assert refusal.value.where == where
+
+
+def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
+    text = (SHIPPED / "grbl-servo.toml").read_text(encoding="utf-8")
+    level = "taught_mm = [[10, 5, 0], [110, 15, 0], [0, 105, 0]]"
+    assert read_cell(text.replace("[paper]", f"[paper]\n{level}")).paper.taught_mm
+    for z in ("[110, 15, 0.5]", "[110, 15, -0.1]"):
+        with pytest.raises(Error, match="it must lie level, at z 0") as refusal:
+            read_cell(text.replace("[paper]", f"[paper]\n{level.replace('[110, 15, 0]', z)}"))
+        assert refusal.value.where == "paper"
+    with pytest.raises(Error, match="it must lie level, at z 0"):
+        read_cell(text.replace("[paper]", "[paper]\norigin_mm = [0, 0, 1]"))
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
 from brushsvg.limits import broken_limits
 from brushsvg.moves import Wait
-from brushsvg.paint import in_loads, painted_mm, visits
+from brushsvg.paint import in_loads, painted_mm, too_long, visits
 from brushsvg.program import visit
 
 BLACK = Station(
@@ -135,6 +135,57 @@ def test_a_stroke_may_ask_for_paint_or_go_without():
     )
     assert names(visits(plan, cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
     assert in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))) is plan
+
+
+def test_names_do_not_make_a_stroke_a_part_of_another():
+    """Parts are named s+2; a drawing may name its own strokes so, or as it likes."""
+    brush, every = find_brush("round-6"), 100.0
+    line = np.array([(20, 0, 0), (25, 0, -3), (60, 0, -3), (58, 0, 0)], float)
+    names = ["a", "a+2", "a+3", "b~2", "b+x", "+2", "2+"]
+    passes = [
+        _core.Pass(name, line + np.array([0, 10 + 10 * k, 0]), 20.0, "", "#000000")
+        for k, name in enumerate(names)
+    ]
+    plan = _core.Plan(brush.name, "", (400.0, 100.0), passes)
+    cell = cell_with(Reload("length", every, 5.0))
+    loads = in_loads(plan, brush, cell)
+    assert [a_pass.stroke for a_pass in loads.passes] == names
+    assert [bool(stations) for stations in visits(loads, cell)] == [
+        True,
+        False,
+        True,
+        False,
+        True,
+        False,
+        True,
+    ]
+    assert visits(plan, cell) == visits(loads, cell)
+
+
+def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
+    brush = find_brush("round-6")
+    cell = cell_with(Reload("length", 40.0, 5.0))
+    step = np.array([(0, 0), (4, 0)] * 20, float)  # to and fro on the spot: the bristles never pull
+    hairline = np.column_stack([np.linspace(0, 150, 40), np.zeros(40), np.full(40, -0.04)])
+    for poses in (np.column_stack([step, np.full(40, -5.0)]), hairline):
+        passes = [_core.Pass("rub", poses + np.array([30, 30, 0]), 20.0, "", "#000000")]
+        plan = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell)
+        assert [a_pass.stroke for a_pass in plan.passes] == ["rub"]
+        ((where, sentence),) = too_long(plan, brush, cell)
+        assert where == "rub" and sentence.startswith(
+            f"{painted_mm(passes[0]):.0f} mm are painted without a place"
+        )
+        passes[0].settings = '{"reload": false}'
+        assert too_long(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell) == []
+    for every in (40.0, 90.0):  # a line is cut between its two poses
+        long = [
+            _core.Pass(
+                "line", np.array([(20, 50, 0), (30, 50, -4), (380, 50, -4), (370, 50, 0)], float), 20.0
+            )
+        ]
+        cell = cell_with(Reload("length", every, 5.0))
+        loads = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), long), brush, cell)
+        assert len(loads.passes) >= 350 / every and too_long(loads, brush, cell) == []
 
 
 def long_plan(brush):

@@ -77,14 +77,19 @@ def test_the_demo_leaves_everything(tmp_path):
     }
     table = out[: out.index(str(tmp_path))]
     assert (tmp_path / "demo" / "vincent.report.txt").read_text().endswith("\n\n" + table.removesuffix("\n"))
-    rows = [re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed", line)]
+    rows = [
+        re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed|refined", line)
+    ]
     told = re.findall(
-        r"^\| `(?:none|constant|closed)`.*?\| \**([\d.]+)\** \| \**([\d.]+) / ([\d.]+)\** \|$", README, re.M
+        r"^\| `(?:none|constant|closed|refined)`.*?\| \**([\d.]+)\** \| \**([\d.]+) / ([\d.]+)\** \|$",
+        README,
+        re.M,
     )
     assert [tuple(row[1:]) for row in rows] == told, "README.md tells other figures"
     overlap = {row[0].split(",")[0]: float(row[1]) for row in reversed(rows)}
-    assert len(rows) == 4
+    assert len(rows) == 5
     assert overlap["none"] + 0.3 < overlap["constant"] < overlap["closed"] - 0.1
+    assert overlap["closed"] < overlap["refined"]
 
 
 def plan_of(poses, speed=20.0, sheet=(60.0, 30.0)):

@@ -2,13 +2,17 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from test_gcode import TWO, text_of
 
 from brushsvg.cell_file import find_cell
+from brushsvg.errors import Error
+from brushsvg.jobs import border
 from brushsvg.posts.gcode_servo import value_at
+from brushsvg.program import Job, program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")
@@ -50,6 +54,31 @@ def test_the_lift_alone_takes_its_time():
     up_s = 2 / 6 + CELL.heights.clearance_mm / 6 + (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 50
     lifts = 7  # up before anything; approach, land, press, release, lift, retract
     assert waited == pytest.approx(down_s + up_s + lifts * CELL.servo.settle_s, abs=0.06)
+
+
+@pytest.mark.parametrize(
+    ("z_offset", "words"),
+    [
+        (2.0, r"height 7\.0 mm is outside the range \[-10, 5\] mm of the servo"),  # the safe height
+        (-9.0, r"height -11\.0 mm is outside the range \[-10, 5\] mm of the servo"),  # the deepest pose
+    ],
+)
+def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, words):
+    """They would silently become the table's ends: travel through the paint, strokes that stay thin."""
+    plan = SimpleNamespace(
+        sheet_mm=(100.0, 60.0),
+        passes=[
+            SimpleNamespace(
+                stroke="s", poses_mm=np.array([(10, 10, 0), (20, 10, -2.0)]), speed_mm_s=9.0, arcs=()
+            )
+        ],
+    )
+    brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
+    assert list(program(plan, brush, CELL, (), Job(-8.0)).sections())
+    with pytest.raises(Error, match=words):
+        program(plan, brush, CELL, (), Job(z_offset))
+    with pytest.raises(Error, match="of the servo of cell grbl-servo"):
+        border((10, 20, 60, 45), brush, CELL, z_offset * 10)
 
 
 def test_only_what_grbl_knows():

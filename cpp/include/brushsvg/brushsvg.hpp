@@ -19,4 +19,5 @@
 #include "brushsvg/ring.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/stroke.hpp"
+#include "brushsvg/thin_out.hpp"
 #include "brushsvg/wanted.hpp"

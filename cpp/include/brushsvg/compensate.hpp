@@ -22,6 +22,7 @@ struct CompensateOptions {
     double tolerance_mm = 0.05;    ///< of the widest point from the middle line, between poses too
     std::optional<double> lag_mm;  ///< constant only; default the lag at the stroke's median depth
     double speed_mm_s = 20.0;      ///< capped by the brush's own limit
+    bool few_poses = true;         ///< closed only: no more than the tolerance asks for, see thin_out.hpp
 };
 
 struct CompensatedPass {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from .text import feed_mm_min, number, plain, rows
 
 LINE_LIMIT = 120  # LinuxCNC reads 255 characters; this also fits a screen
 GRBL_LINE_LIMIT = 70  # grbl 1.1 keeps 80 characters of a line, builds with less memory 70
+BRACKETS = {ord("("): "[", ord(")"): "]"}
+AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
 MODES = "G21 G90 G94 G17 G40 G80"
 
 
@@ -20,39 +22,46 @@ def linuxcnc(program: Program) -> Iterator[str]:
     # still bleeds. Rounding the joints by a fraction of the plan's tolerance keeps the speed even.
     tolerance = number(program.cell.blending.tolerance_mm, program.cell.decimals)
     path = f"G64 P{tolerance}" if float(tolerance) else "G61"
-    yield from _program(program, [f"{MODES} G91.1", path], LINE_LIMIT)
+    yield from _program(program, [f"{MODES} G91.1", path], comment)
 
 
 def grbl(program: Program) -> Iterator[str]:
     """As for LinuxCNC, but for G64, which grbl does not know: its setting $11 says how joints are taken."""
-    yield from _program(program, [MODES], GRBL_LINE_LIMIT)
+    yield from _program(program, [MODES], grbl_comment)
 
 
-def comment(text: str, line_limit: int) -> str:
+def comment(text: str) -> str:
     """One line of comment. LinuxCNC acts on comments that start with MSG, DEBUG, LOG, PRINT and the like, so
     callers begin with a word of their own; brackets cannot stay."""
-    return f"({plain(text.translate({ord('('): '[', ord(')'): ']'}), line_limit - 2)})\n"
+    return f"({plain(text.translate(BRACKETS), LINE_LIMIT - 2)})\n"
 
 
-def wait(step: Wait, line_limit: int) -> str:
+def grbl_comment(text: str) -> str:
+    """The same without the letters that grbl takes for commands of the moment wherever they stand: ~ would end a stop
+    while somebody's hand is at the brush, ! would begin one."""
+    text = plain(text.translate(BRACKETS), GRBL_LINE_LIMIT - 2)
+    return f"({text.translate(AT_ONCE)})\n"
+
+
+def wait(step: Wait, comment: Callable[[str], str]) -> str:
     """A dwell, or a stop until a person presses start."""
     if step.seconds is None:
-        return comment(f"stop: {step.message}", line_limit) + "M0\n"
+        return comment(f"stop: {step.message}") + "M0\n"
     return f"G4 P{number(step.seconds, 3)}\n"
 
 
-def _program(program: Program, modes: list[str], line_limit: int) -> Iterator[str]:
+def _program(program: Program, modes: list[str], comment: Callable[[str], str]) -> Iterator[str]:
     decimals = program.cell.decimals
-    yield "".join(comment(line, line_limit) for line in program.header)
+    yield "".join(map(comment, program.header))
     yield "\n".join(modes) + "\n"
     here, feed = None, ""
     for section in program.sections():
         if here is None:  # up before going anywhere
             yield f"G0 Z{number(program.rise_mm, decimals)}\n"
-        yield "\n" + comment(section.title, line_limit)
+        yield "\n" + comment(section.title)
         for step in section.steps:
             if isinstance(step, Wait):
-                yield wait(step, line_limit)
+                yield wait(step, comment)
                 continue
             if step.meaning not in SAFE_MEANINGS:
                 wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cell import Servo
 from ..moves import Move, Program, Wait
-from .gcode import GRBL_LINE_LIMIT, MODES, comment, wait
+from .gcode import MODES, grbl_comment, wait
 from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
 
 SERVO_END = "end: the brush is held up"
@@ -28,8 +28,8 @@ def grbl_servo(program: Program) -> Iterator[str]:
     the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
     to the last, and the program ends without M2, the brush held up."""
     servo, decimals = program.cell.servo, program.cell.decimals
-    yield "".join(comment(line, GRBL_LINE_LIMIT) for line in program.header)
-    yield comment("note: set $32=1, so that S changes along with the moves", GRBL_LINE_LIMIT)
+    yield "".join(grbl_comment(line) for line in program.header)
+    yield grbl_comment("note: set $32=1, so that S changes along with the moves")
     yield f"{MODES}\n"
     feed = f"F{feed_mm_min(program.cell.speeds.travel_mm_s):.1f}\n"
     yield f"G1 {feed}"
@@ -39,10 +39,10 @@ def grbl_servo(program: Program) -> Iterator[str]:
             here = np.array([0.0, 0.0, program.rise_mm])
             yield f"M3 S{value_at(servo, here[2])}\n"
             yield f"G4 P{number(servo.settle_s, 3)}\n" if servo.settle_s else ""
-        yield "\n" + comment(section.title, GRBL_LINE_LIMIT)
+        yield "\n" + grbl_comment(section.title)
         for step in section.steps:
             if isinstance(step, Wait):
-                yield wait(step, GRBL_LINE_LIMIT)
+                yield wait(step, grbl_comment)
                 continue
             wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
             if wanted != feed:
@@ -50,7 +50,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
                 feed = wanted
             yield from _lines(step, here, servo, decimals)
             here = step.points_mm[-1]
-    yield "\n" + comment(SERVO_END, GRBL_LINE_LIMIT)
+    yield "\n" + grbl_comment(SERVO_END)
 
 
 def value_at(servo: Servo, height_mm):

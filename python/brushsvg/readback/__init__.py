@@ -58,17 +58,12 @@ class Readback:
             self.sections.append(ReadSection(""))
         return self.sections[-1]
 
-    def comment(self, text: str) -> None:
-        """Perhaps the title of a section."""
+    def comment(self, number: int, text: str) -> None:
+        """Perhaps the title of a section. Error for one that LinuxCNC acts on."""
+        if re.match(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", text, re.IGNORECASE):
+            raise Error(f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on")
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text))
-
-
-def header_of(text: str) -> dict[str, str]:
-    """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
-    lines = (re.fullmatch(r"\((\w+): (.*)\)|  # (\w+): (.*)", line) for line in text.splitlines()[:100])
-    header = {found[1] or found[3]: found[2] or found[4] for found in lines if found}
-    return {word: rest for word, rest in header.items() if rest is not None}
 
 
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
@@ -79,8 +74,9 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     if post is None or suffix not in post.extensions:
         speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
         raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}")
-    if not text.isascii():
-        raise Error("the program is not 7-bit text: brushsvg did not write it so")
+    if odd := re.search(r"[^\n -~]", text.replace("\r\n", "\n")):
+        number = text.count("\n", 0, odd.start()) + 1
+        raise Error(f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text")
     return _READERS[cell.language](text, cell)
 
 

@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from ..cell import Cell
+from ..cell import Cell, value_mm
 from ..errors import Error
 from ..posts.gcode_servo import SERVO_END
 from . import Readback, Step
@@ -29,6 +29,12 @@ class _Reader:
     def __init__(self, cell: Cell):
         self.out = Readback()
         self.servo = sorted(cell.servo.table, key=lambda row: row[1]) if cell.servo else None
+        # between two values, and two parts of a way, no more than this is written at once
+        self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
+        self.value_mm = value_mm(cell) if cell.servo else 0.0
+        self.lift: tuple[int, float, float] | None = (
+            None  # which step, how far, how long it has been waited for
+        )
         self.at = {axis: math.nan for axis in "XYZ"}
         self.feed_mm_s = 0.0
         self.rapid_mm_s = cell.speeds.travel_mm_s
@@ -40,7 +46,7 @@ class _Reader:
             if self.servo and line == f"({SERVO_END})":
                 self.ended = True
             elif comment := _COMMENT.fullmatch(line):
-                self.out.comment(comment[1])
+                self.out.comment(number, comment[1])
             elif line:
                 self._line(number, line)
         for mode, meaning in NEEDED.items():
@@ -63,12 +69,16 @@ class _Reader:
         values = {letter: float(value) for letter, value in words if letter not in "GM"}
         if len(values) + len(codes) != len(words) or not set(values) <= set("XYZIJFPS"):
             raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
+        if codes[:1] != ["G4"]:
+            self.lift = None
         if not codes or codes[0] in ("G0", "G1", "G2", "G3"):
             self._move(number, line, codes, values)
         elif codes[0] == "G64":
             self.out.joint_mm = values.get("P", math.inf)
         elif codes[0] == "M3" and self.servo:
             self._lift(number, values)
+        elif codes[0] == "G4" and self.lift:
+            self._waited(values.get("P", 0.0))
         elif codes[0] == "M2":
             self.ended = True
         elif not set(codes) <= MODES | set(NEEDED) | {"M0", "G4"}:
@@ -84,10 +94,12 @@ class _Reader:
                 raise Error(f"line {number}: {line[:40]!r} does not say how to go there")
             return
         if self.servo and "S" in values:
-            places["Z"] = self._height(values["S"])
+            places["Z"] = self._height(number, values["S"])
             # the value takes effect with the move: the lift first, then the way at that height
-            if not math.isnan(self.at["Z"]) and abs(places["Z"] - self.at["Z"]) > 1e-9:
-                self._go(number, codes[0] == "G0", {"Z": places["Z"]}, None)
+            change_mm = abs(places["Z"] - self.at["Z"])
+            if change_mm > 1e-9:
+                speed = math.inf if change_mm > self.jump_mm else None
+                self._go(number, codes[0] == "G0", {"Z": places["Z"]}, None, speed)
         centre = None
         if codes[0] in ("G2", "G3"):
             if not {"X", "Y", "I", "J"} <= set(values) or math.isnan(self.at["X"]):
@@ -98,15 +110,31 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} has no feed")
         self._go(number, codes[0] == "G0", places, centre)
 
-    def _go(self, number: int, rapid: bool, places: dict[str, float], centre) -> None:
+    def _go(self, number: int, rapid: bool, places: dict[str, float], centre, speed=None) -> None:
         self.at |= places
-        speed = self.rapid_mm_s if rapid else self.feed_mm_s
+        if speed is None:
+            speed = self.rapid_mm_s if rapid else self.feed_mm_s
         step = Step(number, rapid, self.at["X"], self.at["Y"], self.at["Z"], speed, 0.0, centre)
         self.out.section().steps.append(step)
 
     def _lift(self, number: int, values: dict[str, float]) -> None:
-        self._go(number, False, {"Z": self._height(values.get("S", math.nan))}, None)
+        """At once, if nothing is waited for afterwards."""
+        before, height = self.at["Z"], self._height(number, values.get("S", math.nan))
+        self._go(number, False, {"Z": height}, None, math.inf)
+        self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
 
-    def _height(self, value: float) -> float:
+    def _waited(self, seconds: float) -> None:
+        """So long after the lift alone: as fast as the feed says, or faster, values being whole and times rounded."""
+        at, way_mm, before_s = self.lift
+        waited_s = before_s + seconds
+        speed = max((way_mm - self.value_mm) / (waited_s + 5e-4), self.feed_mm_s)
+        steps = self.out.section().steps
+        steps[at] = steps[at]._replace(speed_mm_s=speed)
+        self.lift = at, way_mm, waited_s
+
+    def _height(self, number: int, value: float) -> float:
         heights, known = [row[0] for row in self.servo], [row[1] for row in self.servo]
+        low, high = round(known[0]), round(known[-1])
+        if not low <= value <= high:
+            raise Error(f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo")
         return float(np.interp(value, known, heights))

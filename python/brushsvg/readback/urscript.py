@@ -32,7 +32,7 @@ def read_urscript(text: str) -> Readback:
     lines = text.splitlines()
     for number, line in enumerate(lines, 1):
         if line.startswith("  # "):
-            out.comment(line[4:])
+            out.comment(number, line[4:])
         elif found := _MOVE.fullmatch(line):
             x, y, z, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
             out.section().steps.append(Step(number, False, x, y, z, v, r))

@@ -1,0 +1,124 @@
+"""Poses per stroke for a mark whose middle stays within 0.05 mm of the line: sampling every 0.5 mm, simplifying the
+tool's path (Douglas and Peucker in x, y, z, with the largest tolerance whose mark is as exact), and ours.
+
+Seed and counts are printed; `--count N` curves of each kind.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+
+import brushsvg
+from brushsvg import _core
+
+TOLERANCE_MM = 0.05
+EVERY_MM = 0.5
+SHEET_MM = (400.0, 400.0)
+
+
+def simplified(poses: np.ndarray, tolerance_mm: float) -> np.ndarray:
+    """Douglas and Peucker: the farthest pose stays where one is farther off the chord than the tolerance."""
+    stays = np.zeros(len(poses), bool)
+    stays[[0, -1]] = True
+    todo = [(0, len(poses) - 1)]
+    while todo:
+        first, last = todo.pop()
+        if last - first < 2:
+            continue
+        chord = poses[last] - poses[first]
+        between = poses[first + 1 : last] - poses[first]
+        squared = float(chord @ chord)
+        t = np.clip(between @ chord / squared, 0, 1) if squared > 0 else np.zeros(len(between))
+        off = np.linalg.norm(between - t[:, None] * chord, axis=1)
+        k = int(off.argmax())
+        if off[k] > tolerance_mm:
+            stays[first + 1 + k] = True
+            todo += [(first, first + 1 + k), (first + 1 + k, last)]
+    return poses[stays]
+
+
+def by_simplifying(stroke, brush) -> int:
+    """Poses that Douglas and Peucker need for a mark within the tolerance."""
+    plan = _core.compensate([stroke], brush, SHEET_MM, "closed", 0.005, few_poses=False).plan
+    fine = np.asarray(plan.passes[0].poses_mm)
+    (marks,) = _core.simulate(plan, brush, for_outlines=False).passes
+    taut = np.array(marks.pose)[np.array(marks.taut, bool)]
+    if not len(taut):
+        return len(fine)
+    first, last = int(np.ceil(taut[0])), int(taut[-1])  # landing and lift stay as they are, ours and theirs
+    low, high, fewest = 0.0, 1.0, len(fine)
+    for _ in range(14):
+        tolerance = 0.5 * (low + high)
+        poses = np.vstack([fine[:first], simplified(fine[first : last + 1], tolerance), fine[last + 1 :]])
+        miss = _core.miss_of(_core.Pass(stroke.id, poses, 20.0), stroke, brush, TOLERANCE_MM)
+        if miss.largest_mm <= TOLERANCE_MM:
+            low, fewest = tolerance, min(fewest, len(poses))
+        else:
+            high = tolerance
+    return fewest
+
+
+def length_mm(poses) -> float:
+    return float(np.linalg.norm(np.diff(np.asarray(poses), axis=0), axis=1).sum())
+
+
+def curves(count: int, random) -> list:
+    """Chains of cubics as long as the strokes of letters, smooth and with corners, at widths that change."""
+    strokes = []
+    for k in range(count):
+        at, heading, cubics = np.array([200.0, 200.0]), random.uniform(-np.pi, np.pi), []
+        for _ in range(int(random.integers(1, 5))):
+            heading += random.choice([0.0, 0.0, random.uniform(-1.4, 1.4)])
+            turn, length = random.uniform(-1.2, 1.2), random.uniform(8, 40)
+            unit = [np.array([math.cos(heading + f * turn), math.sin(heading + f * turn)]) for f in range(3)]
+            to = at + length * unit[1]
+            cubics.append([at, at + 0.35 * length * unit[0], to - 0.35 * length * unit[2], to])
+            at, heading = to, heading + 2 * turn
+        half = random.uniform(0.5, 3.5, 3)
+        knots = [(0.0, float(half[0])), (0.5, float(half[1])), (1.0, float(half[2]))]
+        strokes.append(_core.Stroke(f"curve{k}", np.reshape(cubics, (-1, 8)), half_width=knots))
+    return strokes
+
+
+def compared(title: str, strokes, brush) -> None:
+    begin = time.process_time()
+    ours = _core.compensate(strokes, brush, SHEET_MM, "closed", TOLERANCE_MM)
+    seconds = time.process_time() - begin
+    begin = time.process_time()
+    _core.compensate(strokes, brush, SHEET_MM, "closed", TOLERANCE_MM, few_poses=False)
+    without = time.process_time() - begin
+    few = np.array([len(each.poses_mm) for each in ours.plan.passes])
+    sampled = np.array([math.ceil(length_mm(each.poses_mm) / EVERY_MM) + 1 for each in ours.plan.passes])
+    thinned = np.array([by_simplifying(stroke, brush) for stroke in strokes])
+    within = sum(miss.within_tolerance for miss in ours.misses)
+    print(f"{title}: {len(strokes)} strokes, {within} within {TOLERANCE_MM} mm")
+    for name, counts in (("every 0.5 mm", sampled), ("Douglas-Peucker", thinned), ("ours", few)):
+        print(f"  {name:16} mean {counts.mean():6.1f}  median {np.median(counts):6.1f}")
+    print(
+        f"  ours / sampling {few.sum() / sampled.sum():.3f}, ours / Douglas-Peucker {few.sum() / thinned.sum():.3f}"
+    )
+    print(
+        f"  {1e3 * seconds / len(strokes):.2f} ms a stroke, {1e3 * without / len(strokes):.2f} without thinning out"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    args = parser.parse_args()
+    brush = brushsvg.find_brush("round-6")
+    print(f"seed {args.seed}")
+    drawing = Path(__file__).parents[1] / "examples" / "vincent.svg"
+    strokes, _ = brushsvg.strokes(brushsvg.read_drawing(drawing))
+    compared("examples/vincent.svg", strokes, brush)
+    compared("random curves", curves(args.count, np.random.default_rng(args.seed)), brush)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,277 @@
+#include "brushsvg/thin_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/lag.hpp"
+#include "brushsvg/simulate.hpp"
+#include "nearest.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// Places of a move that are looked at, at most: more find the same error, fewer miss a kink of the path.
+constexpr Index kLooks = 10;
+/// A move shorter than this has no direction to speak of.
+constexpr double kLeastMoveMm = 1e-6;
+/// From one move to the next the tool turns by no more, or it would have to slow down at every pose.
+constexpr double kMostTurnRad = 0.6;
+/// The footprint's tip may be off by so many tolerances: it lies inside the mark, its sides are what shows.
+constexpr double kTipShare = 3.0;
+
+/// What the brush does at every pose of the pass as it is.
+struct Traced {
+    Ring tcp, middle;
+    std::vector<double> depth, along;  ///< along: path of the TCP [mm]
+    std::vector<Vector2d> contact, heading;
+    std::vector<bool> taut;     ///< at the pose
+    std::vector<bool> dragged;  ///< from the pose to the next: taut all the way, in a straight move
+
+    Traced(const Pass& pass, const Brush& brush, const PassMarks& marks) {
+        const Index n = pass.poses_mm.rows();
+        tcp = pass.poses_mm.leftCols<2>();
+        middle.resize(n, 2);
+        depth.resize(n);
+        along.assign(n, 0.0);
+        contact.resize(n);
+        heading.resize(n);
+        taut.assign(n, false);
+        dragged.assign(n, true);
+        const Ring widest = widest_points(marks, brush);
+        for (std::size_t row = 0; row < marks.pose.size(); ++row) {
+            const double pose = marks.pose[row];
+            const Index i = Index(std::floor(pose));
+            const bool is_pose = pose == double(i);
+            if (!marks.taut[row]) {  // on the way to this pose and from it on
+                if (i < n) dragged[i] = false;
+                if (is_pose && i > 0) dragged[i - 1] = false;
+            }
+            if (!is_pose) continue;
+            middle.row(i) = widest.row(Index(row));
+            contact[i] = marks.contact_mm.row(Index(row)).transpose();
+            heading[i] = {std::cos(marks.heading_rad[row]), std::sin(marks.heading_rad[row])};
+            taut[i] = marks.taut[row];
+        }
+        for (Index i = 0; i < n; ++i) {
+            depth[i] = -pass.poses_mm(i, 2);
+            if (i > 0) along[i] = along[i - 1] + (tcp.row(i) - tcp.row(i - 1)).norm();
+        }
+        for (Index i = 0; i + 1 < n; ++i)
+            if (!(along[i + 1] - along[i] > kLeastMoveMm) || depth[i] <= 0.0 || depth[i + 1] <= 0.0) dragged[i] = false;
+        if (n > 0) dragged[n - 1] = false;
+        for (const Arc& arc : pass.arcs)
+            for (Index i = arc.first; i < arc.last; ++i) dragged[i] = false;
+    }
+
+    Vector2d tcp_at(double s, Index near) const {
+        Index i = near;
+        while (i > 0 && along[i] > s) --i;
+        while (i + 2 < tcp.rows() && along[i + 1] < s) ++i;
+        const double step = along[i + 1] - along[i], t = step > 0.0 ? (s - along[i]) / step : 0.0;
+        return (tcp.row(i) + t * (tcp.row(i + 1) - tcp.row(i))).transpose();
+    }
+};
+
+/// One stretch of dragged moves, walked from its beginning: as far as possible in each move.
+class Walk {
+ public:
+    Walk(const Traced& was, const Brush& brush, const LagLaw<double>& law, double tolerance_mm)
+        : was_(was), brush_(brush), law_(law), tolerance_(tolerance_mm) {}
+
+    /// Poses that lead from pose `first` to pose `last`, both ends left out.
+    std::vector<Eigen::Vector3d> operator()(Index first, Index last) {
+        first_ = first;
+        last_ = last;
+        std::vector<Eigen::Vector3d> out;
+        state_.taut = state_.heading_known = true;
+        state_.contact = was_.contact[first];
+        state_.heading = was_.heading[first];
+        at_ = was_.tcp.row(first).transpose();
+        direction_ = Vector2d::Zero();
+        Index i = first, stride = 4;
+        while (i < last) {
+            const auto [j, step] = farthest(i, stride);
+            stride = std::max<Index>(2, j - i);
+            direction_ = (step.to - at_).normalized();
+            at_ = step.to;
+            state_ = step.state;
+            i = j;
+            if (i < last) out.emplace_back(at_.x(), at_.y(), -was_.depth[i]);
+        }
+        return out;
+    }
+
+ private:
+    struct Step {
+        Vector2d to;
+        LagState<double> state;
+        bool good = false;
+    };
+
+    std::pair<Index, Step> farthest(Index i, Index stride) const {
+        Index good = i + 1, bad = last_ + 1;
+        Step best = step_to(i, good);
+        for (Index j = std::min(i + stride, last_); j > good && j < bad; j = std::min(j + stride, last_)) {
+            const Step trial = step_to(i, j);
+            if (!trial.good) {
+                bad = j;
+            } else {
+                good = j;
+                best = trial;
+                stride *= 2;
+            }
+            if (good == last_) break;
+        }
+        while (bad - good > 1 && good < last_) {
+            const Index j = good + (bad - good) / 2;
+            const Step trial = step_to(i, j);
+            if (trial.good) {
+                good = j;
+                best = trial;
+            } else {
+                bad = j;
+            }
+        }
+        return {good, best};
+    }
+
+    /// A move to a pose, or beside it: chords lie inside a curve, and the brush follows their mean. Out by q'' L^2 / 12
+    /// their error has none, and what is left goes back and forth too quickly for the brush.
+    Step step_to(Index i, Index j) const {
+        Step best = tried(i, j, was_.tcp.row(j).transpose());
+        if (j == last_ || j == i + 1) return best;
+        const double h = std::min(0.5 * (was_.along[j] - was_.along[i]), was_.along[last_] - was_.along[j]);
+        const Vector2d here = was_.tcp.row(j).transpose();
+        const Vector2d bend = was_.tcp_at(was_.along[j] - h, j) - 2.0 * here + was_.tcp_at(was_.along[j] + h, j);
+        const Step beside = tried(i, j, here - bend / 3.0);
+        return beside.good ? beside : best;
+    }
+
+    Step tried(Index i, Index j, const Vector2d& to) const {
+        Step step{to, state_};
+        const Move<double> move(at_, to, was_.depth[i], was_.depth[j]);
+        if (direction_.squaredNorm() > 0.0 && move.length > kLeastMoveMm && j > i + 1) {
+            const double turn = std::atan2(direction_.x() * move.along.y() - direction_.y() * move.along.x(),
+                                           direction_.dot(move.along));
+            if (std::abs(turn) > kMostTurnRad) return step;
+        }
+        bool good = true;
+        const Index stride = std::max<Index>(1, (j - i) / kLooks);
+        Index k = i + 1;
+        const double from = was_.along[i], length = was_.along[j] - from;
+        advance(law_, move, step.state,
+                [&](const auto& piece, const auto& mv, const auto& start, double begin, double end) {
+                    good = good && start.taut;
+                    while (good && k <= j) {
+                        const double t = (was_.along[k] - from) / length;
+                        if (t > end + 1e-12) break;
+                        const double at = std::min(t, end);
+                        const LagState<double> now =
+                            law_.rigid ? rigid(mv, at) : within_phase(piece, mv, start, begin, at);
+                        good = is_near(now, mv.depth(at), k);
+                        k = k < j ? std::min(k + stride, j) : j + 1;
+                    }
+                });
+        step.good = good && step.state.taut;
+        return step;
+    }
+    static LagState<double> rigid(const Move<double>& move, double t) {
+        LagState<double> state;
+        state.contact = move.tcp(t);
+        state.heading = move.along;
+        return state;
+    }
+
+    /// Whether the footprint is where it was about pose k, to the tolerance.
+    bool is_near(const LagState<double>& now, double depth, Index k) const {
+        const Vector2d middle = now.contact + brush_.lever_to_widest(depth) * now.heading;
+        double least = 1e300;
+        for (Index i = std::max(first_, k - 2); i < std::min(last_, k + 2); ++i) {
+            const Vector2d a = was_.middle.row(i).transpose(), d = was_.middle.row(i + 1).transpose() - a;
+            const double squared = d.squaredNorm();
+            const double t = squared > 0.0 ? std::clamp((middle - a).dot(d) / squared, 0.0, 1.0) : 0.0;
+            least = std::min(least, (middle - a - t * d).squaredNorm());
+        }
+        if (least > tolerance_ * tolerance_) return false;
+        if (std::abs(brush_.half_width(depth) - brush_.half_width(was_.depth[k])) > tolerance_) return false;
+        if (law_.rigid) return true;
+        const Vector2d& u = was_.heading[k];
+        const double turned = std::abs(u.x() * now.heading.y() - u.y() * now.heading.x());
+        return turned * brush_.tip_to_widest(depth) <= kTipShare * tolerance_ && u.dot(now.heading) > 0.0;
+    }
+
+    const Traced& was_;
+    const Brush& brush_;
+    const LagLaw<double>& law_;
+    double tolerance_;
+    Index first_ = 0, last_ = 0;
+    LagState<double> state_;
+    Vector2d at_, direction_;
+};
+
+Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tolerance_mm) {
+    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+    const Index n = pass.poses_mm.rows();
+    std::vector<Eigen::Vector3d> poses;
+    std::vector<Index> now(n, 0);  // where the poses that stay are
+    const auto keep = [&](Index i) {
+        now[i] = Index(poses.size());
+        poses.push_back(pass.poses_mm.row(i).transpose());
+    };
+    Walk walk(was, brush, law, tolerance_mm);
+    for (Index i = 0; i < n;) {
+        keep(i);
+        Index end = i;
+        if (was.taut[i] || brush.is_rigid())
+            while (was.dragged[end]) ++end;
+        if (end < i + 2) {
+            ++i;
+            continue;
+        }
+        for (const Eigen::Vector3d& pose : walk(i, end)) poses.push_back(pose);
+        i = end;
+    }
+    Pass out = pass;
+    out.poses_mm.resize(Index(poses.size()), 3);
+    for (Index i = 0; i < out.poses_mm.rows(); ++i) out.poses_mm.row(i) = poses[i].transpose();
+    for (Arc& arc : out.arcs) {
+        arc.first = now[arc.first];
+        arc.last = now[arc.last];
+    }
+    return out;
+}
+
+/// Farthest that the middle of a mark lies from that of another, from the first taut row to the last.
+double apart(const PassMarks& marks, const Brush& brush, const Ring& middle) {
+    const Ring widest = widest_points(marks, brush);
+    Nearest<Ring> nearest(middle);
+    const Index n = Index(marks.taut.size());
+    Index begin = 0, end = n;
+    while (begin < end && !marks.taut[begin]) ++begin;
+    while (end > begin && !marks.taut[end - 1]) --end;
+    double largest = 0.0;
+    along(widest, begin, end, 0.5,
+          [&](const Vector2d& point) { largest = std::max(largest, nearest.distance(point)); });
+    return largest;
+}
+
+}  // namespace
+
+Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
+    const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
+    const PassMarks marks = simulate(pass, brush, exact_mm, false);
+    if (pass.poses_mm.rows() < 4) return pass;
+    const Traced was(pass, brush, marks);
+    const Ring middle = widest_points(marks, brush);
+    // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
+    for (const double share : {0.95, 0.7, 0.4}) {
+        const Pass trial = thinned(pass, brush, was, share * tolerance_mm);
+        if (apart(simulate(trial, brush, exact_mm, false), brush, middle) <= tolerance_mm) return trial;
+    }
+    return pass;
+}
+
+}  // namespace brushsvg

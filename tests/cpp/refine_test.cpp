@@ -1,0 +1,250 @@
+#include "refine.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/simulate.hpp"
+#include "brushsvg/wanted.hpp"
+#include "painted_edge.hpp"
+#include "patch_path.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+using namespace brushsvg::fit;
+using V = Eigen::Vector2d;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Stroke stroke_of(const Cubics& middle, std::vector<WidthKnot> half_width) {
+    Stroke s;
+    s.id = "s";
+    s.middle_mm = middle;
+    s.half_width = std::move(half_width);
+    return s;
+}
+
+Stroke line() { return stroke_of(polyline({V(20, 20), V(50, 28)}), {{0.0, 1.7}}); }
+Stroke taper() { return stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 2.6}, {1.0, 0.6}}); }
+Stroke corner() { return stroke_of(polyline({V(20, 50), V(50, 50), V(44, 20)}), {{0.0, 1.7}}); }
+Stroke hook() { return stroke_of(polyline({V(50, 60), V(50, 20), V(41, 28)}), {{0.0, 2.0}, {1.0, 1.0}}); }
+/// A blunt head that lies across: the pointed footprint must come in from the side.
+Stroke head() {
+    Stroke s = stroke_of(polyline({V(39, 38), V(30.5, 30)}), {{0.0, 3.1}, {1.0, 0.6}});
+    Ring wanted(9, 2);
+    wanted << 30, 29.3, 38, 31.5, 44, 33, 45, 34.5, 44.5, 37, 38.5, 44, 36, 45, 34.5, 44, 29.5, 30.5;
+    s.wanted_mm = {wanted};
+    return s;
+}
+Stroke curve() {
+    Cubics middle(1, 8);
+    middle << 20, 20, 20, 45, 50, 45, 45, 22;
+    return stroke_of(middle, {{0.0, 1.2}, {0.5, 2.6}, {1.0, 1.4}});
+}
+
+Stroke turned(Stroke s, double angle) {
+    for (Eigen::Index i = 0; i < s.middle_mm.rows(); ++i)
+        for (int k = 0; k < 4; ++k) {
+            const V p = s.middle_mm.row(i).segment<2>(2 * k).transpose() - V(40, 40);
+            s.middle_mm.row(i).segment<2>(2 * k) << 40 + std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+                40 + std::sin(angle) * p.x() + std::cos(angle) * p.y();
+        }
+    return s;
+}
+
+Stroke mirrored(Stroke s) {
+    for (int k : {1, 3, 5, 7}) s.middle_mm.col(k) = 80.0 - s.middle_mm.col(k).array();
+    return s;
+}
+
+/// As the report says it.
+double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
+    return overlap(outline(simulate(pass, brush), brush), wanted_outline(stroke, 0.01));
+}
+
+Eigen::VectorXd anything(int n, std::mt19937& random) {
+    std::normal_distribution<double> normal(0.0, 0.2);
+    Eigen::VectorXd x(n);
+    for (double& value : x) value = normal(random);
+    return x;
+}
+
+PatchPath path_of(const Stroke& stroke, const Brush& brush, int controls) {
+    return PatchPath(patch_path(compensate(stroke, brush).pass, brush, 0.5, 500), controls, {0.5, 10.0});
+}
+
+}  // namespace
+
+TEST_CASE("a patch's way without changes is that of the closed form") {
+    const Brush brush = shipped("round-6");
+    for (const Stroke& s : {line(), taper(), corner(), curve()}) {
+        const PatchPath path = path_of(s, brush, 8);
+        const PatchSamples samples = path.at(Eigen::VectorXd::Zero(path.unknowns()));
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            CHECK((samples[i].contact_mm - path.base()[i].contact_mm).norm() < 1e-9);
+            CHECK(samples[i].depth_mm == path.base()[i].depth_mm);
+        }
+        Pass pass;
+        pass.poses_mm = poses_along(samples, brush, 0.025);
+        CHECK(overlap_of(s, pass, brush) ==
+              doctest::Approx(overlap_of(s, compensate(s, brush).pass, brush)).epsilon(0.01));
+    }
+}
+
+TEST_CASE("slopes of way and edge are those of differences") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(5);
+    const Stroke s = curve();
+    const PatchPath path = path_of(s, brush, 7);
+    PaintedEdge edge(brush, 0.02);
+    const Rings wanted = wanted_outline(s, 0.5);
+    const double h = 1e-6;
+    for (int trial = 0; trial < 3; ++trial) {
+        const Eigen::VectorXd x = 0.3 * anything(path.unknowns(), random);
+        PatchPath::Slopes slopes;
+        const PatchSamples samples = path.at(x, slopes);
+        for (int k = 0; k < path.unknowns(); ++k) {
+            const PatchSamples after = path.at(x + h * Eigen::VectorXd::Unit(path.unknowns(), k));
+            for (std::size_t i = 0; i < samples.size(); i += 7) {
+                const V moved = (after[i].contact_mm - samples[i].contact_mm) / h;
+                const auto row = Eigen::Index(i);
+                CHECK(moved.x() == doctest::Approx(slopes.x(row, k)).epsilon(1e-4).scale(1.0));
+                CHECK(moved.y() == doctest::Approx(slopes.y(row, k)).epsilon(1e-4).scale(1.0));
+                CHECK((after[i].heading_rad - samples[i].heading_rad) / h ==
+                      doctest::Approx(slopes.heading(row, k)).epsilon(1e-4).scale(1.0));
+                CHECK((after[i].depth_mm - samples[i].depth_mm) / h ==
+                      doctest::Approx(slopes.depth(row, k)).epsilon(1e-4).scale(1.0));
+            }
+        }
+        for (Eigen::Index j = 0; j < wanted[0].rows(); j += 3) {
+            const V p = wanted[0].row(j).transpose();
+            edge.place(samples);
+            const EdgePoint found = edge.nearest(p, 0);
+            const EdgeSlope slope = edge.slope(p, found);
+            const auto difference = [&](PatchSample change) {
+                PatchSamples after = samples;
+                PatchSample& one = after[found.sample];
+                one.contact_mm += change.contact_mm;
+                one.heading_rad += change.heading_rad;
+                one.depth_mm += change.depth_mm;
+                edge.place(after);
+                return (edge.nearest(p, found.sample).distance_mm - found.distance_mm) / h;
+            };
+            CHECK(difference({V(h, 0), 0, 0}) == doctest::Approx(slope.x).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(0, h), 0, 0}) == doctest::Approx(slope.y).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(0, 0), h, 0}) == doctest::Approx(slope.heading).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(0, 0), 0, h}) == doctest::Approx(slope.depth).epsilon(1e-3).scale(1.0));
+        }
+    }
+}
+
+TEST_CASE("whatever the unknowns are, the brush does what the way says") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(6);
+    for (const Stroke& s : {line(), taper(), corner(), hook(), curve()}) {
+        const PatchPath path = path_of(s, brush, 8);
+        const PatchSamples samples = path.at(anything(path.unknowns(), random));
+        Pass pass;
+        pass.poses_mm = poses_along(samples, brush, 1e-3);
+        const PassMarks marks = simulate(pass, brush);
+        double farthest = 0.0;
+        for (const PatchSample& sample : samples) {
+            double nearest = 1e9;
+            for (Eigen::Index i = 0; i + 1 < marks.contact_mm.rows(); ++i) {
+                const V a = marks.contact_mm.row(i).transpose(), d = marks.contact_mm.row(i + 1).transpose() - a;
+                const double t =
+                    d.squaredNorm() > 0 ? std::clamp((sample.contact_mm - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+                nearest = std::min(nearest, (sample.contact_mm - a - t * d).norm());
+            }
+            farthest = std::max(farthest, nearest);
+        }
+        CHECK(farthest < 0.1);
+    }
+}
+
+TEST_CASE("a line, a taper, a corner, a hook, a curve and a blunt head are painted better") {
+    const Brush brush = shipped("round-6");
+    struct Case {
+        Stroke stroke;
+        double at_least;  // a little below what was reached
+    };
+    for (const Case& each : {Case{line(), 0.973},
+                             {taper(), 0.967},
+                             {corner(), 0.978},
+                             {hook(), 0.972},
+                             {curve(), 0.984},
+                             {head(), 0.81}}) {
+        const double closed = overlap_of(each.stroke, compensate(each.stroke, brush).pass, brush);
+        const RefinedPass r = refine(each.stroke, brush);
+        const double refined = overlap_of(each.stroke, r.plan.pass, brush);
+        MESSAGE(closed << " -> " << refined);
+        CHECK(r.bettered);
+        CHECK(refined > closed);
+        CHECK(refined >= each.at_least);
+        CHECK(std::abs(r.overlap - refined) < 0.003);
+        CHECK(std::abs(r.overlap_closed - closed) < 0.003);
+        CHECK(r.plan.miss.largest_mm > 0.0);
+    }
+}
+
+TEST_CASE("never worse, and within the brush's depths, on random strokes; turned and mirrored as well") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(10.0, 70.0), half(0.5, 3.5);
+    for (int trial = 0; trial < 12; ++trial) {
+        Cubics middle(1, 8);
+        for (int k = 0; k < 8; ++k) middle(0, k) = place(random);
+        const Stroke s = stroke_of(middle, {{0.0, half(random)}, {0.4, half(random)}, {1.0, half(random)}});
+        const double closed = overlap_of(s, compensate(s, brush).pass, brush);
+        const RefinedPass r = refine(s, brush);
+        const double refined = overlap_of(s, r.plan.pass, brush);
+        CHECK(refined >= closed);
+        CHECK(r.plan.pass.poses_mm.col(2).maxCoeff() <= 0.0);
+        CHECK(-r.plan.pass.poses_mm.col(2).minCoeff() <= brush.depth_range_mm[1]);
+        if (trial % 4) continue;
+        CHECK(std::abs(refine(turned(s, 0.7), brush).overlap - r.overlap) < 0.01);
+        CHECK(std::abs(refine(mirrored(s), brush).overlap - r.overlap) < 0.01);
+    }
+}
+
+TEST_CASE("the same stroke gives the same plan, to the last bit") {
+    const Brush brush = shipped("round-6");
+    CHECK(refine(curve(), brush).plan.pass.poses_mm == refine(curve(), brush).plan.pass.poses_mm);
+}
+
+TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left as they are") {
+    const Brush brush = shipped("round-6");
+    Stroke ring = stroke_of(polyline({V(30, 30), V(60, 30), V(60, 60), V(30, 60), V(30, 30)}), {{0.0, 1.5}});
+    ring.closed = true;
+    for (const Stroke& s : {stroke_of(polyline({V(30, 30), V(30, 30)}), {{0.0, 2.0}}),
+                            stroke_of(polyline({V(30, 30), V(32, 30)}), {{0.0, 2.0}}),
+                            stroke_of(polyline({V(30, 30), V(60, 30)}), {{0.0, 0.1}}), ring,
+                            stroke_of(polyline({V(0, 30), V(4000, 30)}), {{0.0, 0.5}})}) {
+        const RefinedPass r = refine(s, brush);
+        CHECK(r.overlap >= r.overlap_closed);
+        CHECK(r.plan.pass.poses_mm.allFinite());
+    }
+    const Brush pen = shipped("rigid");
+    CHECK_FALSE(refine(line(), pen).bettered);
+    CHECK(refine(line(), pen).plan.pass.poses_mm == compensate(line(), pen).pass.poses_mm);
+}
+
+TEST_CASE("no paint and no tool leaves the sheet for it") {
+    const Brush brush = shipped("round-6");
+    // the closed form begins 0.9 mm inside the wanted mark's end, which lies on the sheet's side
+    const Stroke s = stroke_of(polyline({V(1.7, 20), V(40, 20)}), {{0.0, 1.7}});
+    RefineOptions on_sheet;
+    on_sheet.sheet_mm = {60.0, 40.0};
+    const RefinedPass kept = refine(s, brush, on_sheet);
+    CHECK(painted_bounds(simulate(kept.plan.pass, brush), brush)[0] >=
+          std::min(0.0, painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[0]));
+    on_sheet.sheet_mm = {60.0, 20.0};  // half of it lies beyond: no farther than before
+    const RefinedPass half = refine(s, brush, on_sheet);
+    CHECK(painted_bounds(simulate(half.plan.pass, brush), brush)[3] <=
+          painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[3] + 1e-9);
+}

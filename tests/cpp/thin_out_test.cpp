@@ -1,0 +1,112 @@
+#include "brushsvg/thin_out.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "brushsvg/compensate.hpp"
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/simulate.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+using V = Eigen::Vector2d;
+
+namespace {
+
+double uniform(std::mt19937& random, double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+}
+
+/// A chain of cubics: bends, some corners, a width that changes.
+Stroke random_stroke(std::mt19937& random) {
+    Stroke stroke;
+    stroke.id = "s";
+    const int count = 1 + int(random() % 4);
+    stroke.middle_mm.resize(count, 8);
+    V at(50, 50);
+    double heading = uniform(random, -3, 3);
+    for (int i = 0; i < count; ++i) {
+        if (random() % 2) heading += uniform(random, -1.4, 1.4);
+        const double turn = uniform(random, -1.2, 1.2), length = uniform(random, 3, 40);
+        const V d0(std::cos(heading), std::sin(heading));
+        const V chord(std::cos(heading + turn), std::sin(heading + turn));
+        const V d1(std::cos(heading + 2 * turn), std::sin(heading + 2 * turn)), to = at + length * chord;
+        stroke.middle_mm.row(i) << at.transpose(), (at + 0.35 * length * d0).transpose(),
+            (to - 0.35 * length * d1).transpose(), to.transpose();
+        at = to;
+        heading += 2 * turn;
+    }
+    stroke.half_width = {{0.0, uniform(random, 0.2, 4.0)}, {0.6, uniform(random, 0.2, 4.0)}, {1.0, 1.5}};
+    return stroke;
+}
+
+double deepest(const Pass& pass) { return -pass.poses_mm.col(2).minCoeff(); }
+
+}  // namespace
+
+TEST_CASE("fewer poses leave the mark within the tolerance, its ends and its depth as they were") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(7);
+    long before = 0, after = 0;
+    for (int k = 0; k < 120; ++k) {
+        const Stroke stroke = random_stroke(random);
+        const double tolerance = k % 3 ? 0.05 : 0.01;
+        CompensateOptions options;
+        options.tolerance_mm = tolerance;
+        const CompensatedPass few = compensate(stroke, brush, options);
+        options.few_poses = false;
+        const CompensatedPass many = compensate(stroke, brush, options);
+        CAPTURE(k);
+        CHECK(few.miss.largest_mm <= std::max(tolerance, many.miss.largest_mm));
+        CHECK(few.miss.has_turn_in_place == many.miss.has_turn_in_place);
+        CHECK(deepest(few.pass) <= deepest(many.pass) + 1e-9);
+        CHECK((few.pass.poses_mm.row(0) - many.pass.poses_mm.row(0)).norm() < tolerance);
+        CHECK((few.pass.poses_mm.bottomRows(1) - many.pass.poses_mm.bottomRows(1)).norm() < tolerance);
+        CHECK(overlap(outline(simulate(few.pass, brush), brush), outline(simulate(many.pass, brush), brush)) > 0.95);
+        before += many.pass.poses_mm.rows();
+        after += few.pass.poses_mm.rows();
+    }
+    CHECK(after < 0.55 * before);
+}
+
+TEST_CASE("a pass thinned out twice stays near itself, and arcs, landings and lifts stay what they are") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "s";
+    stroke.middle_mm = polyline({V(20, 20), V(60, 20), V(25, 45)});  // a corner of 145 degrees: an arc in place
+    stroke.half_width = {{0.0, 2.0}};
+    CompensateOptions options;
+    options.few_poses = false;
+    const Pass pass = compensate(stroke, brush, options).pass;
+    const Pass thin = thin_out(pass, brush, 0.05);
+    REQUIRE(!pass.arcs.empty());
+    REQUIRE(thin.arcs.size() == pass.arcs.size());
+    for (std::size_t k = 0; k < thin.arcs.size(); ++k) {
+        CHECK(thin.arcs[k].last - thin.arcs[k].first == pass.arcs[k].last - pass.arcs[k].first);
+        CHECK(thin.poses_mm.row(thin.arcs[k].first) == pass.poses_mm.row(pass.arcs[k].first));
+        CHECK_NOTHROW(check_arc(thin, k, "s"));
+    }
+    CHECK(thin.poses_mm.topRows(2) == pass.poses_mm.topRows(2));
+    CHECK(thin.poses_mm.bottomRows(5) == pass.poses_mm.bottomRows(5));
+    CHECK(thin_out(thin, brush, 0.05).poses_mm.rows() <= thin.poses_mm.rows());
+}
+
+TEST_CASE("nothing to thin out is no fault") {
+    const Brush brush = shipped("round-6"), pen = shipped("rigid");
+    Pass pass;
+    pass.stroke = "s";
+    CHECK(thin_out(pass, brush, 0.05).poses_mm.rows() == 0);
+    pass.poses_mm.resize(3, 3);
+    pass.poses_mm << 1, 1, 0, 1, 1, -3, 1, 1, 0;
+    CHECK(thin_out(pass, brush, 0.05).poses_mm == pass.poses_mm);
+    pass.poses_mm.resize(400, 3);
+    for (int i = 0; i < 400; ++i)
+        pass.poses_mm.row(i) << 40 * std::cos(i * 0.01), 40 * std::sin(i * 0.01), i % 399 ? -1.0 : 0.0;
+    const Pass drawn = thin_out(pass, pen, 0.05);
+    CHECK(drawn.poses_mm.rows() < 60);
+    for (Eigen::Index i = 0; i < drawn.poses_mm.rows(); ++i)
+        CHECK(std::abs(drawn.poses_mm.row(i).head<2>().norm() - 40.0) < 0.05);
+}

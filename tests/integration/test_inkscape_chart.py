@@ -1,0 +1,78 @@
+"""Calibration sheet in the real Inkscape: its page beside the document's, its marks where brushsvg chart puts them."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from command import SOUND, brushsvg
+from plugin import Plugin
+
+from brushsvg import read_drawing
+from brushsvg.importers import ReadOptions
+
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+GAP_MM = 10
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+def markers_mm(path, select=None):
+    text = path.read_text().replace('data-brushsvg-skip="yes"', "")
+    shown = path.with_name(f"{path.stem}-shown.svg")
+    shown.write_text(text)
+    elements = read_drawing(shown, ReadOptions(select=select)).elements
+    return [np.vstack([part.cubics[:, 0] for part in each.subpaths]) for each in elements]
+
+
+@pytest.mark.parametrize("view_box", ["0 0 120 60", "0 0 480 240"])
+def test_its_page_lies_beside_the_documents(plugin, tmp_path, view_box):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND.replace('viewBox="0 0 120 60"', f'viewBox="{view_box}"'))
+    once = plugin.effect("chart", drawing, tmp_path / "once.svg")
+    twice = plugin.effect("chart", once, tmp_path / "twice.svg")
+    brushsvg("chart", "chart.json", "--page", "page.svg", cwd=tmp_path, status=0)
+    expected = markers_mm(tmp_path / "page.svg", "path")
+    for file in (once, twice):
+        scale = float(view_box.split()[2]) / 120
+        pages = [
+            [float(each.get(name)) / scale for name in ("x", "y", "width", "height")]
+            for each in ET.parse(file).getroot().iter(f"{INKSCAPE}page")
+        ]
+        assert np.array(pages) == pytest.approx(
+            np.array([[0, 0, 120, 60], [120 + GAP_MM, 0, 210, 297]]), abs=1e-3
+        )
+        found = markers_mm(file, "#brushsvg-chart path")
+        assert len(found) == len(expected) == 4
+        for ours, theirs in zip(found, expected, strict=True):
+            moved = theirs + np.array(
+                [120 + GAP_MM, 60 - 297]
+            )  # both pages hang from one line; the paper's y runs up
+            assert np.abs(ours - moved).max() < 0.01
+    for name in ("drawing", "twice"):
+        brushsvg("convert", f"{name}.svg", f"{name}.ngc", cwd=tmp_path, status=0)
+    assert (tmp_path / "twice.ngc").read_bytes() == (tmp_path / "drawing.ngc").read_bytes()
+
+
+def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin, tmp_path):
+    drawing, saved = tmp_path / "drawing.svg", tmp_path / "my sheet \u00fc.ngc"
+    drawing.write_text(SOUND.replace("<svg ", '<svg data-brushsvg-cell="grbl-3axis" '))
+    done = plugin.script("chart", drawing, f"--output={saved}", "--strokes=few")
+    assert done.returncode == 0 and done.stderr.decode().startswith(f"Saved: {saved} and ")
+    flags = ("--chart", "typed.json", "--cell", "grbl-3axis", "--strokes", "few")
+    brushsvg("chart", "typed.ngc", *flags, cwd=tmp_path, status=0)
+    assert saved.read_bytes() == (tmp_path / "typed.ngc").read_bytes()
+    assert (tmp_path / "my sheet \u00fc.chart.json").read_bytes() == (tmp_path / "typed.json").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("sheet.txt", "ends in none of .ngc .script .json"), ("nowhere/sheet.ngc", "cannot be written")],
+)
+def test_what_cannot_be_saved_is_told(plugin, tmp_path, name, told):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND)
+    done = plugin.script("chart", drawing, f"--output={tmp_path / name}")
+    assert done.returncode == 1 and told in done.stderr.decode() and "Traceback" not in done.stderr.decode()

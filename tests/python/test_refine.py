@@ -1,0 +1,97 @@
+"""`--compensation refined`: in C++ tests how well; here that it is wired, side by side, and never worse."""
+
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+from brushsvg import Error, _core, cli, find_brush, report
+
+BRUSH = find_brush("round-6")
+SHEET = (120.0, 120.0)
+
+
+def curves(count: int, seed: int = 3) -> list:
+    random = np.random.default_rng(seed)
+    made = []
+    for k in range(count):
+        middle = random.uniform(30, 90, (1, 8))
+        widths = [(at, random.uniform(0.8, 3.0)) for at in (0.0, 0.5, 1.0)]
+        made.append(_core.Stroke(f"s{k}", middle, False, widths))
+    return made
+
+
+def overlaps(strokes, method: str) -> np.ndarray:
+    plan = _core.compensate(strokes, BRUSH, SHEET, method).plan
+    marks = _core.simulate(plan, BRUSH)
+    _core.trace_outlines(marks, BRUSH)
+    rows, _ = report.measure(plan, marks, BRUSH, strokes)
+    return np.array([row.overlap for row in rows])
+
+
+def test_never_worse_by_the_report_and_better_on_average():
+    strokes = curves(10)
+    closed, refined = overlaps(strokes, "closed"), overlaps(strokes, "refined")
+    assert (refined >= closed).all()
+    assert refined.mean() > closed.mean() + 0.005
+
+
+def test_side_by_side_gives_what_each_alone_does():
+    strokes = curves(19)
+    together = _core.compensate(strokes, BRUSH, SHEET, "refined")
+    for stroke, a_pass, miss in zip(strokes, together.plan.passes, together.misses, strict=True):
+        alone = _core.compensate([stroke], BRUSH, SHEET, "refined")
+        assert a_pass.stroke == stroke.id
+        assert np.array_equal(a_pass.poses_mm, alone.plan.passes[0].poses_mm)
+        assert miss.largest_mm == alone.misses[0].largest_mm
+
+
+def test_progress_counts_strokes():
+    seen = []
+    _core.compensate(curves(9), BRUSH, SHEET, "refined", progress=lambda now, all_: seen.append((now, all_)))
+    assert seen == [(8, 9), (9, 9)]
+
+
+def test_the_first_stroke_that_cannot_be_painted_is_named():
+    strokes = curves(6)
+    strokes[2].half_width = strokes[4].half_width = [(0.0, 40.0)]
+    with pytest.raises(Error, match="width 80") as refusal:
+        _core.compensate(strokes, BRUSH, SHEET, "refined")
+    assert refusal.value.where == "s2"
+
+
+def test_ctrl_c_is_heard():
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            _core.compensate(curves(40) * 100, BRUSH, SHEET, "refined")
+    finally:
+        timer.cancel()
+
+
+def test_an_unknown_way_is_refused():
+    with pytest.raises(Error, match="none, constant, closed or refined"):
+        _core.compensate(curves(1), BRUSH, SHEET, "best")
+
+
+def test_from_the_command_line(tmp_path, capsys):
+    drawing = tmp_path / "curve.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
+        '<path d="M20 30C40 20 60 40 70 70" fill="none" stroke="#000" stroke-width="4"/></svg>'
+    )
+    programs = [tmp_path / f"{k}.ngc" for k in range(2)]
+    for program in programs:
+        assert cli.main(["convert", str(drawing), str(program), "--compensation", "refined"]) == 0
+    assert programs[0].read_bytes() == programs[1].read_bytes()
+    assert b"compensation: refined" in programs[0].read_bytes()
+    capsys.readouterr()
+    for words in (["predict", str(tmp_path / "p.svg")], ["animate", str(tmp_path / "a.html")]):
+        assert cli.main([words[0], str(drawing), words[1], "--compensation", "refined"]) == 0
+    assert cli.main(["report", str(drawing), "--compensation", "refined"]) == 0
+    assert "compensation refined" in capsys.readouterr().out
+    # the program is held against the drawing by the same way
+    assert cli.main(["check", str(programs[0]), str(drawing)]) == 0

@@ -1,0 +1,120 @@
+"""Does this brush suit this drawing: sizes and brushes tried, by value and from the command line."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from brushsvg import Stroke, find_brush, suit
+from brushsvg.cli import main
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">
+<title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="a" d="M20 30 H70"/>
+<path id="b" d="M45 15 V50" stroke-width="{width}"/></g></svg>"""
+
+
+def line(length, half):
+    p = np.linspace((40, 40), (40 + length, 40), 4).reshape(1, 8)
+    return Stroke("s", p, half_width=[(0, half), (1, half)])
+
+
+def test_too_large_a_drawing_is_advised_to_shrink():
+    found = suit.best_size([line(200, 8.0)] * 3, find_brush("round-6"))
+    assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
+    assert found.best == 0.35
+    assert "0.98 in place of 0.00 (tried; --scale 0.35)" in suit.advice(found)
+    assert "--scale 0.7)" in suit.advice(found, 2.0)
+    assert "--scale" not in suit.advice(found, None)
+
+
+def test_a_drawing_of_the_right_size_is_left_alone():
+    found = suit.best_size([line(150, 1.5)] * 40, find_brush("round-6"))
+    assert (found.best, found.tried, found.strokes) == (1.0, suit.TRIED, 40)
+    assert suit.advice(found).startswith("Size: none from 0.35 to 2.8")
+    assert "tried on 16 of 40 strokes" in suit.advice(found)
+
+
+def test_scaling_a_stroke_scales_all_of_it():
+    stroke = line(50, 2.0)
+    stroke.wanted_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
+    twice = suit.scaled(stroke, 2.0)
+    assert twice.middle_mm == pytest.approx(2 * stroke.middle_mm)
+    assert twice.half_width == [(0.0, 4.0), (1.0, 4.0)]
+    assert twice.wanted_mm[0] == pytest.approx(2 * stroke.wanted_mm[0])
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    def write(width=3):
+        path = tmp_path / "two.svg"
+        path.write_text(DRAWING.format(width=width))
+        return str(path)
+
+    return write
+
+
+def ran(capsys, *words):
+    status = main(list(words))
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
+    mine = tmp_path / "mine.json"
+    assert (
+        ran(capsys, "brush", "new", str(mine), "--lag", "1", "--width-at", "2=2", "--depth-max", "2")[0] == 0
+    )
+    status, out, _ = ran(capsys, "report", drawing(), "--all-brushes", "--brush", str(mine))
+    assert status == 0
+    names = [row.split()[0] for row in out.splitlines()[4:]]
+    assert sorted(names) == ["mine", "rigid", "round-6"]
+    assert names[0] == "round-6"
+    assert "2 of 2  a: width 3" in next(row for row in out.splitlines() if row.startswith("mine"))
+    read = json.loads(ran(capsys, "report", drawing(), "--all-brushes", "--json")[1])
+    assert read["format"] == "brushsvg/brushes"
+    best = read["brushes"][0]
+    assert (best["brush"], best["refused"], best["strokes"]) == ("round-6", 0, 2)
+    assert best["worst_overlap"] < best["overlap"]
+
+
+def test_refused_strokes_count_against_a_brush(drawing, capsys):
+    read = json.loads(ran(capsys, "report", drawing(20), "--all-brushes", "--json")[1])
+    row = next(each for each in read["brushes"] if each["brush"] == "round-6")
+    assert (row["refused"], row["strokes"]) == (1, 2)
+    assert row["overlap"] < 0.4
+
+
+def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
+    status, out, err = ran(capsys, "report", drawing(20))
+    assert status == 1
+    assert "Size: drawn 0." in out
+    assert "width 20" in err
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg"])
+def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
+    made = tmp_path / f"misses{suffix}"
+    assert ran(capsys, "report", drawing(), "--compensation", "none", "--preview", str(made))[0] == 0
+    if suffix == ".svg":
+        assert made.read_text().count("<path") == 4
+        assert "clipPath" in made.read_text()
+        return
+    image = cv2.imread(str(made))[:1200]  # the sheet alone, 90 x 60 mm
+    for colour in ("b4b8c0", "d1431f", "2f6fd0"):
+        bgr = [int(colour[k : k + 2], 16) for k in (4, 2, 0)]
+        assert (image == bgr).all(axis=2).sum() > 15, colour
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--brush", "rigid", "--brush", "round-6"], "needs --all-brushes"),
+        (["--all-brushes", "--preview", "x.png"], "shows one brush"),
+        (["--preview", "x.pdf"], "does not end in"),
+    ],
+)
+def test_wrong_usage(drawing, capsys, words, said):
+    status, _, err = ran(capsys, "report", drawing(), *words)
+    assert status == 2
+    assert said in err
