@@ -195,38 +195,47 @@ def fit_ours(strokes, name):
     return _core.fit_marks(painted, None, options), options
 
 
-def by_overlap(strokes, fit, options, most=70):
-    """The fitted laws, stretched to the largest mean overlap on the same strokes: lag, tip gap and width each by one
-    factor, and the set's displacement. Edges say where a mark lies, overlap also what to do about marks that vary in
-    width and place: paint a little fatter.
+def by_overlap(strokes, fit, options, most=120):
+    """The fitted laws, changed to the largest mean overlap on the same strokes: lag, tip gap and width each by one
+    factor, the footprint's two lengths, and the set's displacement. Edges say where a mark lies, overlap also what to
+    do about marks that vary in width and place: paint a little fatter. From our fit, and from a disc about the contact.
     """
     chosen = strokes[:: max(1, len(strokes) // 40)]
+    laws = fit.laws
 
-    def stretched(x):
-        laws = fit.laws
+    def changed(x):
         new = _core.MarkLaws(
             *([float(f) * c for c in getattr(laws, name)] for f, name in zip(x, LAWS, strict=False)),
-            laws.widest_per_half,
-            laws.front_per_half,
+            float(x[3]),
+            float(x[4]),
             laws.round_tail,
         )
-        shift = np.array(fit.shift_mm) + x[3:]
-        return SimpleNamespace(laws=new, shift_mm=shift, height_mm=fit.height_mm)
+        return SimpleNamespace(laws=new, shift_mm=np.array(fit.shift_mm) + x[5:], height_mm=fit.height_mm)
 
     def loss(x):
-        if np.any(x[:3] < 0.02):
+        if np.any(x[:3] < 0.02) or np.any(x[3:5] < 0.1):
             return 1.0
-        predicted = our_marks(chosen, stretched(x), options)
+        predicted = our_marks(chosen, changed(x), options)
         return 1 - np.mean([overlap(p, s.mask) for p, s in zip(predicted, chosen, strict=True)])
 
-    x = np.array([1.0, 1.0, 1.0, 0.0, 0.0])
-    simplex = np.vstack([x, *(x + d for d in np.diag([0.2, 0.3, 0.25, 0.4, 0.4]))])
-    found = minimize(loss, x, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": most})
-    return stretched(found.x), found.x
+    steps = np.diag([0.2, 0.3, 0.25, -0.2, -0.2, 0.4, 0.4])
+    deepest = np.vander([options.deepest_mm], 9, increasing=True)[0]
+    gap, half = (float(deepest[: len(c)] @ c) for c in (laws.tip_gap, laws.half_width))
+    starts = [
+        np.array([1.0, 1.0, 1.0, laws.widest_per_half, laws.front_per_half, 0.0, 0.0]),
+        np.array([1.15, max(0.1, 1.25 * half / gap) if gap > 0 else 1.0, 1.25, 1.0, 1.0, 0.0, 0.0]),
+    ]
+    best = None
+    for x in starts:
+        simplex = np.vstack([x, *(x + d for d in steps)])
+        found = minimize(loss, x, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": most})
+        best = found if best is None or found.fun < best.fun else best
+    return changed(best.x), best.x
 
 
 def our_marks(strokes, fit, options) -> list[np.ndarray]:
-    reach = options.deepest_mm + max(0.0, fit.height_mm)
+    deepest = max(options.deepest_mm, *(-stroke.poses[:, 2].min() for stroke in strokes))
+    reach = deepest + max(0.0, fit.height_mm)
     brush = brush_of(fit.laws, "fitted", (0.0, reach))
     passes = []
     for k, stroke in enumerate(strokes):
@@ -331,6 +340,7 @@ def main():
         predicted = our_marks(unseen, best, options)
         fixed, moved, shifts = scores(unseen, predicted)
         told = ", ".join(f"{f:.2f}" for f in factors[:3])
+        told += f"; widest {factors[3]:.2f} h, front {factors[4]:.2f} h"
         print(
             f"  {'ours, overlap':22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  (lag, tip gap, width times "
             f"{told})"

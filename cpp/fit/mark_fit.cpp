@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kHuber = 1.345, kTukey = 4.685;  // each 95 % as sharp as least squares on normal noise
 constexpr double kFirstNoiseMm = 0.5;             // while nothing is known: a brush's hairs
-constexpr double kLeastNoiseMm = 0.005;           // rounding of outlines and the spacing of footprints
-constexpr int kScanned = 3;                       // starts that are followed a few steps
+// No picture of paint is surer, and what the laws cannot follow of a very clean one must not count as wild.
+constexpr double kLeastNoiseMm = 0.05;
+constexpr int kScanned = 3;  // starts that are followed a few steps
 
 /// What a distance costs, in standard deviations z: rho(z), psi = rho'/2, its slope.
 struct Cost {
@@ -340,7 +341,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         fit.begin(*start);
         fit.shared[fit.model.layout().widest()] = start->widest_per_half;
         fit.shared[fit.model.layout().front()] = start->front_per_half;
-        fit.weighing.noise_mm = std::max(kLeastNoiseMm, *options.noise_mm);
+        fit.weighing.noise_mm = std::max(1e-3, *options.noise_mm);
         // noise that forgets itself as exp(-s / length)
         const double kept = std::exp(-options.spacing_mm / std::max(1e-6, options.noise_length_mm));
         fit.weighing.repeats = (1.0 + kept) / (1.0 - kept);
