@@ -113,6 +113,7 @@ bench: setup
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
 	$(BIN)/python benchmarks/read.py
+	$(BIN)/python benchmarks/article_tables.py
 	font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf  # of `make integration`
 	if [ -f $$font ]; then $(BIN)/pip install -q -e '.[bench]' --no-build-isolation; $(BIN)/python benchmarks/outlines.py $$font; fi
 	$(BIN)/python benchmarks/preview.py

@@ -1,14 +1,65 @@
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <thread>
+
 #include "bindings.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/error.hpp"
+#ifdef BRUSHSVG_FIT
+#include "refine.hpp"
+#endif
 
 namespace {
 
-brushsvg::Compensation method_from(const std::string& name) {
-    if (name == "none") return brushsvg::Compensation::none;
-    if (name == "constant") return brushsvg::Compensation::constant;
-    if (name == "closed") return brushsvg::Compensation::closed;
-    throw brushsvg::Error("compensation is none, constant or closed, not \"" + name + "\"");
+using Way = std::function<brushsvg::CompensatedPass(const brushsvg::Stroke&)>;
+
+/// One stroke's way to its plan.
+Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::CompensateOptions options,
+           const std::array<double, 2>& sheet_mm) {
+    using brushsvg::Compensation;
+    const auto closed_form = [&brush](const brushsvg::CompensateOptions& o) -> Way {
+        return [&brush, o](const brushsvg::Stroke& stroke) { return compensate(stroke, brush, o); };
+    };
+    for (const auto& [name, value] : {std::pair("none", Compensation::none),
+                                      {"constant", Compensation::constant},
+                                      {"closed", Compensation::closed}})
+        if (method == name) {
+            options.method = value;
+            return closed_form(options);
+        }
+    if (method != "refined")
+        throw brushsvg::Error("compensation is none, constant, closed or refined, not \"" + method + "\"");
+#ifdef BRUSHSVG_FIT
+    const brushsvg::fit::RefineOptions refining{options.tolerance_mm, options.speed_mm_s, sheet_mm};
+    return [&brush, refining](const brushsvg::Stroke& stroke) {
+        return brushsvg::fit::refine(stroke, brush, refining).plan;
+    };
+#else
+    throw brushsvg::Error("this build of brushsvg has no refined compensation: it was made without Ceres");
+#endif
+}
+
+/// work(i) for i in [begin, end) on all processors; of several errors the first stroke's is thrown.
+template <class Work>
+void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
+    std::atomic<std::size_t> next{begin};
+    std::vector<std::exception_ptr> errors(end - begin);
+    const auto run = [&] {
+        for (std::size_t i = next++; i < end; i = next++) try {
+                work(i);
+            } catch (...) {
+                errors[i - begin] = std::current_exception();
+            }
+    };
+    std::vector<std::thread> others;
+    for (unsigned k = 1; k < std::min<std::size_t>(std::thread::hardware_concurrency(), end - begin); ++k)
+        others.emplace_back(run);
+    run();
+    for (std::thread& other : others) other.join();
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
 }
 
 struct Compensated {
@@ -40,18 +91,31 @@ too sharp for the lever.)")
         [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,
            const std::string& method, double tolerance_mm, std::optional<double> lag_mm, double speed_mm_s,
            const py::object& progress) {
-            const CompensateOptions options{method_from(method), tolerance_mm, lag_mm, speed_mm_s};
+            CompensateOptions options;
+            options.tolerance_mm = tolerance_mm;
+            options.lag_mm = lag_mm;
+            options.speed_mm_s = speed_mm_s;
+            const Way way = way_of(method, brush, options, sheet_mm);
             Compensated out;
             out.plan.brush = brush.name;
             out.plan.brush_sha256 = brush.sha256;
             out.plan.sheet_mm = sheet_mm;
             if (!brush.width_follows_depth())
                 out.warnings.emplace_back("", "brush " + brush.name + " has one width: drawn widths are ignored");
-            in_chunks(strokes.size(), 16, progress, [&](std::size_t i) {
-                CompensatedPass one = compensate(strokes[i], brush, options);
-                out.plan.passes.push_back(std::move(one.pass));
-                out.misses.push_back(one.miss);
-                for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
+            constexpr std::size_t at_once = 16;
+            const std::size_t chunks = (strokes.size() + at_once - 1) / at_once;
+            const auto in_strokes = progress.is_none() ? progress : py::cpp_function([&](std::size_t now, std::size_t) {
+                progress(std::min(strokes.size(), now * at_once), strokes.size());
+            });
+            in_chunks(chunks, 1, in_strokes, [&](std::size_t chunk) {
+                const std::size_t begin = chunk * at_once, end = std::min(strokes.size(), begin + at_once);
+                std::vector<CompensatedPass> done(end - begin);
+                on_all_processors(begin, end, [&](std::size_t i) { done[i - begin] = way(strokes[i]); });
+                for (CompensatedPass& one : done) {
+                    out.plan.passes.push_back(std::move(one.pass));
+                    out.misses.push_back(one.miss);
+                    for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
+                }
             });
             return out;
         },
@@ -61,9 +125,10 @@ too sharp for the lever.)")
         R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
 
 sheet_mm: (w, h), kept in the plan. method: "none", the TCP on the line; "constant", ahead by lag_mm (None: the lag at
-each stroke's median depth); "closed", the inverse of the brush's law. tolerance_mm: how far the widest point of the
-mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its miss
-returned. speed_mm_s: of painting, at most the brush's. progress: called with (strokes done, strokes).
+each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
+the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
+point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
+miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most the brush's. progress: called with (strokes done, strokes).
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
     m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,

@@ -2,6 +2,8 @@
 #include "bindings.hpp"
 #include "law_fit.hpp"
 
+void bind_fit_marks(py::module_& m);
+
 void bind_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<py::gil_scoped_release>();
@@ -40,4 +42,5 @@ void bind_fit(py::module_& m) {
         py::arg("alpha0"), py::arg("s_mm"), py::arg("alpha"), py::arg("beta") = std::vector<double>{},
         py::arg("lines") = Lines::plain,
         "Lag and tip gap [mm] from angles [rad] after distances s [mm] of a straight drag (article (19) to (23)).");
+    bind_fit_marks(m);
 }

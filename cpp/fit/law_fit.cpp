@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "bernstein.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg::fit {
@@ -38,23 +39,6 @@ MatrixXd powers(const VectorXd& depth, const LawShape& shape) {
     MatrixXd out(depth.size(), shape.degree + 1 - first);
     for (Index j = 0; j < out.cols(); ++j) out.col(j) = depth.array().pow(double(j + first));
     return out;
-}
-
-/// Coefficients (ascending) from the values of a polynomial's control points on the range: Bernstein to powers.
-MatrixXd powers_from_controls(int degree, double lo, double hi) {
-    MatrixXd unit = MatrixXd::Zero(degree + 1, degree + 1);  // in t = (d - lo) / (hi - lo)
-    const auto binomial = [](int n, int k) {
-        double out = 1.0;
-        for (int i = 0; i < k; ++i) out = out * (n - i) / (i + 1);
-        return out;
-    };
-    for (int j = 0; j <= degree; ++j)
-        for (int k = j; k <= degree; ++k)
-            unit(k, j) = binomial(degree, j) * binomial(degree - j, k - j) * ((k - j) % 2 ? -1.0 : 1.0);
-    MatrixXd shift = MatrixXd::Zero(degree + 1, degree + 1);  // t^k in powers of d
-    for (int k = 0; k <= degree; ++k)
-        for (int i = 0; i <= k; ++i) shift(i, k) = binomial(k, i) * std::pow(-lo, k - i) / std::pow(hi - lo, k);
-    return shift * unit;
 }
 
 std::vector<double> coefficients_of(const VectorXd& free, bool through_zero) {

@@ -379,6 +379,12 @@ Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
     return out;
 }
 
+Coverage coverage_of_pieces(const Rings& convex, const Window& window, double px_per_mm) {
+    Spans spans(window, px_per_mm);
+    for (const Ring& piece : convex) spans.convex_pair(piece, piece);
+    return spans.coverage();
+}
+
 Rings outline(const PassMarks& pass, const Brush& brush) {
     Rings swept, chain;
     const auto keep = [&](const Ring& ring) {

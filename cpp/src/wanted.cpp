@@ -26,8 +26,7 @@ Ring hull_of_discs(const Eigen::Vector2d& a, double ra, const Eigen::Vector2d& b
 
 }  // namespace
 
-Rings wanted_outline(const Stroke& stroke, double tolerance_mm) {
-    if (!stroke.wanted_mm.empty()) return stroke.wanted_mm;
+Rings wanted_pieces(const Stroke& stroke, double tolerance_mm) {
     const MiddlePolyline line = flatten(stroke, tolerance_mm);
     const double widest = line.col(3).maxCoeff();
     if (!(widest > 0.0)) return {};
@@ -40,7 +39,12 @@ Rings wanted_outline(const Stroke& stroke, double tolerance_mm) {
         hulls.push_back(hull_of_discs(line.row(i).head<2>().transpose(), line(i, 3), line.row(j).head<2>().transpose(),
                                       line(j, 3), n));
     }
-    return unite(hulls);
+    return hulls;
+}
+
+Rings wanted_outline(const Stroke& stroke, double tolerance_mm) {
+    if (!stroke.wanted_mm.empty()) return stroke.wanted_mm;
+    return unite(wanted_pieces(stroke, tolerance_mm));
 }
 
 }  // namespace brushsvg

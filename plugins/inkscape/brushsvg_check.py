@@ -4,12 +4,11 @@
 
 from __future__ import annotations
 
-import copy
 import sys
 import textwrap
 
 from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
-from brushsvg_program import Run, arguments, choices, guarded
+from brushsvg_program import Run, arguments, choices, element_of, guarded
 
 LAYER_ID = "brushsvg-check"
 REFUSED, WARNED = "#d4351c", "#e08700"
@@ -26,15 +25,17 @@ def main() -> None:
         import inkex  # while brushsvg runs: it knows where things lie
         from lxml import etree
 
-        document = inkex.load_svg(args.input_file)
+        document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
+        measured = inkex.load_svg(
+            args.input_file
+        )  # not the one to be written: inkex rewrites what it looks at
         report = run.report()
-    svg = document.getroot()
-    remove_layer(svg, LAYER_ID)
+    remove_layer(document.getroot(), LAYER_ID)
     layer = locked_layer(etree, LAYER_ID, _label(report))
-    unplaced = _mark_all(etree, svg, layer, report)
+    unplaced = _mark_all(etree, measured.getroot(), layer, report)
     if unplaced:
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(unplaced)
-    svg.append(layer)
+    document.getroot().append(layer)
     document.write(sys.stdout.buffer)
 
 
@@ -54,7 +55,7 @@ def _mark_all(etree, svg, layer, report: dict) -> list[str]:
         for each in report[kind]:
             per_element.setdefault(each["where"], []).append((colour, each["sentence"]))
     for where, said in per_element.items():
-        element = _element(by_id, where)
+        element = element_of(by_id, where)
         if element is None:
             unplaced += [": ".join(filter(None, (where, sentence))) for _, sentence in said]
         else:
@@ -62,20 +63,12 @@ def _mark_all(etree, svg, layer, report: dict) -> list[str]:
     return unplaced
 
 
-def _element(by_id: dict, where: str):
-    """The element of a stroke: id, id/2 for a part of it, id#2 for a pass, use/id for a copy."""
-    for name in (where, where.rpartition("#")[0], where.rpartition("/")[0], where.partition("/")[0]):
-        if name in by_id:
-            return by_id[name]
-    return None
-
-
 def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
     colour, sentence = said[0][0], "; ".join(sentence for _, sentence in said)
     place = element.composed_transform()
     unit = svg.unittouu("1mm")
     if element.tag in SHAPES:
-        layer.append(_copy(element, place, colour))
+        layer.append(_copy(etree, element, place, colour))
     at = place.apply_to_point((_number(element, "x"), _number(element, "y")))
     if element.tag in SHAPES and (box := element.bounding_box(element.getparent().composed_transform())):
         drawn = element.specified_style().get("stroke-width", "1")
@@ -101,8 +94,8 @@ def _write(etree, layer, sentence: str, at, size: float, colour: str) -> None:
         part.text = line
 
 
-def _copy(element, place, colour: str):
-    shape = copy.deepcopy(element)
+def _copy(etree, element, place, colour: str):
+    shape = etree.fromstring(etree.tostring(element, with_tail=False))
     for name in [*OWN_TO_A_SHAPE, *(name for name in shape.attrib if name.startswith("data-brushsvg-"))]:
         shape.attrib.pop(name, None)
     for child in list(shape):

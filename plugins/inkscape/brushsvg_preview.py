@@ -12,7 +12,7 @@ import re
 import sys
 from xml.etree import ElementTree
 
-from brushsvg_program import Run, arguments, choices, guarded
+from brushsvg_program import Run, arguments, choices, guarded, selection
 
 PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both can be seen through each other
 SVG = "{http://www.w3.org/2000/svg}"
@@ -24,10 +24,7 @@ PX_PER_MM = 96 / 25.4
 
 def main() -> None:
     args = arguments(brush="document", brush_file="", compensation="document")
-    words = choices(args)
-    ids = [each for each in args.ids if each != LAYER_ID]
-    if ids:
-        words += ["--select", ", ".join(f'[id="{_escaped(each)}"]' for each in ids)]
+    words = [*choices(args), *selection(args, LAYER_ID)]
     with Run(args.executable, args.input_file, "predict", "marks.svg", *words) as run:
         from lxml import etree  # while brushsvg runs
 
@@ -38,10 +35,6 @@ def main() -> None:
     remove_layer(root, LAYER_ID)
     root.append(_layer(etree, marks, root, warnings))
     document.write(sys.stdout.buffer)
-
-
-def _escaped(text: str) -> str:
-    return re.sub(r'(["\\])', r"\\\1", text)
 
 
 def remove_layer(root, name: str) -> None:

@@ -171,3 +171,17 @@ def choices(args: argparse.Namespace) -> list[str]:
         if said and said != "document":
             words += [f"--{flag}", said]
     return words
+
+
+def selection(args: argparse.Namespace, *but: str) -> list[str]:
+    """Flags for what is selected, if anything is; but: ids that do not count."""
+    chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in args.ids if each not in but]
+    return ["--select", ", ".join(f'[id="{each}"]' for each in chosen)] if chosen else []
+
+
+def element_of(by_id: dict, where: str):
+    """The element of a stroke, None if unknown: id, id/2 for a part of it, id#2 for a pass, use/id for a copy."""
+    for name in (where, where.rpartition("#")[0], where.rpartition("/")[0], where.partition("/")[0]):
+        if name in by_id:
+            return by_id[name]
+    return None

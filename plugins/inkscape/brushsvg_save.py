@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Save as robot program: the same bytes as `brushsvg convert` writes."""
+"""Save as robot program, plan, marks or animation: the bytes that `brushsvg convert`, `predict`, `animate` write."""
 
 from __future__ import annotations
 
@@ -11,7 +11,13 @@ from brushsvg_program import Run, arguments, choices, guarded, root_of
 
 def main() -> None:
     args = arguments(
-        format="ngc", else_cell="", brush="document", brush_file="", cell="document", cell_file=""
+        command="convert",
+        format="ngc",
+        else_cell="",
+        brush="document",
+        brush_file="",
+        cell="document",
+        cell_file="",
     )
     if (
         args.cell == "document"
@@ -19,8 +25,8 @@ def main() -> None:
         and root_of(args.input_file).get("data-brushsvg-cell") is None
     ):
         args.cell = args.else_cell
-    out = f"program.{args.format}"
-    with Run(args.executable, args.input_file, "convert", out, *choices(args)) as run:
+    out = f"saved.{args.format}"
+    with Run(args.executable, args.input_file, args.command, out, *choices(args)) as run:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
         sys.stdout.flush()

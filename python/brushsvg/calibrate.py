@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import _core, shapes
+from . import _core, plausible, shapes
 from .errors import Error
 from .measurements import Measurements, Row
 from .new_brush import GAP_PER_HALF, WIDEST_PER_HALF, need_fits, outlines_assumed
@@ -74,7 +74,8 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
         raise Error("no lag was measured: add lag, angles or angular, one row per depth", "lag")
     brush = maker.brush(name or measured.name or "measured")
     laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
-    return Calibration(brush, laws, tuple([*remarks, *maker.remarks]))
+    plausible.refuse_brush(brush)
+    return Calibration(brush, laws, tuple([*remarks, *maker.remarks, *plausible.odd(brush, laws)]))
 
 
 def _direct(measured: Measurements, total: bool) -> tuple[dict[str, list[Point]], list[str]]:
@@ -100,6 +101,7 @@ def _direct(measured: Measurements, total: bool) -> tuple[dict[str, list[Point]]
 
 def _of_angles(row: Row, total: bool) -> dict:
     degrees = math.radians(1.0)
+    plausible.refuse_series(row.where, *(row.numbers[name] for name in ("alpha0_deg", "s_mm", "alpha_deg")))
     try:
         return _core.from_angles(
             row.numbers["alpha0_deg"] * degrees,
@@ -137,7 +139,7 @@ class _Maker:
             raise Error(
                 "angular, straight and side_view all measure the sum of lag and tip gap, so the two cannot be told "
                 "apart: add angles, or rows of lag or tip_gap",
-                SUMS[0],
+                next(kind for kind in SUMS if kind in self.measured.rows),
             )
         wanted, known = ("lag", "tip_gap") if "tip_gap" in self.done else ("tip_gap", "lag")
         if "lag" in self.done and "tip_gap" in self.done:
@@ -177,12 +179,15 @@ class _Maker:
                 f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative"
             )
             raise Error(sentence, worst.where, worst.value_mm)
-        different = len(set(depths))
+        different = plausible.different(depths)
         if different < 2:
             raise Error(
                 f"{law} was measured at depth {depths[0]:g} mm alone: measure it at two depths or more, better five",
                 points[0].where,
             )
+        plausible.refuse_range(law, max(depths), self.range_mm, points[0].where)
+        if law in ("lag", "half_width"):
+            plausible.refuse_falling(law, points)
         most = different if law in FROM_ZERO else different - 1
         degree = min(DEGREES[law], most)
         remarks = []
@@ -199,6 +204,8 @@ class _Maker:
             **({"floor": 0.0} if widest else {}),
         )
         fit = _core.fit_law(depths, values, shape)
+        if law == "half_width":
+            plausible.refuse_unexplained(law, points, fit)
         if fit.held:
             what = "falls" if law == "half_width" else "is not positive"
             remarks.append(f"held to its shape: the law that fits best {what} somewhere in the depth range")

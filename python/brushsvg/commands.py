@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
+from . import _core, convert, machine, paint, report
 from . import cell_check as cell_checks
-from . import convert, machine, paint
 from ._core import remarks, write_brush
 from .brushes import brush_names, find_brush
 from .cell import Cell
@@ -40,7 +40,7 @@ def convert_file(args) -> None:
     with about(args.input):
         if _suffix(args.output) != ".json":
             machine.post_for(_suffix(args.output), cell)
-        marks = convert.predict(work, bool(args.report or _suffix(args.preview) == ".svg"), stage)
+        marks = convert.predict(work, _suffix(args.preview) == ".svg", stage)
         problems = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
         problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
         if damaged:
@@ -97,6 +97,39 @@ def height_file(args) -> None:
     _write({args.output: text})
 
 
+def chart_file(args) -> None:
+    from .chart import chart
+    from .chart_json import write_chart
+    from .chart_page import chart_page
+
+    _check_places(args.output, args.page, args.chart)
+    brush = _brush(args) or find_brush(convert.DEFAULT_BRUSH)
+    cell = machine.as_exact_as(_cell(args), machine.DEFAULT_TOLERANCE_MM)
+    with about(args.output):
+        if _suffix(args.output) != ".json":
+            machine.post_for(_suffix(args.output), cell)
+        stage("laying out the chart")
+        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm)
+        job = Job(args.z_offset)
+        marks = _core.simulate(made.plan, brush)
+        problems = machine.problems(made.plan, brush, marks, cell, machine.DEFAULT_TOLERANCE_MM, job)
+        if problems:
+            raise RefusedError([(args.output, *problem) for problem in folded(problems)])
+        title = f"calibration chart of brush {brush.name}"
+        files = {args.output: machine.encode(_suffix(args.output), made.plan, brush, title, (), cell, job)}
+    if args.page:
+        files[args.page] = chart_page(made).encode()
+    if args.chart:
+        files[args.chart] = write_chart(made).encode()
+    _warn_of_example(args, cell)
+    _write(files)
+    depths = sorted({stroke.depth_mm for stroke in made.strokes if stroke.kind == "angular"})
+    count, width, height = len(made.strokes), *args.sheet
+    tell(
+        f"{count} strokes on {width:g} x {height:g} mm, depths {', '.join(f'{depth:g}' for depth in depths)} mm\n"
+    )
+
+
 def check_file(args) -> None:
     from . import checking, comparing  # here and below: what only one command needs is loaded by it
     from .readback import read_program
@@ -135,13 +168,13 @@ def check_file(args) -> None:
                 whole = convert.whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
                 drawn = work.strokes if ran.first_stroke == 1 else None
-        outlined = convert.outlined(ran.marks, brush, stage)
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
+            outlined = convert.outlined(ran.marks, brush, stage)
             _write({args.preview: convert.picture(_suffix(args.preview), shown, outlined)})
         seconds = duration_s(again) if again else 0.0
         suffix = ".json" if args.json else ".txt"
-        tell(convert.report_text(suffix, shown, outlined, cell, drawn=drawn, seconds=seconds))
+        tell(convert.report_text(suffix, shown, ran.marks, cell, drawn=drawn, seconds=seconds))
     if problems:
         raise RefusedError([(args.program, *problem) for problem in folded(problems)])
     if not args.json:
@@ -161,9 +194,18 @@ def predict_file(args) -> None:
     _check_places(args.output)
     _settle(args)
     suffix = _suffix(args.output)
-    work, marks, _ = _look(args, _cell(args), outlines=suffix != ".png", whole=suffix == ".json")
+    outlines = suffix != ".png" or args.band
+    work, marks, _ = _look(args, _cell(args), outlines=outlines, whole=suffix == ".json")
     with about(args.input):
-        picture = convert.picture(_suffix(args.output), work, marks)
+        band = None
+        if args.band:
+            from .uncertainty import band as band_of
+
+            stage("finding how sure it is")
+            band = band_of(work.plan, work.brush, marks)
+            if not any(band.rings):
+                say(work.brush.name, band.words)
+        picture = convert.picture(_suffix(args.output), work, marks, band)
     _write({args.output: picture})
 
 
@@ -185,12 +227,19 @@ def import_file(args) -> None:
         try:
             strokes, notices = strokes_of(design, args.paths_as)
         except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+            if args.editable:
+                raise
             strokes, notices = [], [Notice(nothing.where, str(nothing))]
         notices = [*design.notices, *notices]
         warn(args.input, [(notice.where, notice.sentence) for notice in notices])
-        from .overview import overview
+        if args.editable:
+            from .lines_svg import lines_svg
 
-        picture = overview(_suffix(args.output), design, strokes, notices)
+            picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
+        else:
+            from .overview import overview
+
+            picture = overview(_suffix(args.output), design, strokes, notices)
     _write({args.output: picture})
 
 
@@ -212,16 +261,44 @@ def text_file(args) -> None:
 
 
 def report_file(args) -> None:
+    _check_places(args.preview)
+    if args.all_brushes:
+        return _all_brushes(args)
+    args.brush = args.brush[0] if args.brush else None
     _settle(args)
     cell = _cell(args)
-    work, marks, warnings = _look(args, cell, outlines=True, partly=True)
+    work, marks, warnings = _look(args, cell, outlines=_suffix(args.preview) == ".svg", partly=True)
     with about(args.input):
-        text = convert.report_text(".json" if args.json else ".txt", work, marks, cell, warnings)
+        stage("trying other sizes")
+        advice = convert.advice(work)
+        if args.preview:
+            _write({args.preview: convert.misses_picture(_suffix(args.preview), work, marks)})
+        suffix = ".json" if args.json else ".txt"
+        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice)
     if work.plan.passes or args.json:
         tell(text)
+    elif advice:
+        tell(advice + "\n")
     if work.refused:
         refused = folded((notice.where, notice.sentence) for notice in work.refused)
         raise RefusedError([(args.input, *each) for each in refused])
+
+
+def _all_brushes(args) -> None:
+    from . import suit
+
+    given, args.brush = args.brush or [], None
+    _settle(args)
+    asked = [*brush_names(), *(name for name in given if name not in brush_names())]
+    brushes = []
+    for name in asked:
+        with about(name):
+            brushes.append(find_brush(name))
+    cell = _cell(args)
+    with about(args.input):
+        suits = convert.suits(args.input, _options(args, cell), brushes, stage)
+        title = arrange(read_drawing(args.input, _reading(args)), _layout(args)).title
+        tell(suit.to_json(title, suits) if args.json else report.brushes_text(title, suits))
 
 
 def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
@@ -242,24 +319,26 @@ def _look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool
 
 
 def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
-    is_plan = _suffix(args.input) == ".json"
-    if is_plan:
+    if _suffix(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
-    options = convert.Options(
+    with about(args.input):
+        return convert.prepare(args.input, _options(args, cell, brush), stage, partly)
+
+
+def _options(args, cell: Cell, brush=None) -> convert.Options:
+    return convert.Options(
         brush=brush or _brush(args),
         reading=_reading(args),
         layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
-        tolerance_mm=(not is_plan and args.tolerance) or convert.Options.tolerance_mm,
+        tolerance_mm=(_suffix(args.input) != ".json" and args.tolerance) or convert.Options.tolerance_mm,
         paths_as=args.paths_as,
         wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
     )
-    with about(args.input):
-        return convert.prepare(args.input, options, stage, partly)
 
 
 def _settle(args) -> None:
@@ -354,14 +433,30 @@ def calibrate_file(args) -> None:
     _check_places(args.output, args.plot)
     with about(args.input):
         measured = read_measurements(read_bytes(args.input), _suffix(args.input))
-        name = os.path.splitext(os.path.basename(args.output))[0]
-        made = calibrate(measured, measured.name or name, args.norm == "absolute", args.total)
+        name = measured.name or os.path.splitext(os.path.basename(args.output))[0]
+        if measured.marks is not None:
+            made, report, report_picture = _from_marks(args, measured, name)
+        else:
+            made = calibrate(measured, name, args.norm == "absolute", args.total)
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, _suffix(args.plot))
     _write(files)
     warn(args.output, remarks(made.brush))
     tell(report(made))
+
+
+def _from_marks(args, measured, name: str):
+    """A brush from painted marks, and what tells of it in words and as a picture."""
+    from .mark_calibrate import calibrate_marks, options_for
+    from .mark_report import report, report_picture
+    from .painted import read_painted
+
+    folder = os.path.dirname(args.input)
+    painted = read_painted(measured.plan, measured.marks, lambda path: read_bytes(os.path.join(folder, path)))
+    options = options_for(measured.expected)
+    made = calibrate_marks(painted, name, measured.depth_range_mm, measured.max_speed_mm_s, options)
+    return made, report, report_picture
 
 
 def brush_new(args) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _core, importers, layout, report
+from . import _core, importers, layout, report, score, suit
 from .animation import animation
 from .brushes import find_brush
 from .cell import Cell
@@ -22,8 +22,9 @@ from .paint import in_loads as in_loads_of
 from .paint import is_later_part
 from .reach import within_reach
 from .strokes import strokes as strokes_of
-from .svg_marks import marks_svg
+from .svg_marks import marks_svg, misses_svg
 from .timeline import timeline
+from .uncertainty import uncertainty
 
 DEFAULT_BRUSH = "round-6"
 SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
@@ -59,6 +60,7 @@ class Work:
     options: Options
     notices: tuple[Notice, ...]
     refused: tuple[Notice, ...] = ()
+    left_out: tuple = ()  # the strokes that were refused, as they were wanted
 
 
 def prepare(
@@ -88,13 +90,13 @@ def prepare(
             progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
         )
 
-    refused = []
+    refused, left_out = [], []
     try:
         done = compensated(painted)
     except Error:
         if not partly:
             raise
-        painted, strokes, refused = _sorted_out(painted, strokes, compensated)
+        painted, strokes, refused, left_out = _sorted_out(painted, strokes, compensated)
         done = compensated(painted)
     plan = _with_speeds(done.plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
@@ -102,21 +104,31 @@ def prepare(
     if options.compensation == "closed":
         notices += _misses(strokes, done.misses, options.tolerance_mm)
     return Work(
-        design.title, brush, plan, strokes, tuple(done.misses), options, tuple(notices), tuple(refused)
+        design.title,
+        brush,
+        plan,
+        strokes,
+        tuple(done.misses),
+        options,
+        tuple(notices),
+        tuple(refused),
+        tuple(left_out),
     )
 
 
 def _sorted_out(painted, wanted, compensated):
-    """Strokes that can be painted, with what they should become, and why the others cannot: each is tried alone."""
-    sound, refused = [], []
+    """Strokes that can be painted, with what they should become, why the others cannot, and what those should become:
+    each is tried alone."""
+    sound, refused, left_out = [], [], []
     for pair in zip(painted, wanted, strict=True):
         try:
             compensated(pair[:1])
         except Error as error:
             refused.append(Notice(pair[0].id, str(error)))
+            left_out.append(pair[1])
         else:
             sound.append(pair)
-    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused
+    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
 def _widths(warnings, may_advise: bool) -> list[Notice]:
@@ -234,7 +246,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     px_per_mm = min(
         4.0, 4000.0 / max(work.plan.sheet_mm)
     )  # overlaps to 2e-4, in a twentieth of the rings' time
-    wanted = _core.coverage(report.wanted_rings(work.strokes), window, px_per_mm)
+    wanted = score.wanted_pixels(list(map(score.meant, work.strokes)), window, px_per_mm)
     best, most = work, -1.0
     greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
@@ -308,19 +320,61 @@ def notes(work: Work) -> tuple[str, ...]:
     return (made, count) if work.strokes is not None else (count,)
 
 
-def picture(suffix: str, work: Work, marks) -> bytes:
-    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines."""
+def picture(suffix: str, work: Work, marks, band=None) -> bytes:
+    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
+    uncertainty.Band to draw around them."""
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"
-        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made)
+        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made, band)
         return text.encode()
     from . import render  # brings OpenCV, which the others do not need
 
-    return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours)
+    return render.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band)
+
+
+def misses_picture(suffix: str, work: Work, marks) -> bytes:
+    """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
+    outlines. Error for a plan, which does not say what was wanted."""
+    if work.strokes is None:
+        raise Error("a plan does not say what was wanted: give the drawing")
+    if suffix == ".svg":
+        wanted = report.wanted_rings(work.strokes)
+        return misses_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+    from . import render
+
+    px_per_mm = min(20.0, render.PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
+    window = (0.0, 0.0, *work.plan.sheet_mm)
+    wanted = score.wanted_pixels(list(map(score.meant, work.strokes)), window, px_per_mm)
+    return render.misses_png(wanted, score.painted_pixels(marks.passes, work.brush, window, px_per_mm))
+
+
+def advice(work: Work) -> str:
+    """On the drawing's size, in words; none for a plan."""
+    strokes = [*(work.strokes or ()), *work.left_out]
+    layout_ = work.options.layout
+    if not strokes or layout_.width_mm is not None:
+        return ""
+    scale = (layout_.scale or 1.0) if layout_.fit_mm is None else None
+    return suit.advice(suit.best_size(strokes, work.brush, work.options.tolerance_mm), scale)
+
+
+def suits(path: str | os.PathLike, options: Options, brushes, stage=lambda text: None) -> list[suit.Suit]:
+    """How well each brush paints a drawing, the best first."""
+    found = []
+    for brush in brushes:
+        work = prepare(path, replace(options, brush=brush), stage, partly=True)
+        marks = predict(work, outlines=False, stage=stage)
+        drawn = [*work.strokes, *work.left_out]
+        rows, total = report.measure(
+            work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
+        )
+        refused = [(notice.where, notice.sentence) for notice in work.refused]
+        found.append(suit.suit(brush.name, rows, total.overlap if rows else 0.0, refused))
+    return suit.best_first(found)
 
 
 def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
@@ -330,12 +384,22 @@ def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
     return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
-def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn=None, seconds=None) -> str:
+def report_text(
+    suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn=None, seconds=None, advice=""
+) -> str:
     """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; drawn: see
-    report.measure; seconds: how long it takes, where that is known better than from the plan."""
+    report.measure; seconds: how long it takes, where that is known better than from the plan; advice: on the size."""
     known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
     is_drawing = work.strokes is not None
-    rows, total = report.measure(work.plan, marks, work.brush, work.strokes, work.options.tolerance_mm, drawn)
+    rows, total = report.measure(
+        work.plan,
+        marks,
+        work.brush,
+        work.strokes,
+        work.options.tolerance_mm,
+        drawn,
+        work.options.compensation,
+    )
     result = report.Report(
         title=work.title,
         brush=work.plan.brush,
@@ -346,5 +410,8 @@ def report_text(suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn
         time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
         warnings=tuple(known),
         refused=tuple((notice.where, notice.sentence) for notice in work.refused),
+        sure=uncertainty(work.plan, work.brush, marks),
+        groups=report.groups(marks, work.brush, work.strokes),
+        advice=advice,
     )
     return report.to_json(result) if suffix == ".json" else report.to_text(result)

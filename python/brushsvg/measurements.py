@@ -29,6 +29,9 @@ KINDS = {
 _SERIES = ("s_mm", "alpha_deg", "beta_deg")
 _TABLE = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
 _ABOUT = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
+_PAINTED = ("plan", "marks", "expected")  # whole marks: see painted
+# How far off a sheet and its marks may be, as standard deviations a person can say.
+EXPECTED = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,9 @@ class Measurements:
     depth_range_mm: tuple[float, float] | None = None
     max_speed_mm_s: float = 25.0
     depths_mm: list[float] = field(default_factory=list)
+    plan: str | dict | None = None  # of the marks: a path, or what stands in a plan.json
+    marks: str | list | None = None
+    expected: dict = field(default_factory=dict)
 
 
 def read_measurements(data: bytes, suffix: str) -> Measurements:
@@ -59,6 +65,8 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         found = _read_table(text) if suffix == ".csv" else _read_json(text)
     except csv.Error as problem:
         raise Error(f"this is not a table: {problem}") from None
+    if found.marks is not None:
+        return found
     depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
     if not depths:
         raise Error("there is no measurement in it")
@@ -105,8 +113,8 @@ def _read_json(text: str) -> Measurements:
         raise Error(f'the file does not say "format": "{FORMAT}"', "format")
     if content.get("version") != 1:
         raise Error(f"version {content.get('version')} of {FORMAT} is not known; known is 1", "version")
-    if unknown := [key for key in content if key not in _ABOUT]:
-        raise Error(f"this is not known; known are {', '.join(KINDS)}", unknown[0])
+    if unknown := [key for key in content if key not in (*_ABOUT, *_PAINTED)]:
+        raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0])
     rows = {}
     for kind in KINDS:
         listed = content.get(kind, [])
@@ -126,9 +134,32 @@ def _read_json(text: str) -> Measurements:
             raise Error(
                 f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
             )
+    speed = _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    if "marks" not in content:
+        if lost := [key for key in _PAINTED if key in content]:
+            raise Error("this says something of marks, and there are none", lost[0])
+        return Measurements(rows, name, about, span, speed)
+    if rows:
+        raise Error(
+            "marks tell what the other kinds tell, and are fitted alone: leave these out, or make two files",
+            next(iter(rows)),
+        )
+    plan, marks = content.get("plan"), content["marks"]
     return Measurements(
-        rows, name, about, span, _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+        rows, name, about, span, speed, [], plan, marks, _expected(content.get("expected", {}))
     )
+
+
+def _expected(given) -> dict:
+    if not isinstance(given, dict):
+        raise Error("this must be an object", "expected")
+    if unknown := [key for key in given if key not in EXPECTED]:
+        raise Error(f"this is not known; known are {', '.join(EXPECTED)}", f"expected.{unknown[0]}")
+    out = {key: _number(value, f"expected.{key}") for key, value in given.items()}
+    for key, value in out.items():
+        if not 0 <= value <= 30:
+            raise Error(f"{value:g} is outside the range [0, 30]", f"expected.{key}", value)
+    return out
 
 
 def _row(kind: str, row: dict, where: str) -> Row:

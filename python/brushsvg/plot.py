@@ -20,7 +20,13 @@ def brush_picture(brush, suffix: str, data: dict | None = None) -> bytes:
 
     Error with the command to run where matplotlib is not installed.
     """
-    figure = _figure((11, 7.2))
+    figure = new_figure((11, 7.2))
+    brush_picture_on(figure, brush, data)
+    return encoded(figure, suffix)
+
+
+def brush_picture_on(figure, brush, data: dict | None = None) -> None:
+    """The same on a figure, or a part of one."""
     grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 1.1))
     depths = np.linspace(*brush.depth_range_mm, 201)
     for number, (name, meaning) in enumerate(LAWS):
@@ -30,7 +36,6 @@ def brush_picture(brush, suffix: str, data: dict | None = None) -> bytes:
             axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6)
     _footprints(figure.add_subplot(grid[:, 2]), brush)
     figure.suptitle(_plain(brush.name))
-    return encoded(figure, suffix)
 
 
 def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
@@ -98,7 +103,7 @@ def _footprints(axes, brush) -> None:
     axes.set_xlabel("mm from the tip", fontsize=8)
 
 
-def _figure(size_in: tuple[float, float]):
+def new_figure(size_in: tuple[float, float]):
     """A figure without a window or global state. Error where matplotlib is missing."""
     try:
         import matplotlib

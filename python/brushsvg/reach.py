@@ -10,6 +10,7 @@ from .errors import Error
 
 WIDE = ("clamp", "passes", "refuse")
 _SHARE = 0.9  # of a pass's width, the next one's middle line at most beside it: they overlap by the rest
+_FITTED = 0.03  # of a pass's half width, off its curve at most: as much lies outside of the shape
 _FLAT_MM = 0.02
 
 
@@ -93,7 +94,7 @@ def _beside(stroke, greatest: float) -> list:
                 points = _offset(stretch[:, :2], along, side * across, beyond * row / rows, round_ends)
                 if points is not None:
                     found.append(np.column_stack([points, np.full(len(points), greatest)]))
-    fitted = [_core.fit_curve(points, 0.1 * greatest) for points in found]
+    fitted = [_core.fit_curve(points, _FITTED * greatest) for points in found]
     return [
         _like(stroke, f"{stroke.id}~{number}", middle, knots)
         for number, (middle, knots) in enumerate(fitted, start=2)

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from .errors import Error
-from .svg_marks import known_colour
+from .svg_marks import BAND, BOTH, MISSES, MISSING, SPILT, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -25,8 +25,9 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -> bytes:
-    """The sheet with its paint, anti-aliased, colours over each other in painting order."""
+def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None) -> bytes:
+    """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
+    with a legend."""
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
     image = None
@@ -42,6 +43,39 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str]) -
         first = last
     if image is None:
         raise Error("there is nothing to draw")
+    if band is not None:
+        _draw_band(image, band, window, px_per_mm)
+    return _png(image)
+
+
+def _draw_band(image, band, window, px_per_mm: float) -> None:
+    size = max(12, round(min(image.shape[:2]) / 40))
+    left, low = size, image.shape[0] - size
+    for rings in filter(None, band.rings):
+        _lay(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
+    if any(band.rings):
+        box = np.zeros(image.shape[:2])
+        box[low - size : low, left : left + 2 * size] = 0.45
+        _lay(image, box, BAND)
+        left += round(2.5 * size)
+    _write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)
+
+
+def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
+    """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
+    common = np.minimum(wanted, painted)
+    rows, columns = common.shape
+    size = max(14, round(0.016 * max(rows, columns)))
+    image = _canvas((rows + 2 * size, columns), "#ffffff")
+    shares = ((common, BOTH), (wanted - common, MISSING), (painted - common, SPILT))
+    page = np.full((rows, columns, 3), 255.0)
+    for share, colour in shares:  # side by side in a pixel, not over each other
+        page -= share[..., None] * (255.0 - np.array(_bgr(colour)))
+    image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
+    x = size
+    for colour, words in MISSES:
+        image[rows + size // 2 : rows + 3 * size // 2, x : x + size] = _bgr(colour)
+        x = _write(image, words, (x + 3 * size // 2, rows + 11 * size // 8), size, 400, TEXT) + 2 * size
     return _png(image)
 
 

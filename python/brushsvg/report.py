@@ -7,10 +7,13 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from . import _core
+from . import _core, score
+from .reasons import reason
+from .uncertainty import Uncertainty
 
 RING_TOLERANCE_MM = 0.01
-SAMPLE_SPACING_MM = 0.25
+LEAST_SQUARE_MM = 0.5  # in which paint and drawing differ most; half a width of a wide stroke
+SMALL_MM2 = 0.005  # that is no difference worth a word
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,27 @@ class Figures:
     drawn_mm: float | None
     painted_mm: float
     poses: int
+    worst: Worst | None = None
+
+
+@dataclass(frozen=True)
+class Worst:
+    """Where a stroke's paint differs most from what was drawn: place_mm (x, y); is_missing: wanted but not painted,
+    else painted but not wanted, area_mm2 of it near that place; reason: why, in words."""
+
+    place_mm: tuple[float, float]
+    is_missing: bool
+    area_mm2: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Group:
+    """Strokes that touch or cross, a letter perhaps: overlap of all their paint with all that was drawn of them, so
+    that paint of one on the other is not counted against it."""
+
+    strokes: tuple[str, ...]
+    overlap: float
 
 
 @dataclass(frozen=True)
@@ -45,6 +69,9 @@ class Report:
     time_s: float
     warnings: tuple[tuple[str, str], ...] = ()
     refused: tuple[tuple[str, str], ...] = ()  # strokes that are not among those of the report
+    sure: Uncertainty | None = None  # None: nothing is known of how sure the brush is
+    groups: tuple[Group, ...] = ()
+    advice: str = ""  # on the drawing's size
 
 
 def wanted_rings(strokes) -> list[np.ndarray]:
@@ -53,10 +80,10 @@ def wanted_rings(strokes) -> list[np.ndarray]:
 
 
 def measure(
-    plan, marks, brush, strokes=None, tolerance_mm: float = 0.05, drawn=None
+    plan, marks, brush, strokes=None, tolerance_mm: float = 0.05, drawn=None, compensation: str = "closed"
 ) -> tuple[tuple[Figures, ...], Figures]:
-    """Figures for each pass and for all. marks: with outlines; strokes: one per pass, None if unknown, or None for a
-    pass that is a part of a stroke: then drawn is all that was drawn, the strokes themselves where it is None."""
+    """Figures for each pass and for all. strokes: one per pass, None if unknown, or None for a pass that is a part of a
+    stroke: then drawn is all that was drawn, the strokes themselves where it is None."""
     if strokes is None:
         rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
         return rows, _in_all(rows, None)
@@ -65,22 +92,48 @@ def measure(
         if stroke is None:
             rows.append(_bare_figures(a_pass))
             continue
-        rings = _core.wanted_outline(stroke, RING_TOLERANCE_MM)
+        wanted.append(score.meant(stroke))
+        seen = score.view([trace], wanted[-1:], brush)
         miss = _core.miss_of(a_pass, stroke, brush, tolerance_mm)
         line = _core.flatten(stroke, RING_TOLERANCE_MM)
         figures = replace(
             _bare_figures(a_pass),
-            overlap=_core.overlap(trace.outline_mm, rings),
+            overlap=score.areas(seen).overlap,
             centre_mean_mm=miss.mean_mm,
             centre_largest_mm=miss.largest_mm,
-            width_error_mm=width_error(line, trace.outline_mm, rings),
+            width_error_mm=score.width_error(line, seen),
             widths_out_of_reach=_out_of_reach(stroke, brush),
             drawn_mm=float(line[-1, 2]),
+            worst=_worst(seen, stroke, line, brush, miss, tolerance_mm, compensation),
         )
         rows.append(figures)
-        wanted += rings
-    meant = _core.unite(wanted) if drawn is None else wanted_rings(drawn)
-    return tuple(rows), _in_all(tuple(rows), _core.overlap(marks.outline_mm, meant) if rows else None)
+    meant = wanted if drawn is None else list(map(score.meant, drawn))
+    overlap = score.areas_of_sheet(marks.passes, meant, brush).overlap if rows else None
+    return tuple(rows), _in_all(tuple(rows), overlap)
+
+
+def _worst(seen, stroke, line, brush, miss, tolerance_mm: float, compensation: str) -> Worst | None:
+    size_mm = max(LEAST_SQUARE_MM, float(np.median(line[:, 3])))
+    place_mm, is_missing, area_mm2 = score.worst_place(seen, size_mm)
+    if area_mm2 < SMALL_MM2:
+        return None
+    why = reason(stroke, line, brush, place_mm, miss, tolerance_mm, compensation)
+    return Worst(place_mm, is_missing, area_mm2, why)
+
+
+def groups(marks, brush, strokes) -> tuple[Group, ...]:
+    """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
+    known = [
+        (trace, score.meant(stroke))
+        for trace, stroke in zip(marks.passes, strokes or (), strict=bool(strokes))
+        if stroke is not None
+    ]
+    found = []
+    for members in score.touching([wanted for _, wanted in known]):
+        traces, wanted = [known[k][0] for k in members], [known[k][1] for k in members]
+        overlap = score.areas_of_sheet(traces, wanted, brush).overlap
+        found.append(Group(tuple(each.stroke.id for each in wanted), overlap))
+    return tuple(found)
 
 
 def _bare_figures(a_pass) -> Figures:
@@ -117,74 +170,22 @@ def _out_of_reach(stroke, brush) -> int:
     return sum(not least - 1e-9 <= half_width <= greatest + 1e-9 for _, half_width in stroke.half_width)
 
 
-def width_error(line: np.ndarray, predicted: list, wanted: list) -> float | None:
-    """Mean absolute difference [mm] of two marks' widths, both measured across the middle line.
-
-    line: (n, 4) rows x, y, arc length, half width. Places where the wanted mark is not as wide as the line
-    says (its ends, where it crosses or touches itself) tell nothing of the brush's width and are left out.
-    None when nothing is left.
-    """
-    length_mm = line[-1, 2]
-    if length_mm <= 0:
-        return None
-    at_mm = (np.arange(max(1, round(length_mm / SAMPLE_SPACING_MM))) + 0.5) * SAMPLE_SPACING_MM
-    at_mm = at_mm[at_mm < length_mm]
-    xy = np.column_stack([np.interp(at_mm, line[:, 2], line[:, k]) for k in (0, 1)])
-    segment = np.clip(np.searchsorted(line[:, 2], at_mm, side="right") - 1, 0, len(line) - 2)
-    along = np.diff(line[:, :2], axis=0)[segment]
-    lengths = np.hypot(along[:, 0], along[:, 1])
-    half_mm = np.interp(at_mm, line[:, 2], line[:, 3])
-    usable = (lengths > 0) & (half_mm > 0)
-    xy, half_mm = xy[usable], half_mm[usable]
-    along = along[usable] / lengths[usable, None]
-    wanted_mm = widths_across(xy, along, wanted, reach_mm=2 * half_mm)
-    usable = np.abs(wanted_mm - 2 * half_mm) < 0.1 * half_mm + 0.05
-    if not usable.any():
-        return None
-    predicted_mm = widths_across(xy[usable], along[usable], predicted, reach_mm=2 * half_mm[usable])
-    return float(np.abs(predicted_mm - wanted_mm[usable]).mean())
-
-
-def widths_across(xy: np.ndarray, along: np.ndarray, rings: list, reach_mm: np.ndarray) -> np.ndarray:
-    """Width [mm] of filled rings across each line: of the piece that holds the point, else of the nearest one
-    that begins within reach_mm of it, else 0. xy, along (unit directions of the line): (n, 2)."""
-    widths = np.zeros(len(xy))
-    rings = [ring for ring in rings if len(ring) >= 3]
-    if not rings:
-        return widths
-    tails = np.vstack(rings)
-    heads = np.vstack([np.roll(ring, -1, axis=0) for ring in rings])
-    for first in range(0, len(xy), 256):  # bounds the memory, nothing else
-        part = slice(first, first + 256)
-        widths[part] = _widths(xy[part], along[part], tails, heads, reach_mm[part])
-    return widths
-
-
-def _widths(xy, along, tails, heads, reach_mm) -> np.ndarray:
-    def seen_from(points):  # ahead of the sample along the line, and to its left, (samples, edges)
-        x = points[None, :, 0] - xy[:, None, 0]
-        y = points[None, :, 1] - xy[:, None, 1]
-        return along[:, :1] * x + along[:, 1:] * y, along[:, :1] * y - along[:, 1:] * x
-
-    (ahead0, left0), (ahead1, left1) = seen_from(tails), seen_from(heads)
-    crosses = (ahead0 > 0) != (ahead1 > 0)
-    run = np.where(crosses, ahead0 - ahead1, 1.0)
-    at = np.where(crosses, left0 + (left1 - left0) * ahead0 / run, np.inf)
-    at = np.sort(at, axis=1)[:, : max(2, int(crosses.sum(axis=1).max()))]
-    low, high = at[:, 0:-1:2], at[:, 1::2]  # simple rings: every second crossing leaves the mark
-    there = np.isfinite(high)
-    low, high = np.where(there, low, 0.0), np.where(there, high, 0.0)
-    away = np.where(there, np.maximum(np.maximum(low, -high), 0.0), np.inf)
-    nearest = away.argmin(axis=1)[:, None]
-    width = np.take_along_axis(high - low, nearest, axis=1)[:, 0]
-    return np.where(np.take_along_axis(away, nearest, axis=1)[:, 0] <= reach_mm, width, 0.0)
-
-
 def to_json(report: Report) -> str:
     """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
 
-    def figures(row: Figures) -> dict:
-        return {key: round(v, 6) if isinstance(v, float) else v for key, v in asdict(row).items()}
+    def rounded(value):
+        if isinstance(value, dict):
+            return {key: rounded(each) for key, each in value.items()}
+        if isinstance(value, tuple):
+            return [rounded(each) for each in value]
+        return round(value, 6) if isinstance(value, float) else value
+
+    def figures(row: Figures, sure) -> dict:
+        known = {} if sure is None else {"uncertainty_95": rounded(asdict(sure))}
+        return rounded(asdict(row)) | known
+
+    sure = report.sure
+    sures = [None] * len(report.strokes) if sure is None else sure.strokes
 
     return (
         json.dumps(
@@ -196,10 +197,16 @@ def to_json(report: Report) -> str:
                 "compensation": report.compensation,
                 "tolerance_mm": report.tolerance_mm,
                 "time_s": round(report.time_s, 3),
-                "total": figures(report.total),
-                "strokes": [figures(row) for row in report.strokes],
+                "uncertainty_from": None if sure is None else sure.source,
+                "total": figures(report.total, None if sure is None else sure.total),
+                "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
                 "warnings": [{"where": where, "sentence": sentence} for where, sentence in report.warnings],
                 "refused": [{"where": where, "sentence": sentence} for where, sentence in report.refused],
+                "groups": [
+                    {"strokes": list(group.strokes), "overlap": round(group.overlap, 6)}
+                    for group in report.groups
+                ],
+                "advice": report.advice,
             },
             indent=1,
             ensure_ascii=False,
@@ -221,8 +228,10 @@ def to_text(report: Report) -> str:
         ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
+        *_sure_columns(report.sure),
     ]
-    table = _table(columns)
+    notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
+    table = _table(columns, notes)
     rule = "-" * len(table[0])
     how = f", compensation {report.compensation}" if report.compensation else ""
     how += f", tolerance {report.tolerance_mm:g} mm" if report.tolerance_mm is not None else ""
@@ -236,8 +245,19 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
         "of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        *_sure_words(report.sure),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
+    if report.groups:
+        lines += ["", "Strokes that touch, judged together:", ""]
+        lines += _table(
+            [
+                ("strokes", [_short(" + ".join(group.strokes), 64) for group in report.groups]),
+                ("overlap", [_figure(group.overlap, 3) for group in report.groups]),
+            ]
+        )
+    if report.advice:
+        lines += ["", report.advice]
     if report.refused:
         lines += ["", f"Left out, since they cannot be painted: {len(report.refused)}"]
         lines += ["  " + ": ".join(refusal) for refusal in report.refused]
@@ -245,6 +265,26 @@ def to_text(report: Report) -> str:
         lines += ["", f"Warnings: {len(report.warnings)}"]
         lines += ["  " + ": ".join(filter(None, warning)) for warning in report.warnings]
     return "\n".join([*lines, ""])
+
+
+def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
+    if sure is None:
+        return []
+    rows = [*sure.strokes, sure.total]
+    return [
+        ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
+        ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
+        ("width +-", [_figure(row.width_mm, 2) for row in rows]),
+    ]
+
+
+def _sure_words(sure: Uncertainty | None) -> list[str]:
+    if sure is None:
+        return ["How far the paint may lie off nobody can say: the brush has neither covariance nor RMSE."]
+    return [
+        "+-: how far the mark's middle may lie off across, its tip along the line, and its width;",
+        f"{sure.words}.",
+    ]
 
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:
@@ -261,13 +301,39 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
     return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
 
 
-def _table(columns: list[tuple[str, list[str]]]) -> list[str]:
-    """Lines of a table, the names first; the first column is flush left, the others flush right."""
+def brushes_text(title: str, suits) -> str:
+    """A table of brushes that were tried on a drawing, see suit.Suit."""
+    table = _table(
+        [
+            ("brush", [each.brush for each in suits]),
+            ("overlap", [_figure(each.overlap, 3) for each in suits]),
+            ("worst stroke", [_short(each.worst or "-") for each in suits]),
+            ("its overlap", [_figure(each.worst_overlap, 3) for each in suits]),
+            ("refused", [f"{each.refused} of {each.strokes}" for each in suits]),
+        ],
+        ["", *(_short(each.why, 100) for each in suits)],
+    )
+    heading = f"{title or 'untitled'}: which brush suits it; overlap of all that was drawn, refused strokes included"
+    return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+
+
+def _worst_text(row: Figures) -> str:
+    if row.worst is None:
+        return ""
+    x, y = row.worst.place_mm
+    what = "not painted" if row.worst.is_missing else "too much paint"
+    return f"x {x:.1f}, y {y:.1f}: {what}; {row.worst.reason}"
+
+
+def _table(columns: list[tuple[str, list[str]]], notes: tuple[str, ...] | list[str] = ()) -> list[str]:
+    """Lines of a table, the names first; the first column is flush left, the others flush right; notes follow."""
     widths = [max(len(cell) for cell in (name, *cells)) for name, cells in columns]
     lines = []
     for name, *values in zip(*((name, *cells) for name, cells in columns), strict=True):
         padded = [value.rjust(width) for value, width in zip(values, widths[1:], strict=True)]
         lines.append("  ".join([name.ljust(widths[0]), *padded]))
+    if notes:
+        lines = [f"{line}  {note}".rstrip() for line, note in zip(lines, notes, strict=True)]
     return lines
 
 
@@ -275,8 +341,8 @@ def _figure(value, decimals: int) -> str:
     return "-" if value is None else f"{value:.{decimals}f}"
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= 24 else name[:21] + "..."
+def _short(name: str, most: int = 24) -> str:
+    return name if len(name) <= most else name[: most - 3] + "..."
 
 
 def clock(seconds: float) -> str:

@@ -7,13 +7,22 @@ from html import escape
 
 import numpy as np
 
+BAND = "#e0862b"  # where an edge lies with 95 %
+
 
 def marks_svg(
-    marks, sheet_mm: tuple[float, float], colours: list[str], title: str = "", misses=(), made: str = ""
+    marks,
+    sheet_mm: tuple[float, float],
+    colours: list[str],
+    title: str = "",
+    misses=(),
+    made: str = "",
+    band=None,
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; misses: of the passes, if known; made: how, in words.
+    marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
+    legend.
     """
     width, height = sheet_mm
     lines = [
@@ -28,6 +37,62 @@ def marks_svg(
             lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
+    if band is not None:
+        lines += _band(band, width, height)
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def _band(band, width: float, height: float) -> list[str]:
+    size = round(min(width, height) / 40, 3)
+    lines = []
+    for rings in filter(None, band.rings):
+        data = " ".join(_path_data(ring, height) for ring in rings)
+        lines.append(f'<path class="band" fill="{BAND}" fill-opacity="0.45" d="{data}"/>')
+    left, low = size, height - size
+    if lines:
+        box = f'x="{left:g}" y="{low - size:g}" width="{2 * size:g}" height="{size:g}"'
+        lines.append(f'<rect {box} fill="{BAND}" fill-opacity="0.45"/>')
+        left += 2.5 * size
+    text = f'x="{left:g}" y="{low - 0.15 * size:g}" font-family="sans-serif" font-size="{size:g}"'
+    return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
+
+
+BOTH, MISSING, SPILT = "#b4b8c0", "#d1431f", "#2f6fd0"
+MISSES = ((BOTH, "painted as wanted"), (MISSING, "wanted, not painted"), (SPILT, "painted, not wanted"))
+
+
+def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
+    """Where paint is missing and where there is too much of it, in the colours of MISSES, in millimetres of the sheet.
+
+    wanted, painted: rings of all that was drawn, and of all paint.
+    """
+    width, height = sheet_mm
+    size = max(2.0, 0.018 * max(width, height))
+    data = {
+        name: "".join(_path_data(ring, height) for ring in rings)
+        for name, rings in (("wanted", wanted), ("painted", painted))
+    }
+    foot = height + 2.5 * size
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{foot:g}mm" '
+        f'viewBox="0 0 {width:g} {foot:g}">',
+        f"<title>{escape(_printable(title), quote=False)}</title>",
+        f'<clipPath id="wanted"><path d="{data["wanted"]}"/></clipPath>',
+        f'<rect width="{width:g}" height="{foot:g}" fill="#ffffff"/>',
+        f'<path fill="{MISSING}" d="{data["wanted"]}"/>',
+        f'<path fill="{SPILT}" d="{data["painted"]}"/>',
+        f'<path fill="{BOTH}" clip-path="url(#wanted)" d="{data["painted"]}"/>',
+    ]
+    x = size
+    for colour, words in MISSES:
+        lines.append(
+            f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>'
+        )
+        lines.append(
+            f'<text x="{x + 1.5 * size:g}" y="{height + 1.85 * size:g}" font-family="sans-serif" '
+            f'font-size="{size:g}" fill="#22252b">{words}</text>'
+        )
+        x += size * (3.0 + 0.55 * len(words))
     return "\n".join([*lines, "</svg>", ""])
 
 

@@ -15,6 +15,7 @@ PROGRAMS = (".json", *dict.fromkeys(extension for post in POSTS.values() for ext
 PREDICTIONS = (".png", ".svg", ".json")
 PREVIEWS = (".png", ".svg")
 REPORTS = (".txt", ".json")
+_SHEETS_MM = {"a3": (297.0, 420.0), "a4": (210.0, 297.0), "a5": (148.0, 210.0), "letter": (215.9, 279.4)}
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
@@ -80,6 +81,11 @@ def _parser() -> argparse.ArgumentParser:
     _add_input(predict)
     predict.add_argument("output", metavar="OUT", help="a picture (.png .svg) or marks (.json)")
     _add_choices(predict)
+    predict.add_argument(
+        "--band",
+        action="store_true",
+        help="also where the edges lie with 95 %%, as far as the brush is known",
+    )
     predict.set_defaults(run="predict_file", parser=predict)
 
     animate = commands.add_parser("animate", help="make a page that plays tool and paint over time")
@@ -99,6 +105,11 @@ def _parser() -> argparse.ArgumentParser:
     look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
     look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     _add_layout(look)
+    look.add_argument(
+        "--editable",
+        action="store_true",
+        help="the strokes as lines with a width, to go on drawing with (.svg)",
+    )
     look.set_defaults(run="import_file", parser=look, brush=None, lag=None)
 
     text = commands.add_parser("text", help="set a text in a font, as a drawing")
@@ -135,9 +146,34 @@ def _parser() -> argparse.ArgumentParser:
 
     report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
     _add_input(report)
-    _add_choices(report)
+    _add_choices(report, several_brushes=True)
+    report.add_argument("--all-brushes", action="store_true", help="one line for each brush, the best first")
+    report.add_argument(
+        "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"
+    )
     report.add_argument("--json", action="store_true", help="as JSON")
     report.set_defaults(run="report_file", parser=report)
+
+    chart = commands.add_parser("chart", help="make the strokes that a brush is calibrated from")
+    chart.add_argument("output", metavar="OUT", help=_programs())
+    chart.add_argument("--brush", metavar="NAME|FILE", help="the nearest that is known; default: round-6")
+    chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
+    chart.add_argument(
+        "--sheet",
+        metavar="WxH",
+        type=_sheet,
+        default=_SHEETS_MM["a4"],
+        help=f"or {', '.join(_SHEETS_MM)}; default: a4",
+    )
+    chart.add_argument(
+        "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
+    )
+    chart.add_argument(
+        "--page", metavar="FILE", help="also write the page to print, markers and labels (.svg)"
+    )
+    chart.add_argument("--chart", metavar="FILE", help="also write what the painted chart is read by (.json)")
+    _add_z_offset(chart)
+    chart.set_defaults(run="chart_file", parser=chart)
 
     fit = commands.add_parser("calibrate", help="make a brush of what was measured")
     fit.add_argument("input", metavar="MEASUREMENTS", help="what was measured (.json .csv)")
@@ -246,13 +282,17 @@ def _add_input(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)}) or plan (.json)")
 
 
-def _add_choices(command: argparse.ArgumentParser) -> None:
+def _add_choices(command: argparse.ArgumentParser, several_brushes: bool = False) -> None:
     add = command.add_argument
-    add("--brush", metavar="NAME|FILE", help="default: round-6; for a plan, the brush it names")
+    default = "default: round-6; for a plan, the brush it names"
+    if several_brushes:
+        add("--brush", metavar="NAME|FILE", action="append", help=f"{default}; with --all-brushes any number")
+    else:
+        add("--brush", metavar="NAME|FILE", help=default)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     _add_layout(command)
     _add_wide(command)
-    add("--compensation", choices=("none", "constant", "closed"), help="default: closed")
+    add("--compensation", choices=("none", "constant", "closed", "refined"), help="default: closed")
     add("--lag", metavar="MM", type=_lag, help="for constant; default: that at the stroke's median depth")
     add("--tolerance", metavar="MM", type=_tolerance, help="of the painted middle line; default: 0.05")
     add("--lenient", action="store_true", help="take what is sound of damaged geometry")
@@ -302,6 +342,10 @@ def _size(text: str) -> tuple[float, float]:
     from .units import size_mm
 
     return _read(size_mm, text)
+
+
+def _sheet(text: str) -> tuple[float, float]:
+    return _SHEETS_MM.get(text.lower()) or _size(text)
 
 
 def _lag(text: str) -> float:
@@ -427,6 +471,15 @@ def _check_operands(args) -> None:
         return
     if args.run == "brush_plot":
         _check_extension(args, args.output, PREVIEWS)
+    if args.run == "chart_file":
+        _check_extension(args, args.output, PROGRAMS)
+        for path, suffix in ((args.page, ".svg"), (args.chart, ".json")):
+            if path:
+                _check_extension(args, path, (suffix,))
+        named = [os.path.realpath(path) for path in (args.output, args.page, args.chart) if path]
+        if len(set(named)) < len(named):
+            args.parser.error("two of the files are the same")
+        return
     if args.run.startswith(("brush_", "cell_", "install_")):
         return
     if args.run == "height_file":
@@ -449,8 +502,12 @@ def _check_operands(args) -> None:
         args.parser.error("--units is for drawings that do not say them; an SVG does")
     if args.select and drawing == ".dxf":
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
+    if getattr(args, "editable", False) and os.path.splitext(args.output)[1].lower() != ".svg":
+        args.parser.error("--editable writes an SVG")
     if args.lag is not None and args.compensation != "constant":
         args.parser.error("--lag needs --compensation constant")
+    if args.run == "predict_file" and args.band and os.path.splitext(args.output)[1].lower() == ".json":
+        args.parser.error("--band is for pictures (.svg .png)")
     outputs = {
         "convert_file": lambda: [(args.output, PROGRAMS), (args.preview, PREVIEWS), (args.report, REPORTS)],
         "border_file": lambda: [(args.output, PROGRAMS[1:])],
@@ -458,10 +515,13 @@ def _check_operands(args) -> None:
         "check_file": lambda: [(args.preview, PREVIEWS)],
         "predict_file": lambda: [(args.output, PREDICTIONS)],
         "import_file": lambda: [(args.output, PREVIEWS)],
-        "report_file": lambda: [],
+        "report_file": lambda: [(args.preview, PREVIEWS)],
     }[args.run]()
     inputs = tuple(READERS) if args.run == "import_file" else DRAWINGS
-    read = (args.input, args.brush, getattr(args, "program", None))
+    brushes = args.brush if isinstance(args.brush, list) else [args.brush]
+    if args.run == "report_file":
+        _check_report(args, drawing)
+    read = (args.input, *brushes, getattr(args, "program", None))
     taken = [os.path.realpath(path) for path in read if path]
     for path, suffixes in [(args.input, inputs), *outputs]:
         if path is None:
@@ -471,6 +531,17 @@ def _check_operands(args) -> None:
             if os.path.realpath(path) in taken:
                 args.parser.error(f"{path} cannot be two files at once")
             taken.append(os.path.realpath(path))
+
+
+def _check_report(args, drawing: str) -> None:
+    if len(args.brush or ()) > 1 and not args.all_brushes:
+        args.parser.error("--brush is given more than once, which needs --all-brushes")
+    if args.all_brushes and args.preview:
+        args.parser.error("--preview shows one brush, not --all-brushes")
+    if args.all_brushes and drawing == ".json":
+        args.parser.error("--all-brushes needs a drawing: a plan is made for one brush")
+    if args.preview and drawing == ".json":
+        args.parser.error("--preview needs a drawing: a plan does not say what was wanted")
 
 
 def _check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:

@@ -88,3 +88,13 @@ TEST_CASE("a picture that cannot be made is refused") {
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 0, 10}, 20.0), Error);
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 1e6, 1e6}, 20.0), Error);
 }
+
+TEST_CASE("coverage of convex pieces that lie over each other is that of their union") {
+    Ring a(4, 2), b(4, 2);
+    a << 1, 1, 5, 1, 5, 3, 1, 3;
+    b << 3, 1, 8, 1, 8, 3, 3, 3;  // shares two edges with the first
+    const Window window{0.0, 0.0, 10.0, 4.0};
+    const Coverage found = coverage_of_pieces({a, b}, window, 1.7);
+    CHECK(found.sum() / (1.7 * 1.7) == doctest::Approx(14.0).epsilon(0.002));
+    CHECK((found - coverage(unite({a, b}), window, 1.7)).cwiseAbs().maxCoeff() < 0.13);
+}

@@ -35,3 +35,16 @@ TEST_CASE("an outline that was drawn is wanted as it is") {
     s.wanted_mm = {triangle};
     CHECK(wanted_outline(s)[0] == triangle);
 }
+
+TEST_CASE("pieces of the wanted mark cover it, as convex rings") {
+    Stroke s;
+    s.id = "s";
+    s.middle_mm = polyline({V(0, 0), V(30, 0), V(30, 20)});
+    s.half_width = {{0.0, 2.0}, {1.0, 1.0}};
+    const Rings pieces = wanted_pieces(s);
+    for (const Ring& piece : pieces) {
+        CHECK(area({piece}) > 0.0);
+        CHECK(area({convex_hull(piece)}) == doctest::Approx(area({piece})));
+    }
+    CHECK(overlap(unite(pieces), wanted_outline(s)) == doctest::Approx(1.0));
+}

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from command import COMMAND, SOUND, brushsvg
 from drawings import SOURCES, Inkscape, enlarged_kanji, kanji_file
+from npm import UnavailableError, fetched
 
 ROOT = Path(__file__).parents[2]
 
@@ -17,6 +18,19 @@ def _installed():
     needed = (("rs274", "linuxcnc-uspace"), ("inkscape", "inkscape"), ("chromium", "chromium"))
     for tool, package in needed:
         assert shutil.which(tool), f"{tool} is missing: apt-get install --no-install-recommends {package}"
+
+
+@pytest.fixture(scope="session")
+def npm(request):
+    """A function: a name, packages with their versions -> the folder node_modules that has them; skips without."""
+
+    def get(name: str, packages: dict[str, str]) -> Path:
+        try:
+            return fetched(request.config.cache.mkdir(name), packages)
+        except UnavailableError as reason:
+            pytest.skip(f"{name}: {reason}")
+
+    return get
 
 
 @pytest.fixture(scope="session")

@@ -1,8 +1,6 @@
-"""Other people's lettering: Chinese characters with their middle lines, and four fonts, fetched once by npm."""
+"""Other people's lettering: Chinese characters with their middle lines, and four fonts."""
 
 import json
-import shutil
-import subprocess
 
 import numpy as np
 from svgpathtools import Line, parse_path
@@ -24,37 +22,11 @@ CHARACTER_MM = 100.0
 MM_PER_UNIT = CHARACTER_MM / 1024
 
 
-class UnavailableError(Exception):
-    """The lettering cannot be had here; the text says why."""
-
-
 class Lettering:
-    """Fetches what is not in the folder yet, and reads it."""
+    """Reads what npm has fetched into a folder node_modules."""
 
-    def __init__(self, folder):
-        self.modules = folder / "node_modules"
-        missing = [f"{name}@{version}" for name, version in PACKAGES.items() if not self._has(name, version)]
-        if not missing:
-            return
-        if not shutil.which("npm"):
-            raise UnavailableError("npm is missing: apt-get install --no-install-recommends nodejs npm")
-        options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
-        words = ["npm", "install", "--prefix", str(folder), *options]
-        everything = [
-            f"{name}@{version}" for name, version in PACKAGES.items()
-        ]  # what is left out, npm removes
-        try:
-            done = subprocess.run(
-                [*words, *everything], cwd=folder, capture_output=True, text=True, timeout=600
-            )
-        except subprocess.TimeoutExpired:
-            raise UnavailableError("npm did not fetch the lettering within 600 s") from None
-        if done.returncode or not all(self._has(*each) for each in PACKAGES.items()):
-            raise UnavailableError(f"npm could not fetch {' '.join(missing)}: {done.stderr[-200:]}")
-
-    def _has(self, name: str, version: str) -> bool:
-        about = self.modules / name / "package.json"
-        return about.exists() and json.loads(about.read_text(encoding="utf-8"))["version"] == version
+    def __init__(self, modules):
+        self.modules = modules
 
     def characters(self, count: int, seed: int) -> list[tuple[str, dict]]:
         """Characters drawn at random: (character, {"strokes": path data, "medians": polylines})."""

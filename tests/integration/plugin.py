@@ -41,9 +41,10 @@ class Plugin:
             f'<group id="extensions" python-interpreter="/usr/bin/python3" {said}/></inkscape>'
         )
 
-    def save(self, drawing: Path, out: Path) -> subprocess.CompletedProcess:
-        """As a person who saves a copy."""
-        return self._run(["inkscape", f"--export-filename={out}", str(drawing)])
+    def save(self, drawing: Path, out: Path, entry: str = "") -> subprocess.CompletedProcess:
+        """As a person who saves a copy; entry: which one, where several have the same extension."""
+        chosen = [f"--export-extension=org.brushsvg.save.{entry}"] if entry else []
+        return self._run(["inkscape", *chosen, f"--export-filename={out}", str(drawing)])
 
     def effect(self, name: str, drawing: Path, out: Path, select: str = "") -> Path:
         """The drawing as Inkscape saves it after an effect; select: ids with commas between."""

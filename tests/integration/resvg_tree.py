@@ -1,8 +1,7 @@
-"""resvg's reading of a drawing: npm's @resvg/resvg-js, fetched once, and the flattened tree that it prints."""
+"""resvg's reading of a drawing: npm's @resvg/resvg-js, and the flattened tree that it prints."""
 
 import json
 import re
-import shutil
 import subprocess
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ import numpy as np
 from drawings import SVG
 
 PACKAGE = "@resvg/resvg-js"
-VERSION = "2.6.2"
+PACKAGES = {PACKAGE: "2.6.2"}
 # A tree leaves the root's viewBox to whoever paints it, so it is read again as a nested svg: then resvg has placed
 # everything itself. Without fonts it drops text, which we do not read either.
 SCRIPT = """
@@ -28,10 +27,6 @@ const trees = Object.entries(drawings).map(([name, svg]) => [name, flattened(svg
 process.stdout.write(JSON.stringify(Object.fromEntries(trees)));
 """
 CURVES = {"L": 1, "Q": 2, "C": 3}  # how many points follow the letter
-
-
-class UnavailableError(Exception):
-    """resvg cannot be had here; the text says why."""
 
 
 @dataclass(frozen=True)
@@ -62,28 +57,9 @@ class Page:
 
 
 class Resvg:
-    def __init__(self, folder: Path):
-        """Fetches resvg into a folder, unless it lies there. UnavailableError if that fails."""
-        self.package = folder / "node_modules" / PACKAGE
-        for tool in ("node", "npm"):
-            if not shutil.which(tool):
-                raise UnavailableError(
-                    f"{tool} is missing: apt-get install --no-install-recommends nodejs npm"
-                )
-        if self._is_here():
-            return
-        options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
-        words = ["npm", "install", "--prefix", str(folder), *options, f"{PACKAGE}@{VERSION}"]
-        try:
-            done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=300)
-        except subprocess.TimeoutExpired:
-            raise UnavailableError(f"npm did not fetch {PACKAGE} within 300 s") from None
-        if done.returncode or not self._is_here():
-            raise UnavailableError(f"npm could not fetch {PACKAGE} {VERSION}")
-
-    def _is_here(self) -> bool:
-        about = self.package / "package.json"
-        return about.exists() and json.loads(about.read_text(encoding="utf-8"))["version"] == VERSION
+    def __init__(self, modules: Path):
+        """modules: the folder into which npm has put it."""
+        self.package = modules / PACKAGE
 
     def pages(self, drawings: dict[str, str]) -> dict[str, Page]:
         """Name -> SVG text to name -> what resvg paints of it."""

@@ -57,11 +57,10 @@ def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
     again, layer_again = checked(plugin, tmp_path, out.read_text().partition("?>")[2].strip(), "again")
     assert len(layer) == len(layer_again)
     for text in (out.read_text(), again.read_text()):
-        originals = [
-            node for node in ET.fromstring(text).iter() if node.get("id") in ("wide", "sharp", "sound")
-        ]
+        names = ("layer", "turned", "wide", "sharp", "sound")
+        originals = [node for node in ET.fromstring(text).iter() if node.get("id") in names]
         drawn = ET.fromstring(f"{OPEN}{BODY}</svg>")
-        expected = [node for node in drawn.iter() if node.get("id") in ("wide", "sharp", "sound")]
+        expected = [node for node in drawn.iter() if node.get("id") in names]
         assert [node.attrib for node in originals] == [node.attrib for node in expected]
 
 

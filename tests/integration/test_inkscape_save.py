@@ -8,7 +8,7 @@ import pytest
 from command import COMMAND, SOUND, brushsvg, path
 from plugin import SOURCE, Plugin
 
-from brushsvg import brush_names, cell_names
+from brushsvg import brush_names, cell_names, find_cell
 from brushsvg.posts import POSTS
 
 SCHEMA = "/usr/share/inkscape/extensions/inkscape.extension.rng"
@@ -31,15 +31,50 @@ def plugin(tmp_path_factory):
     return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
+ENTRIES = {  # entry of the menu: extension, and how the command line writes the same
+    "gcode": ("ngc", ("convert",)),
+    "plan": ("json", ("convert",)),
+    "urscript": ("script", ("convert", "--cell", "ur5e")),
+    "marks": ("json", ("predict",)),
+    "animation": ("html", ("animate",)),
+}
+
+
 @pytest.mark.parametrize("name", DRAWINGS)
-@pytest.mark.parametrize("extension", ["ngc", "json", "script"])
-def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, extension):
+@pytest.mark.parametrize("entry", ENTRIES)
+def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, entry):
+    extension, (command, *flags) = ENTRIES[entry]
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved.{extension}"
     drawing.write_text(DRAWINGS[name])
-    plugin.save(drawing, saved)
-    cell = ["--cell", "ur5e"] if extension == "script" else []
-    brushsvg("convert", "drawing.svg", f"typed.{extension}", *cell, cwd=tmp_path, status=0)
+    plugin.save(drawing, saved, entry)
+    brushsvg(command, "drawing.svg", f"typed.{extension}", *flags, cwd=tmp_path, status=0)
     assert saved.read_bytes() == (tmp_path / f"typed.{extension}").read_bytes()
+
+
+@pytest.mark.parametrize("cell", sorted(set(cell_names()) - {"jaka-zu3"}))
+def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
+    extension = POSTS[find_cell(cell).language].extensions[0]
+    drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved{extension}"
+    drawing.write_text(SOUND)
+    entry = "urscript" if extension == ".script" else "gcode"
+    plugin.set(**{f"save.{entry}__cell": cell})
+    try:
+        plugin.save(drawing, saved)
+    finally:
+        plugin.set()
+    brushsvg("convert", "drawing.svg", f"typed{extension}", "--cell", cell, cwd=tmp_path, status=0)
+    assert saved.read_bytes() == (tmp_path / f"typed{extension}").read_bytes()
+
+
+def test_entries_of_inkscapes_own_stay_what_an_extension_means(plugin, tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(SOUND)
+    for extension, begin in (
+        ("json", b'{\n  "format": "brushsvg/plan"'),
+        ("html", b"\n<!DOCTYPE html>\n<html>\n"),
+    ):
+        plugin.save(drawing, tmp_path / f"saved.{extension}")
+        assert (tmp_path / f"saved.{extension}").read_bytes().startswith(begin)
 
 
 def test_the_document_chooses_unless_the_dialog_does(plugin, tmp_path):
@@ -77,7 +112,7 @@ def test_a_refusal_is_shown_and_nothing_written(plugin, tmp_path):
     assert told.startswith("brushsvg refuses:\np: width 30.000 mm is outside the range")
 
 
-@pytest.mark.parametrize("script", ["save", "preview", "check"])
+@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes"])
 def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, script):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
@@ -101,7 +136,7 @@ def programs(tmp_path, text):
         ("echo something else; exit 3", "is not the program brushsvg"),
     ],
 )
-@pytest.mark.parametrize("script", ["save", "preview", "check"])
+@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes"])
 def test_another_program_is_told(plugin, tmp_path, script, does, told):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
@@ -135,7 +170,7 @@ for file in sys.argv[2:]:
 
 def test_the_descriptions_are_valid_by_inkscapes_own_schema(tmp_path):
     files = sorted(map(str, SOURCE.glob("*.inx")))
-    assert len(files) >= 5
+    assert len(files) >= 9
     subprocess.run(["/usr/bin/python3", "-c", CHECK, SCHEMA, *files], check=True)
 
 
@@ -154,4 +189,4 @@ def test_dialogs_offer_what_comes_along():
 
 def test_every_language_can_be_saved():
     saved = {file.read_text().split("<extension>")[1].split("<")[0] for file in SOURCE.glob("*save*.inx")}
-    assert saved == {post.extensions[0] for post in POSTS.values()} | {".json"}
+    assert saved == {post.extensions[0] for post in POSTS.values()} | {".json", ".html"}

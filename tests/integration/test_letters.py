@@ -10,8 +10,8 @@ import pytest
 from lettering import (
     CHARACTER_MM,
     MM_PER_UNIT,
+    PACKAGES,
     Lettering,
-    UnavailableError,
     covered,
     evenly,
     letter,
@@ -36,11 +36,8 @@ STROKES_OF = dict(
 
 
 @pytest.fixture(scope="session")
-def lettering(request):
-    try:
-        return Lettering(request.config.cache.mkdir("lettering"))
-    except UnavailableError as reason:
-        pytest.skip(f"lettering: {reason}")
+def lettering(npm):
+    return Lettering(npm("lettering", PACKAGES))
 
 
 @pytest.fixture(scope="session")

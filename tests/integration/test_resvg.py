@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import svg_features
 import svg_styles
-from resvg_tree import Line, Page, Painted, Resvg, UnavailableError
+from resvg_tree import PACKAGES, Line, Page, Painted, Resvg
 from shapely import LineString
 from shapely.ops import substring
 
@@ -28,11 +28,8 @@ ALONG_PX = 0.2  # how far two curves may be apart at the same fraction of their 
 
 
 @pytest.fixture(scope="session")
-def resvg(request):
-    try:
-        return Resvg(request.config.cache.mkdir("resvg"))
-    except UnavailableError as reason:
-        pytest.skip(f"resvg: {reason}")
+def resvg(npm):
+    return Resvg(npm("resvg", PACKAGES))
 
 
 @pytest.fixture(scope="session")

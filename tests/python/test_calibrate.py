@@ -80,6 +80,115 @@ def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
     assert not (tmp_path / "b.json").exists()
 
 
+DEPTHS = np.arange(1, 11.0)
+ROUND = find_brush("round-6")
+LAG, GAP, WIDEST, HALF = (
+    np.array([law(d) for d in DEPTHS])
+    for law in (ROUND.lag, ROUND.tip_gap, ROUND.tip_to_widest, ROUND.half_width)
+)
+
+
+def values(numbers, depths=DEPTHS):
+    return [{"depth_mm": float(d), "value_mm": float(v)} for d, v in zip(depths, numbers, strict=True)]
+
+
+def series(alpha0=90.0, s=(1.0, 3.0, 6.0), unit=1.0, way=1):
+    rows = []
+    for depth, lag in zip(DEPTHS.tolist(), LAG, strict=True):
+        alpha = np.degrees(2 * np.arctan(np.exp(-np.array([1.0, 3.0, 6.0]) / lag))) * unit
+        rows.append(
+            {"depth_mm": depth, "alpha0_deg": alpha0, "s_mm": list(s), "alpha_deg": alpha[::way].tolist()}
+        )
+    return rows
+
+
+WIDTH = {"width": values(2 * HALF)}
+MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
+
+
+@pytest.mark.parametrize(
+    ("rows", "where", "said"),
+    [
+        ({"lag": values([7, 7.4], [3, 3.01]), **WIDTH}, "lag[0]", "at depth 3 mm alone: measure it at two"),
+        (
+            {"straight": [{"depth_mm": 3, "path_mm": 60, "distance_mm": 50}], **WIDTH},
+            "straight",
+            "the two cannot be told apart: add angles",
+        ),
+        ({"lag": values(LAG / 1000), **WIDTH}, "lag", "all lengths count in millimetres"),
+        (
+            {"lag": values(0 * LAG), **WIDTH},
+            "lag",
+            "for a pen that does not trail take brushsvg brush new --lag 0",
+        ),
+        (
+            {"lag": values(LAG / 1000), "width": values(HALF / 500)},
+            "half_width",
+            "depths and widths both count in millimetres",
+        ),
+        (
+            {"lag": values(LAG / 1e3, DEPTHS / 1e3), "width": values(HALF / 500, DEPTHS / 1e3)},
+            "depth_mm",
+            "depths and values count in millimetres",
+        ),
+        ({"lag": values(LAG[::-1]), **WIDTH}, "lag[0]", "the lag falls by"),
+        (
+            {"lag": values(LAG), "width": values(2 * HALF[::-1])},
+            "width[0]",
+            "are the rows in the right order, and depths counted from first contact down?",
+        ),
+        ({"lag": values(LAG), "width": values(2 * HALF[MIXED])}, "width[0]", "hardly follows the depth, R^2"),
+        (
+            {"lag": values(LAG), "width": values(0 * HALF + 3)},
+            "width[0]",
+            "at every depth: such a pen is made by",
+        ),
+        (
+            {"lag": values(LAG), "tip_gap": values(10 * GAP), **WIDTH},
+            "tip_gap",
+            "the centre of friction must lie in it",
+        ),
+        (
+            {"lag": values(LAG), "tip_to_widest": values(10 * WIDEST), **WIDTH},
+            "tip_to_widest",
+            "farther than the tool",
+        ),
+        ({"angles": series(np.pi / 2, unit=np.pi / 180), **WIDTH}, "angles[0]", "are these radians?"),
+        ({"angles": series(way=-1), **WIDTH}, "angles[0]", "are the rows in the right order?"),
+        ({"angles": series(s=(0.001, 0.003, 0.006)), **WIDTH}, "lag", "all lengths count in millimetres"),
+        (
+            {"lag": values(LAG), "depth_range_mm": [0, 40], **WIDTH},
+            "width[0]",
+            'or give "depth_range_mm": [0, 10]',
+        ),
+        ({"lag": values(LAG[:3], DEPTHS[:3]), **WIDTH}, "lag[0]", "measure it deeper, or give"),
+    ],
+)
+def test_what_no_brush_can_have_is_refused_with_what_to_do(rows, where, said, tmp_path, capsys):
+    (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
+    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 1
+    told = capsys.readouterr().err
+    assert f"m.json: {where}: " in told and said in told
+    assert not (tmp_path / "b.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ({"lag": values(LAG / 25.4), **WIDTH}, "half widths at depth 10 mm, which is odd: check the units"),
+        ({"lag": values(LAG[MIXED]), **WIDTH}, "are the rows in the right order?"),
+        (
+            {"lag": values(LAG / 25.4, DEPTHS / 25.4), "width": values(2 * HALF / 25.4, DEPTHS / 25.4)},
+            "pressed 0.394 mm at most: were depths and values read in millimetres?",
+        ),
+    ],
+)
+def test_what_is_odd_is_said(rows, said, tmp_path, capsys):
+    (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
+    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
+    assert said in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("content", "where"),
     [

@@ -55,6 +55,7 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
         "M30 25A14 14 0 1 1 58 25A14 14 0 1 1 30 25Z",
         "M10 5H60A20 20 0 0 1 60 45V33A8 8 0 0 0 60 17H10Z",
         "M10 4H26V24H60V40H10Z",
+        "M10 30Q25 4 50 18T90 15V17Q70 38 48 30T12 32Z",
     ):
         made = of(d)
         passes, wanted, (notice,) = within_reach(made, brush, "passes")
@@ -65,7 +66,7 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
         shape, paint = made[0].wanted_mm, painted(passes)
         beyond = _core.area(_core.unite([*shape, *paint])) - _core.area(shape)
         once = _core.overlap(painted(passes[:1]), shape)
-        assert beyond < 0.02 * _core.area(shape)
+        assert beyond < 0.006 * _core.area(shape)
         assert _core.overlap(paint, shape) > max(0.83, once + 0.1), d
 
 

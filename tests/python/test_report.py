@@ -5,72 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, compensate, find_brush, report, simulate, trace_outlines
-from brushsvg.report import Figures, Report, measure, to_json, to_text, width_error, widths_across
+from brushsvg import Stroke, compensate, find_brush, report, simulate
+from brushsvg.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
 
 
 def straight(stroke_id, start, end, half_width, knots=None):
     a, b = np.array(start, float), np.array(end, float)
     cubic = np.concatenate([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b])[None]
     return Stroke(stroke_id, cubic, half_width=knots or [(0, half_width), (1, half_width)])
-
-
-def box(x0, y0, x1, y1):
-    return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)
-
-
-def hole(x0, y0, x1, y1):
-    return box(x0, y0, x1, y1)[::-1]
-
-
-AT = np.array([(5.0, 5.0)])
-
-
-@pytest.mark.parametrize("turn_deg", [0, 30, 90, 213])
-@pytest.mark.parametrize(
-    ("rings", "width"),
-    [
-        ([box(0, 3.5, 20, 7)], 3.5),
-        ([box(0, 5.5, 20, 7)], 1.5),  # beside the line, but within reach
-        ([box(0, 9, 20, 12)], 0.0),  # too far off to be this line's mark
-        ([box(0, 3, 20, 7), hole(1, 4, 19, 6)], 1.0),  # the line runs in the hole
-        ([box(0, 3, 20, 7), box(0, 7.5, 20, 30)], 4.0),  # another mark beside it
-        ([], 0.0),
-    ],
-)
-def test_width_across_a_line(turn_deg, rings, width):
-    c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
-    turn = np.array([[c, s], [-s, c]])
-    found = widths_across(
-        AT @ turn, np.array([[1.0, 0.0]]) @ turn, [ring @ turn for ring in rings], np.array([3.0])
-    )
-    assert found == pytest.approx([width], abs=1e-9)
-
-
-def line_of(*rows):
-    xy = np.array([row[:2] for row in rows], float)
-    arc = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))])
-    return np.column_stack([xy, arc, [row[2] for row in rows]])
-
-
-def test_width_error_is_the_mean_absolute_difference():
-    line = line_of((0, 0, 2), (40, 0, 2))
-    wanted = [box(-2, -2, 42, 2)]
-    half_right = [np.array([(-2, -2), (42, -2), (42, 2), (20, 2), (20, 2.5), (-2, 2.5)], float)]
-    assert width_error(line, wanted, wanted) == pytest.approx(0, abs=1e-12)
-    assert width_error(line, half_right, wanted) == pytest.approx(0.25, abs=1e-9)
-    assert width_error(line, [], wanted) == pytest.approx(4)
-
-
-def test_width_is_not_measured_where_the_line_crosses_itself():
-    line = line_of((0, 0, 1), (40, 0, 1))
-    crossing = [np.array([(0, -1), (18, -1), (18, -9), (22, -9), (22, -1), (40, -1), (40, 1), (0, 1)], float)]
-    assert width_error(line, [box(0, -1, 40, 1)], crossing) == pytest.approx(0, abs=1e-12)
-    assert width_error(line, crossing, [box(0, -5, 40, 5)]) is None
-
-
-def test_a_dab_has_no_width_error():
-    assert width_error(line_of((3, 3, 1), (3, 3, 1)), [box(2, 2, 4, 4)], [box(2, 2, 4, 4)]) is None
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +23,6 @@ def two_strokes():
     for how in ("none", "closed"):
         plan = compensate(strokes, brush, (90, 60), how).plan
         marks = simulate(plan, brush)
-        trace_outlines(marks, brush)
         found[how] = measure(plan, marks, brush, strokes)
     return found
 
@@ -136,3 +77,55 @@ def test_text_names_every_stroke_and_says_what_is_not_known():
     assert both.startswith("T: 2 strokes, brush round-6, compensation closed, tolerance 0.05 mm\n")
     assert both.count("s/1 ") == 3
     assert both.endswith("Warnings: 1\n  odd\n")
+
+
+def test_strokes_that_touch_are_judged_together():
+    brush = find_brush("round-6")
+    strokes = [
+        straight("down", (40, 60), (40, 20), 2.0),
+        straight("alone", (70, 60), (70, 20), 2.0),
+        straight("across", (25, 41), (60, 41), 2.0),
+    ]
+    plan = compensate(strokes, brush, (90, 80)).plan
+    marks = simulate(plan, brush)
+    (letter,) = groups(marks, brush, strokes)
+    assert letter.strokes == ("down", "across")
+    rows, total = measure(plan, marks, brush, strokes)
+    assert max(rows[0].overlap, rows[2].overlap) - 0.03 < letter.overlap
+    assert groups(marks, brush, None) == ()
+    text = to_text(Report("T", "round-6", "closed", 0.05, rows, total, 5, groups=(letter,)))
+    assert f"down + across    {letter.overlap:.3f}" in text
+
+
+def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
+    brush = find_brush("round-6")
+    strokes = [straight("a", (20, 20), (60, 20), 2.0), straight("b", (60, 20), (20, 20), 2.0)]
+    plan = compensate(strokes, brush, (90, 80)).plan
+    marks = simulate(plan, brush)
+    rows, _ = measure(plan, marks, brush, strokes)
+    (letter,) = groups(marks, brush, strokes)
+    assert letter.overlap > max(row.overlap for row in rows) + 0.01  # each covers the other's pointed start
+
+
+WORST = Worst((12.34, 5.67), True, 0.5, "too short")
+
+
+def test_the_worst_place_is_told():
+    row = Figures("s", 0.9, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42, WORST)
+    made = Report("T", "round-6", "closed", 0.05, (row,), ROW, 5, advice="Size: fine.")
+    assert "42  x 12.3, y 5.7: not painted; too short\n" in to_text(made)
+    assert to_text(made).endswith("\n\nSize: fine.\n")
+    read = json.loads(to_json(made))
+    assert read["strokes"][0]["worst"] == {
+        "place_mm": [12.34, 5.67],
+        "is_missing": True,
+        "area_mm2": 0.5,
+        "reason": "too short",
+    }
+    assert read["total"]["worst"] is None
+    assert read["groups"] == []
+
+
+def test_groups_in_json():
+    made = Report("T", "b", "closed", 0.05, (ROW,), ROW, 5, groups=(Group(("a", "b"), 0.9512345678),))
+    assert json.loads(to_json(made))["groups"] == [{"strokes": ["a", "b"], "overlap": 0.951235}]

@@ -126,9 +126,9 @@ def complaints(path: Path, text: str) -> list[str]:
     ]
     if "ceres" in touched and path.suffix == ".hpp":
         found.append(f"{where} includes Ceres in a header: whoever includes it would have to have it")
-    private = (CPP / "src" / "region.cpp", CPP / "src" / "medial_axis.cpp")
+    private = (CPP / "src" / "region.cpp", CPP / "src" / "voronoi_axis.cpp")
     if "boost" in touched and path.parent != CPP / "fit" and path not in private:
-        found.append(f"{where} includes Boost, which is private to cpp/src/region.cpp and medial_axis.cpp")
+        found.append(f"{where} includes Boost, which is private to cpp/src/region.cpp and voronoi_axis.cpp")
     return found
 
 
@@ -288,7 +288,7 @@ def test_equations_name_code_and_tests_that_exist():
         ("python/brushsvg/program.py", "from brushsvg import find_brush", "touches __init__"),
         ("python/brushsvg/program.py", "if TYPE_CHECKING:\n    from .design import Design", "touches design"),
         ("python/brushsvg/report.py", "import importlib\nimportlib.import_module('cv2')", "touches cv2"),
-        ("python/brushsvg/chart.py", "", "room chart, which has no row"),
+        ("python/brushsvg/scan.py", "", "room scan, which has no row"),
     ],
 )
 def test_a_planted_fault_is_named(path, text, named):

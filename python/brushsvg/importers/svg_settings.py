@@ -9,7 +9,7 @@ from ..errors import Error
 from ..units import length_mm, number
 
 PREFIX = "data-brushsvg-"
-COMPENSATIONS = ("none", "constant", "closed")
+COMPENSATIONS = ("none", "constant", "closed", "refined")
 
 
 def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:

@@ -1,0 +1,124 @@
+#include "bindings.hpp"
+#include "mark_fit.hpp"
+#include "track_fit.hpp"
+
+void bind_fit_marks(py::module_& m) {
+    using namespace brushsvg::fit;
+    const auto unlocked = py::call_guard<py::gil_scoped_release>();
+    py::class_<Track>(m, "Track",
+                      R"(A stroke along which the patch was seen: lag from it by fit_tracks.
+
+poses_mm (n, 3): the TCP's way; pose (m,): where on it, fractional between poses; seen_mm (m, 2): where the patch was.
+heading_rad: at the first pose, the brush being dragged already; nan: it is set down there.)")
+        .def(py::init(
+                 [](brushsvg::Poses poses_mm, std::vector<double> pose, brushsvg::Ring seen_mm, double heading_rad) {
+                     return Track{std::move(poses_mm), std::move(pose), std::move(seen_mm), heading_rad};
+                 }),
+             py::arg("poses_mm"), py::arg("pose"), py::arg("seen_mm"),
+             py::arg("heading_rad") = std::numeric_limits<double>::quiet_NaN());
+    py::enum_<Displaced>(m, "Displaced")
+        .value("no", Displaced::no)
+        .value("along", Displaced::along)
+        .value("both", Displaced::both);
+    py::class_<TrackFit>(m, "TrackFit", "A lag fitted to tracks, how sure it is, and what it leaves.")
+        .def_readonly("lag", &TrackFit::lag)
+        .def_readonly("covariance", &TrackFit::covariance)
+        .def_readonly("heading_rad", &TrackFit::heading_rad)
+        .def_readonly("displacement_mm", &TrackFit::displacement_mm)
+        .def_readonly("residual_mm", &TrackFit::residual_mm)
+        .def_readonly("degrees_of_freedom", &TrackFit::degrees_of_freedom)
+        .def_readonly("iterations", &TrackFit::iterations)
+        .def_readonly("converged", &TrackFit::converged);
+    m.def(
+        "fit_tracks",
+        [](const std::vector<Track>& tracks, const std::vector<double>& start, std::array<double, 2> range_mm,
+           std::vector<double> lever_mm, bool free_heading, Displaced displaced, int most_iterations) {
+            return fit_tracks(tracks, start, {range_mm, std::move(lever_mm), free_heading, displaced, most_iterations});
+        },
+        py::arg("tracks"), py::arg("start"), py::arg("range_mm"), py::kw_only(),
+        py::arg("lever_mm") = std::vector<double>{}, py::arg("free_heading") = false,
+        py::arg("displaced") = Displaced::no, py::arg("most_iterations") = 50, unlocked,
+        R"(Lag r(d) from strokes with a known way of the TCP and places where the patch was seen, by least squares.
+
+start: coefficients to begin from, as many as the law shall have. lever_mm: coefficients of e(d) where the middle of the
+mark was seen instead of the centre of friction. free_heading, displaced: each stroke's own unknowns.)");
+
+    py::class_<PaintedMark>(m, "PaintedMark", R"(What one pass painted.
+
+stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them.)")
+        .def(py::init([](std::string stroke, brushsvg::Poses poses_mm, brushsvg::Rings outline_mm) {
+                 return PaintedMark{std::move(stroke), std::move(poses_mm), std::move(outline_mm)};
+             }),
+             py::arg("stroke"), py::arg("poses_mm"), py::arg("outline_mm"))
+        .def_readonly("stroke", &PaintedMark::stroke)
+        .def_readonly("poses_mm", &PaintedMark::poses_mm)
+        .def_readonly("outline_mm", &PaintedMark::outline_mm);
+    py::class_<Prior>(m, "Prior", "What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.")
+        .def(py::init([](double value, double sigma) { return Prior{value, sigma}; }), py::arg("value"),
+             py::arg("sigma"))
+        .def_readwrite("value", &Prior::value)
+        .def_readwrite("sigma", &Prior::sigma);
+    py::class_<MarkLaws>(m, "MarkLaws", "Laws as coefficients (ascending powers of depth), and a drop's shape.")
+        .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
+                         double widest_per_half, double front_per_half) {
+                 return MarkLaws{std::move(lag), std::move(tip_gap), std::move(half_width), widest_per_half,
+                                 front_per_half};
+             }),
+             py::arg("lag"), py::arg("tip_gap"), py::arg("half_width"), py::arg("widest_per_half") = 1.8,
+             py::arg("front_per_half") = 1.0)
+        .def_readonly("lag", &MarkLaws::lag)
+        .def_readonly("tip_gap", &MarkLaws::tip_gap)
+        .def_readonly("half_width", &MarkLaws::half_width)
+        .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
+        .def_readonly("front_per_half", &MarkLaws::front_per_half);
+    py::class_<MarkOptions>(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
+
+deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
+widest_per_half, front_per_half, height_mm: Prior. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
+and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, say what to expect of such edges.)")
+        .def(py::init<>())
+        .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
+        .def_readwrite("lag_terms", &MarkOptions::lag_terms)
+        .def_readwrite("tip_gap_terms", &MarkOptions::tip_gap_terms)
+        .def_readwrite("half_width_terms", &MarkOptions::half_width_terms)
+        .def_readwrite("widest_per_half", &MarkOptions::widest_per_half)
+        .def_readwrite("front_per_half", &MarkOptions::front_per_half)
+        .def_readwrite("height_mm", &MarkOptions::height_mm)
+        .def_readwrite("placement_mm", &MarkOptions::placement_mm)
+        .def_readwrite("turn_rad", &MarkOptions::turn_rad)
+        .def_readwrite("displacement_mm", &MarkOptions::displacement_mm)
+        .def_readwrite("spacing_mm", &MarkOptions::spacing_mm)
+        .def_readwrite("noise_mm", &MarkOptions::noise_mm)
+        .def_readwrite("noise_length_mm", &MarkOptions::noise_length_mm)
+        .def_readwrite("most_iterations", &MarkOptions::most_iterations);
+    py::class_<MarkMiss>(m, "MarkMiss", "One painted mark against its prediction.")
+        .def_readonly("point_mm", &MarkMiss::point_mm)
+        .def_readonly("distance_mm", &MarkMiss::distance_mm)
+        .def_readonly("displacement_mm", &MarkMiss::displacement_mm)
+        .def_readonly("rms_mm", &MarkMiss::rms_mm)
+        .def_readonly("outlier", &MarkMiss::outlier);
+    py::class_<MarkFit>(m, "MarkFit", R"(A brush fitted to marks.
+
+covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
+front_per_half, height, shift x and y, turn.)")
+        .def_readonly("laws", &MarkFit::laws)
+        .def_readonly("covariance", &MarkFit::covariance)
+        .def_readonly("height_mm", &MarkFit::height_mm)
+        .def_readonly("turn_rad", &MarkFit::turn_rad)
+        .def_readonly("shift_mm", &MarkFit::shift_mm)
+        .def_readonly("centre_mm", &MarkFit::centre_mm)
+        .def_readonly("marks", &MarkFit::marks)
+        .def_readonly("noise_mm", &MarkFit::noise_mm)
+        .def_readonly("samples", &MarkFit::samples)
+        .def_readonly("effective_samples", &MarkFit::effective_samples)
+        .def_readonly("left_aside", &MarkFit::left_aside)
+        .def_readonly("remarks", &MarkFit::remarks)
+        .def_readonly("iterations", &MarkFit::iterations)
+        .def_readonly("converged", &MarkFit::converged);
+    m.def("fit_marks", &fit_marks, py::arg("marks"), py::arg("start") = std::optional<MarkLaws>(),
+          py::arg("options") = MarkOptions(), unlocked,
+          R"(Laws from painted marks and the TCP's way that painted each, by robust least squares through the simulator.
+
+start: MarkLaws to begin from; without them lags of many lengths are tried. Error: no mark, numbers that are not finite,
+marks that no brush paints along these ways.)");
+}

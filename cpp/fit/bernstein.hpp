@@ -1,0 +1,11 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace brushsvg::fit {
+
+/// Coefficients (ascending) from the values of a polynomial's control points on [lo, hi]: Bernstein to powers. The law
+/// is above 0 where they are, and rises where they do.
+Eigen::MatrixXd powers_from_controls(int degree, double lo, double hi);
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brushsvg/plan.hpp"
+#include "brushsvg/profile.hpp"
+#include "brushsvg/ring.hpp"
+
+// A brush from whole painted marks: outlines on the paper and the TCP's way that painted each. Lengths in mm.
+namespace brushsvg::fit {
+
+/// What one pass painted. Outer rings and holes, in the frame of the plan as far as that is known.
+struct PaintedMark {
+    std::string stroke;
+    Poses poses_mm;  ///< z = -depth; arcs are followed on their chords
+    Rings outline_mm;
+};
+
+/// What is known of an unknown beforehand, as a normal distribution. sigma 0: known; infinite: nothing.
+struct Prior {
+    double value, sigma;
+};
+
+/// The laws as polynomials (ascending powers of depth), and the footprint's shape: a drop, straight flanks from the tip
+/// to the widest section at x_w = widest_per_half h, in front of it half an ellipse that reaches front_per_half h on.
+struct MarkLaws {
+    std::vector<double> lag, tip_gap, half_width;
+    double widest_per_half = 1.8, front_per_half = 1.0;
+};
+
+struct MarkOptions {
+    double deepest_mm = 10.0;  ///< the laws are to hold on [0, deepest]
+    /// Numbers per law, at most four: r = c0 + ..., b and h through 0; h never falls.
+    int lag_terms = 4, tip_gap_terms = 1, half_width_terms = 2;
+    Prior widest_per_half{1.8, 0.5};  ///< the shape that the project assumes of round brushes, and round-6's spread
+    Prior front_per_half{1.0, 0.3};
+    Prior height_mm{0.0, 0.3};     ///< the paper lies higher than taught by so much: touching by eye is as good
+    double placement_mm = 2.0;     ///< sigma of the sheet's shift in x and in y: laid against a stop by hand
+    double turn_rad = 0.02;        ///< sigma of the sheet's turn: 1 mm on 50 mm
+    double displacement_mm = 1.0;  ///< sigma of each mark's own displacement in x and in y
+    double spacing_mm = 0.5;       ///< between the points of an outline that are compared
+    /// If given nothing is fitted: the covariance is that to expect at the start from edges this uncertain.
+    std::optional<double> noise_mm;
+    double noise_length_mm = 1.0;  ///< over which the noise of an edge forgets itself; with noise_mm only
+    int most_iterations = 60;
+};
+
+/// One mark against its prediction at the solution.
+struct MarkMiss {
+    Ring point_mm;                    ///< of the painted outline, in the frame of the plan, displacement taken away
+    std::vector<double> distance_mm;  ///< from the predicted mark's edge, negative inside
+    std::array<double, 2> displacement_mm{0.0, 0.0};
+    double rms_mm = 0.0;
+    bool outlier = false;  ///< more than half of it was left aside
+};
+
+struct MarkFit {
+    MarkLaws laws;
+    /// Over lag, tip_gap and half_width (their constant, 0, left out), widest_per_half, front_per_half, height, shift x
+    /// and y, turn: in this order, in the laws' own coefficients.
+    std::vector<std::vector<double>> covariance;
+    double height_mm = 0.0, turn_rad = 0.0;
+    std::array<double, 2> shift_mm{0.0, 0.0};
+    std::array<double, 2> centre_mm{0.0, 0.0};  ///< about which the sheet is turned
+    std::vector<MarkMiss> marks;
+    double noise_mm = 0.0;             ///< robust standard deviation of the distances
+    double samples = 0.0;              ///< points compared
+    double effective_samples = 0.0;    ///< as many independent ones tell as much
+    double left_aside = 0.0;           ///< share of the points that the loss gives no say
+    std::vector<std::string> remarks;  ///< what these marks cannot tell apart, and what to paint instead
+    int iterations = 0;
+    bool converged = false;
+};
+
+/// Least squares over the distances of painted edges from the union of footprints that the laws predict, with
+/// derivatives through the simulator (a point's distance is that from the one footprint that comes nearest: how that
+/// instant shifts does not matter), under Tukey's loss, so that blots and gaps have no say.
+///
+/// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
+/// other and count as fewer, by the integral of their autocorrelation. Throws Error: no mark, numbers that are not
+/// finite or no millimetres, marks that lie far from their strokes.
+MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& start,
+                  const MarkOptions& options);
+
+}  // namespace brushsvg::fit

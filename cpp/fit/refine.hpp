@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+
+#include "brushsvg/brush.hpp"
+#include "brushsvg/compensate.hpp"
+#include "brushsvg/stroke.hpp"
+
+// From the closed form on: what is left is the footprint's shape, at ends and corners and on curves.
+namespace brushsvg::fit {
+
+struct RefineOptions {
+    double tolerance_mm = 0.05;  ///< of the closed form, and of the TCP's chords
+    double speed_mm_s = 20.0;    ///< capped by the brush's own limit
+    /// Width and height. No paint leaves the sheet, and the TCP goes at most 30 mm beyond it, or as far as the closed
+    /// form's. Zero: anywhere.
+    std::array<double, 2> sheet_mm{0.0, 0.0};
+    int iterations = 20;  ///< of the solver: half of them lose 0.001 of overlap, twice as many win 0.002
+};
+
+struct RefinedPass {
+    CompensatedPass plan;
+    /// Area of intersection over area of union of predicted and wanted mark, to 0.001: of the plan in closed form,
+    double overlap_closed = 0.0;
+    double overlap = 0.0;   ///< and of this plan
+    bool bettered = false;  ///< false: this plan is the one in closed form
+};
+
+/// The plan in closed form, moved until the outline of its mark lies best on the wanted one: where the patch goes, how
+/// deep it is pressed, where it starts and ends. The patch is never pushed, so q = P + r(depth) u holds all along. The
+/// plan is simulated, and kept only where its mark overlaps better, as coverage and overlap() judge, and stays in
+/// bounds. Its miss is that from the drawn middle line, which it leaves on purpose.
+/// Throws Error as compensate() does.
+RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});
+
+}  // namespace brushsvg::fit

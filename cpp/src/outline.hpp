@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "brushsvg/ring.hpp"
+
+namespace brushsvg {
+
+constexpr double kUnitsPerMm = 1e5;  // as region's: its rings are whole numbers of it
+
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// A place on the outline: edge number and fraction of it.
+struct Foot {
+    std::size_t edge = 0;
+    double at = 0.0;
+};
+
+/// A shape's edges in whole units, ring after ring, the shape to the left of each.
+class Outline {
+ public:
+    static constexpr double kNothing = 10.0;  // units: nearer places may be one, rounded
+
+    /// Rings of less than three points are left out. Error beyond 20 m.
+    explicit Outline(const Rings& rings);
+
+    std::size_t edges() const { return starts_.size(); }
+    Eigen::Vector2d start(std::size_t k) const { return starts_[k].cast<double>(); }
+    Eigen::Vector2d end(std::size_t k) const { return start(after(k)); }
+    std::size_t before(std::size_t k) const {
+        return k == rings_[ring_of_[k]].first ? rings_[ring_of_[k]].last - 1 : k - 1;
+    }
+    std::size_t after(std::size_t k) const {
+        return k + 1 == rings_[ring_of_[k]].last ? rings_[ring_of_[k]].first : k + 1;
+    }
+    bool same_ring(const Foot& a, const Foot& b) const { return ring_of_[a.edge] == ring_of_[b.edge]; }
+    Eigen::Vector2d at(const Foot& f) const { return start(f.edge) + f.at * (end(f.edge) - start(f.edge)); }
+
+    /// Twice the area that the origin sees of the outline from one place forward to another; of no walk: 0.
+    double twice_area(const Foot& from, const Foot& to) const;
+    /// Points of the outline from one place forward to another; round: from a place to itself is the whole ring.
+    void walk(const Foot& from, const Foot& to, bool round, std::vector<Eigen::Vector2d>& out) const;
+    /// The whole ring of an edge [mm].
+    Ring ring(std::size_t k) const;
+
+ private:
+    struct Span {
+        std::size_t first, last;
+    };
+    std::vector<Eigen::Vector2i> starts_;  // of each edge
+    std::vector<std::size_t> ring_of_;     // each edge
+    std::vector<Span> rings_;
+    std::vector<double> twice_area_;  // before each edge
+};
+
+}  // namespace brushsvg

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Convert to strokes: filled letters become single lines with a width, PowerStrokes where it varies.
+
+Each shape gives way to a group of its strokes, in which it stays, hidden, as it was.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from xml.etree import ElementTree
+
+from brushsvg_preview import INKSCAPE, SVG, user_from_mm
+from brushsvg_program import Run, StopError, arguments, element_of, guarded, selection
+
+STROKES = "strokes.svg"
+EFFECT, ORIGINAL = f"{INKSCAPE}path-effect", f"{INKSCAPE}original-d"
+WIDTH = re.compile("(stroke-width:)([0-9.e+-]+)")
+UNEVEN = 1e-4
+HOLDERS = {
+    f"{SVG}{name}" for name in ("g", "a", "switch")
+}  # whose transforms are all that moves what they hold
+HIDDEN = "display:none"
+
+
+def main() -> None:
+    args = arguments(shapes="filled")
+    words = ["--editable", *selection(args), *(["--as", "outline"] if args.shapes == "all" else [])]
+    with Run(args.executable, args.input_file, "import", STROKES, *words) as run:
+        import inkex  # while brushsvg runs
+        from lxml import etree
+
+        document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
+        _, warnings = run.finish()
+        drawn = ElementTree.fromstring(run.made(STROKES))
+    svg = document.getroot()
+    per_shape = _of_shapes(svg, drawn)
+    if not per_shape:
+        told = "There is no filled shape: lines with a width are strokes already."
+        raise StopError("\n".join([told, *warnings]))
+    effects = {each.get("id"): each for each in drawn.iter(EFFECT)}
+    writer = _Writer(etree, inkex, svg, effects, _mm(drawn.get("width")), _mm(drawn.get("height")))
+    for shape, paths in per_shape:
+        writer.replace(shape, paths)
+    document.write(sys.stdout.buffer)
+    if warnings:
+        sys.stdout.flush()
+        sys.stderr.write("\n".join(["Converted. brushsvg warns:", *warnings]) + "\n")
+
+
+def _mm(length: str) -> float:
+    return float(length[: -len("mm")])
+
+
+def _of_shapes(svg, drawn) -> list:
+    """Shapes of the document, each with the paths that are its strokes; lines that were drawn as such are none."""
+    by_id = {node.get("id"): node for node in svg.iter() if node.get("id")}
+    found: dict = {}
+    for path in drawn.iter(f"{SVG}path"):
+        shape = element_of(by_id, path.get("data-stroke")) if path.get("data-outline") == "yes" else None
+        if shape is not None:
+            found.setdefault(shape.get("id"), (shape, []))[1].append(path)
+    return list(found.values())
+
+
+class _Writer:
+    def __init__(self, etree, inkex, svg, effects: dict, width_mm: float, height_mm: float):
+        self.etree, self.inkex, self.svg, self.effects = etree, inkex, svg, effects
+        self.user_from_mm = inkex.Transform(user_from_mm(svg, width_mm, height_mm))
+        self.defs = svg.find(f"{SVG}defs")
+        if self.defs is None:
+            self.defs = etree.Element(f"{SVG}defs")
+            svg.insert(0, self.defs)
+        self.taken = {node.get("id") for node in svg.iter() if node.get("id")}
+
+    def replace(self, shape, paths: list) -> None:
+        """A group of the strokes where the shape was; in it the shape, hidden and never painted."""
+        parent = shape.getparent()
+        group = self.etree.Element(f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
+        group.set(f"{INKSCAPE}label", f"{shape.get(f'{INKSCAPE}label') or shape.get('id')}, strokes")
+        parent.replace(shape, group)  # what follows it in the file goes with it, which is white space
+        kept = self.etree.SubElement(group, f"{SVG}g", style=HIDDEN)
+        kept.set("id", self._free(f"{shape.get('id')}-outline"))
+        kept.set(f"{INKSCAPE}label", "outline")
+        kept.set("data-brushsvg-skip", "yes")
+        kept.append(shape)
+        place = self.user_from_mm
+        if self._is_plain(parent):
+            place = -self._place(parent) @ place
+        else:  # in a drawing within the drawing: its strokes lie above all
+            strokes = self.etree.SubElement(self.svg, f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
+            strokes.set(f"{INKSCAPE}label", group.get(f"{INKSCAPE}label"))
+            group = strokes
+        for path in paths:
+            self._add(group, path, place)
+
+    def _is_plain(self, node) -> bool:
+        while node is not self.svg and node is not None:
+            if node.tag not in HOLDERS:
+                return False
+            node = node.getparent()
+        return node is not None
+
+    def _place(self, node):
+        """The transform of all that holds what lies in a node. (That of inkex writes anew what nobody touched.)"""
+        place = self.inkex.Transform()
+        while node is not None:
+            place = self.inkex.Transform(node.get("transform")) @ place
+            node = node.getparent()
+        return place
+
+    def _add(self, group, path, place) -> None:
+        """The path in the group's own coordinates: Inkscape moves a path's data and leaves the widths of its effect."""
+        line = self.etree.SubElement(group, f"{SVG}path", id=self._free(path.get("id")))
+        scale = math.hypot(place.a, place.b)
+        if abs(place.a * place.c + place.b * place.d) > UNEVEN * scale**2 or (
+            abs(math.hypot(place.c, place.d) - scale) > UNEVEN * scale
+        ):  # a width that is another one along and across: nothing but a transform says so
+            line.set("transform", str(place))
+            place, scale = self.inkex.Transform(), 1.0
+        for name, value in path.attrib.items():
+            if name in ("d", ORIGINAL):
+                line.set(name, str(self.inkex.Path(value).transform(place)))
+            elif name == "style":
+                line.set(name, WIDTH.sub(lambda found: f"{found[1]}{float(found[2]) * scale:.6g}", value))
+            elif name not in ("id", "data-stroke", "data-outline", EFFECT):
+                line.set(name, value)
+        effect = self.effects.get(path.get(EFFECT, "")[1:])
+        if effect is not None:
+            name = self._free(effect.get("id"))
+            pairs = [pair.split(",") for pair in effect.get("offset_points").split(" | ")]
+            points = " | ".join(f"{at},{float(half) * scale:.6g}" for at, half in pairs)
+            said = {**effect.attrib, "id": name, "offset_points": points}
+            self.defs.append(self.etree.Element(EFFECT, said))
+            line.set(EFFECT, f"#{name}")
+
+    def _free(self, name: str) -> str:
+        number, free = 1, name
+        while free in self.taken:
+            number += 1
+            free = f"{name}-{number}"
+        self.taken.add(free)
+        return free
+
+
+if __name__ == "__main__":
+    guarded(main)

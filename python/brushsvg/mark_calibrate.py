@@ -1,0 +1,216 @@
+"""Painted marks to a brush with its covariance; and what a sheet yet to be painted will say of a brush."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import _core, shapes
+from .errors import Error
+from .new_brush import need_fits, outlines_assumed
+from .painted import Painted, depths_painted
+
+LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
+OUTLINES = 10
+UNSURE = 0.6  # a law whose 95 % interval is this share of it, at every depth, is no measurement
+
+
+@dataclass(frozen=True)
+class MarkCalibration:
+    """A brush that can be used, the fit it comes from, and the marks."""
+
+    brush: _core.Brush
+    fit: object
+    painted: Painted
+
+
+def calibrate_marks(
+    painted: Painted,
+    name: str,
+    depth_range_mm: tuple[float, float] | None = None,
+    max_speed_mm_s: float = 25.0,
+    options: _core.MarkOptions | None = None,
+) -> MarkCalibration:
+    """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
+
+    options: sigmas of sheet, displacement and height; depths and numbers per law are set here.
+    """
+    need_fits()
+    least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
+    if painted.deepest_mm > deepest:
+        raise Error(
+            f"the plan goes {painted.deepest_mm:g} mm deep, beyond the depth range [{least:g}, {deepest:g}] mm",
+            "depth_range_mm",
+        )
+    options = options or _core.MarkOptions()
+    options.deepest_mm = deepest
+    options.lag_terms = min(LAG_TERMS, painted.depths)
+    options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
+    fit = _core.fit_marks(painted.marks, None, options)
+    _refuse_unlike(fit, painted)
+    brush = brush_of(fit.laws, name, (least, deepest), np.array(fit.covariance))
+    brush.max_speed_mm_s = max_speed_mm_s
+    count = f"{len(painted.marks)} painted marks"
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        getattr(brush, law).source = f"Fitted to {count}."
+        getattr(brush, law).calibrated_mm = (0.0, painted.deepest_mm)
+    _refuse_unsure(brush, fit)
+    _core.check(brush)
+    return MarkCalibration(brush, fit, painted)
+
+
+def options_for(expected: dict) -> _core.MarkOptions:
+    """What a measurement file says of how far sheet and marks may be off, for the fit."""
+    need_fits()
+    options = _core.MarkOptions()
+    if "height_mm" in expected:
+        options.height_mm = _core.Prior(0.0, expected["height_mm"])
+    if "turn_deg" in expected:
+        options.turn_rad = math.radians(expected["turn_deg"])
+    options.placement_mm = expected.get("placement_mm", options.placement_mm)
+    options.displacement_mm = expected.get("displacement_mm", options.displacement_mm)
+    return options
+
+
+def expected_brush(
+    plan: _core.Plan,
+    brush: _core.Brush,
+    noise_mm: float = 0.1,
+    noise_length_mm: float = 1.0,
+    options: _core.MarkOptions | None = None,
+) -> tuple[_core.Brush, list[str]]:
+    """What marks of this plan will say of such a brush, before anyone paints: the brush as the fit sees it, with
+    the covariance and intervals to expect, and in words what the strokes cannot tell apart.
+
+    noise_mm: standard deviation of a painted edge, which forgets itself over noise_length_mm along the outline.
+    options: sigmas of sheet, displacement and height, as for calibrate_marks.
+    """
+    need_fits()
+    least, deepest = brush.depth_range_mm
+    laws = laws_of(brush)
+    seen = brush_of(laws, brush.name, (least, deepest))
+    marks = _core.simulate(plan, seen)
+    _core.trace_outlines(marks, seen)
+    painted = [
+        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm)
+        for one, mark in zip(plan.passes, marks.passes, strict=True)
+        if mark.outline_mm
+    ]
+    if not painted:
+        raise Error("the plan paints nothing", "plan")
+    options = options or _core.MarkOptions()
+    options.deepest_mm = deepest
+    depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
+    options.lag_terms = min(LAG_TERMS, depths)
+    options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)
+    options.noise_mm, options.noise_length_mm = noise_mm, noise_length_mm
+    fit = _core.fit_marks(painted, laws_of(brush, options.lag_terms, options.half_width_terms), options)
+    return brush_of(fit.laws, brush.name, (least, deepest), np.array(fit.covariance)), fit.remarks
+
+
+def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HALF_TERMS) -> _core.MarkLaws:
+    """The laws of a brush with as many numbers as marks give, nearest over its depths."""
+    depths = np.linspace(*brush.depth_range_mm, 41)[1:]
+
+    def nearest(law, powers):
+        values = np.array([law(d) for d in depths])
+        columns = np.vander(depths, powers[-1] + 1, increasing=True)[:, powers]
+        out = np.zeros(powers[-1] + 1)
+        out[powers] = np.linalg.lstsq(columns, values, rcond=None)[0]
+        return out.tolist()
+
+    half = np.array([brush.half_width(d) for d in depths])
+    widest = np.array([brush.tip_to_widest(d) for d in depths])
+    ends = [(s.outline_mm[:, 0].max(), s.depth_mm) for s in brush.footprints.dragged]
+    front = [(end - brush.tip_to_widest(d)) / max(brush.half_width(d), 1e-6) for end, d in ends]
+    return _core.MarkLaws(
+        nearest(brush.lag, list(range(lag_terms))),
+        nearest(brush.tip_gap, list(range(1, GAP_TERMS + 1))),
+        nearest(brush.half_width, list(range(1, half_terms + 1))),
+        float(widest @ half / (half @ half)),
+        float(np.clip(np.median(front), 0.2, 3.0)),
+    )
+
+
+def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = None) -> _core.Brush:
+    """A brush with these laws, drops for footprints, and intervals where the covariance of a fit is given."""
+    brush = _core.Brush()
+    brush.name, brush.kind, brush.depth_range_mm = name, "round", tuple(depth_range_mm)
+    half = np.array(laws.half_width)
+    lag, gap, widest = laws.lag, laws.tip_gap, (laws.widest_per_half * half).tolist()
+    for law, coefficients in (
+        ("lag", lag),
+        ("tip_gap", gap),
+        ("tip_to_widest", widest),
+        ("half_width", half.tolist()),
+    ):
+        setattr(brush, law, _core.Profile(coefficients))
+    least, deepest = depth_range_mm
+    brush.paint_depth_mm = (least + deepest) / 2
+    depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
+    brush.footprints = _core.FootprintTable([_outline(brush, depth, laws.front_per_half) for depth in depths])
+    brush.extra = outlines_assumed(
+        f"drops whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long in "
+        "front of it."
+    )
+    if covariance is not None:
+        whole = _over_brush(laws, covariance)
+        brush.covariance = whole.tolist()
+        sure, first = 1.96 * np.sqrt(np.maximum(np.diag(whole), 0.0)), 0
+        for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+            profile = getattr(brush, law)
+            count = len(profile.coefficients)
+            profile.half_interval_95 = sure[first : first + count].tolist()
+            first += count
+    return brush
+
+
+def _over_brush(laws, covariance: np.ndarray) -> np.ndarray:
+    """From the fit's unknowns to a brush's coefficients; x_w = ratio h."""
+    lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
+    rows = lag + gap + 1 + 2 * (half + 1)
+    to = np.zeros((rows, len(covariance)))
+    to[:lag, :lag] = np.eye(lag)
+    to[lag + 1 : lag + 1 + gap, lag : lag + gap] = np.eye(gap)
+    widest, width, source = lag + gap + 2, lag + gap + 2 + half + 1, slice(lag + gap, lag + gap + half)
+    to[widest : widest + half, source] = laws.widest_per_half * np.eye(half)
+    to[widest : widest + half, lag + gap + half] = laws.half_width[1:]
+    to[width : width + half, source] = np.eye(half)
+    return to @ covariance @ to.T
+
+
+def _outline(brush: _core.Brush, depth: float, front_per_half: float) -> _core.Footprint:
+    half = brush.half_width(depth)
+    return _core.Footprint(depth, shapes.drop(half, brush.tip_to_widest(depth), front_per_half * half))
+
+
+def _refuse_unlike(fit, painted: Painted) -> None:
+    wild = [mark.stroke for mark, miss in zip(painted.marks, fit.marks, strict=True) if miss.outlier]
+    if 2 * len(wild) > len(painted.marks):
+        raise Error(
+            f"{len(wild)} of {len(painted.marks)} marks are not what any brush paints along their strokes: are the "
+            "marks in mm, y up, each with the id of its stroke?",
+            "marks",
+        )
+
+
+def _refuse_unsure(brush: _core.Brush, fit) -> None:
+    depths = np.linspace(*brush.depth_range_mm, 21)[1:]
+    first = 0
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        profile = getattr(brush, law)
+        count = len(profile.coefficients)
+        block = np.array(brush.covariance)[first : first + count, first : first + count]
+        first += count
+        if law not in ("lag", "half_width"):  # the others are not what a plan is led by
+            continue
+        powers = np.vander(depths, count, increasing=True)
+        half = 1.96 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", powers, block, powers), 0.0))
+        share = half / np.maximum([profile(d) for d in depths], 1e-9)
+        if share.min() > UNSURE and half.min() > 0.5:
+            told = f": {fit.remarks[0]}" if fit.remarks else ": add curved strokes at more depths"
+            raise Error(
+                f"these marks leave the {law} open, +- {half.min():.1f} mm where it is surest{told}", law
+            )

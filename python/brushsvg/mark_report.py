@@ -1,0 +1,131 @@
+"""What painted marks told of a brush: laws and how sure they are, what moved, what stays; in words and as a picture."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from . import _core
+from .describe import LAWS, polynomial
+from .plot import INK, brush_picture_on, encoded, law_band, new_figure
+
+TABLE_ROWS = 6
+PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
+
+
+def report(made) -> str:
+    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration."""
+    brush, fit, painted = made.brush, made.fit, made.painted
+    lines = [
+        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
+        f"{len(painted.marks)} painted marks",
+        "",
+    ]
+    for name, _ in LAWS:
+        law = getattr(brush, name)
+        lines.append(f"{name} = {polynomial(law.coefficients)}")
+        halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
+        lines.append(f"  95 % +- {halves} (ascending powers)")
+    lines += ["", *_table(brush), "", *_moved(made), "", *_stays(made)]
+    remarks = [f"note: {sentence}" for sentence in fit.remarks]
+    if not fit.converged:
+        remarks.append("note: the fit was still moving when it was stopped: look at the picture")
+    return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+
+
+def _table(brush) -> list[str]:
+    lines = ["  depth" + "".join(name.rjust(18) for name, _ in LAWS)]
+    depths = np.linspace(*brush.depth_range_mm, TABLE_ROWS)
+    bands = {name: law_band(brush, name, depths) for name, _ in LAWS}
+    for i, depth in enumerate(depths):
+        cells = []
+        for name, _ in LAWS:
+            band = bands[name]
+            half = f" +- {band[0][i]:.2f}" if band else ""
+            cells.append(f"{getattr(brush, name)(depth):.2f}{half}".rjust(18))
+        lines.append(f"{depth:7.2f}" + "".join(cells))
+    return [*lines, "  +-: 95 % of the law"]
+
+
+def _moved(made) -> list[str]:
+    """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
+    fit = made.fit
+    sure = 1.96 * np.sqrt(np.diag(np.array(fit.covariance)))
+    height, shift, turn = sure[-4], sure[-3:-1], sure[-1]
+    way = "higher" if fit.height_mm >= 0 else "lower"
+    sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
+    far = int(np.argmax(sizes))
+    lines = [
+        f"the paper lies {abs(fit.height_mm):.2f} +- {height:.2f} mm {way} than the plan took it to be",
+        f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
+        f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
+        f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
+        f"most, by {sizes[far]:.2f} mm",
+    ]
+    return lines
+
+
+def _stays(made) -> list[str]:
+    fit = made.fit
+    worst = int(np.argmax([miss.rms_mm for miss in fit.marks]))
+    lines = [
+        f"painted edges lie {fit.noise_mm:.2f} mm off the predicted ones (standard deviation); {fit.samples:.0f} "
+        f"points compared, as good as {fit.effective_samples:.0f} independent ones",
+        f"worst: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
+    ]
+    if fit.left_aside > 0.01:
+        lines.append(f"{100 * fit.left_aside:.0f} % of the points lie so far off that they have no say")
+    wild = [mark.stroke for mark, miss in zip(made.painted.marks, fit.marks, strict=True) if miss.outlier]
+    if wild:
+        lines.append(
+            f"not what this brush paints, left aside: {', '.join(wild)}: look at them, and paint them again"
+        )
+    return lines
+
+
+def report_picture(made, suffix: str) -> bytes:
+    """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
+    figure = new_figure((11, 11))
+    laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
+    brush_picture_on(laws, made.brush)
+    order = np.argsort([miss.rms_mm for miss in made.fit.marks])
+    chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
+    predicted = _predicted(made, [int(k) for _, k in chosen])
+    for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
+        mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
+        for ring in _home(made, mark.outline_mm, miss.displacement_mm):
+            axes.fill(*ring.T, color=PAINT)
+        for ring in rings:
+            axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
+        axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
+        axes.set_aspect("equal")
+        title = f"{what}: {mark.stroke}, {miss.rms_mm:.2f} mm (rms)".replace("$", r"\$")
+        axes.set_title(title, fontsize=9, color=INK)
+        axes.tick_params(labelsize=7)
+    marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)
+    return encoded(figure, suffix)
+
+
+def _home(made, rings, displacement) -> list[np.ndarray]:
+    """Rings of the sheet in the frame of the plan, as the fit found the one to lie on the other."""
+    fit = made.fit
+    c, s = math.cos(fit.turn_rad), math.sin(fit.turn_rad)
+    centre = np.array(fit.centre_mm)
+    back = np.array([[c, -s], [s, c]])
+    return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
+
+
+def _predicted(made, chosen: list[int]) -> list:
+    brush = made.brush
+    reach = max(brush.depth_range_mm[1], made.painted.deepest_mm + made.fit.height_mm)
+    brush = _core.read_brush(_core.write_brush(brush))
+    brush.depth_range_mm = (brush.depth_range_mm[0], reach)
+    passes = []
+    for k in chosen:
+        poses = np.array(made.painted.marks[k].poses_mm)
+        poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
+        passes.append(_core.Pass(made.painted.marks[k].stroke, poses))
+    marks = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
+    _core.trace_outlines(marks, brush)
+    return [one.outline_mm for one in marks.passes]

@@ -1,0 +1,138 @@
+"""Where branches of a medial axis meet: which of its nodes are one crossing, which two arms of it are one line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+# Nodes whose discs overlap by more are one crossing.
+CROSSING_REACH = 0.9
+# Lines that turn by less, in all, where they cross others are one line.
+STRAIGHTEST_RAD = np.radians(60)
+
+
+@dataclass
+class Arm:
+    """A branch as seen from one of its ends at a crossing."""
+
+    branch: int
+    forward: bool
+    crossing: int
+    line: np.ndarray  # from the crossing on
+    out: int = 0  # first row outside of the crossing's discs
+    mate: Arm | None = None
+    other: Arm | None = None  # the same branch from its other end, None where that is free
+
+    @cached_property
+    def direction(self) -> np.ndarray:
+        """Unit vector away from the crossing, where the arm leaves it."""
+        start = self.line[self.out]
+        reach = max(start[2], 1e-6)
+        ahead = self.line[self.out :]
+        along = np.hypot(*(ahead[:, :2] - start[:2]).T)
+        far = int(np.argmax(along >= reach)) if (along >= reach).any() else len(ahead) - 1
+        step = ahead[far, :2] - start[:2]
+        if np.hypot(*step) < 1e-3 * reach:
+            step = start[:2] - self.line[0, :2]
+        return step / max(np.hypot(*step), 1e-12)
+
+
+@dataclass
+class Crossing:
+    discs: np.ndarray  # (k, 3), of its nodes
+    inner: list[int] = field(default_factory=list)  # branches between its nodes
+    arms: list[Arm] = field(default_factory=list)
+
+    @property
+    def is_corner(self) -> bool:
+        return len(self.arms) == 2
+
+
+def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]:
+    """All crossings and their arms, those that are one line mated. nodes (n, 4), lines and ends (two nodes) per branch,
+    degree: how many branches a node has."""
+    home, inner = _merged(nodes, lines, ends, degree)
+    crossings: list[Crossing] = []
+    number_of: dict[int, int] = {}
+    for k, members in home.items():
+        if k == members[0]:
+            number_of |= dict.fromkeys(members, len(crossings))
+            crossings.append(Crossing(nodes[members, :3]))
+    arms = []
+    for number, pair in enumerate(ends):
+        if number in inner:
+            crossings[number_of[pair[0]]].inner.append(number)
+            continue
+        if pair[0] == pair[1] and degree[pair[0]] == 2:
+            continue  # a ring that meets nothing
+        both = [
+            _arm(number, side, number_of[node], lines[number], crossings)
+            for side, node in enumerate(pair)
+            if node in number_of
+        ]
+        if len(both) == 2:
+            both[0].other, both[1].other = both[1], both[0]
+            _share(*both)
+        arms += both
+    for crossing in crossings:
+        _join(crossing)
+    return crossings, arms
+
+
+def _merged(nodes, lines, ends, degree) -> tuple[dict[int, list[int]], set[int]]:
+    """The nodes that are one crossing, for each node, and the branches inside of crossings: those shorter than the
+    discs at their ends. A corner stays apart from crossings: the stem of an r runs on up to its serif, also where the
+    bowl leaves it right below."""
+    home = {k: [k] for k in range(len(nodes)) if degree[k] >= 2}
+    inner = set()
+    lengths = [float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum()) for line in lines]
+    for number in np.argsort(lengths, kind="stable").tolist():
+        a, b = ends[number]
+        if a not in home or b not in home or (degree[a] == 2) != (degree[b] == 2):
+            continue
+        reach = CROSSING_REACH * (nodes[a, 2] + nodes[b, 2])
+        if lengths[number] >= reach:
+            continue
+        if home[a] is not home[b]:
+            both = [*home[a], *home[b]]
+            if len(both) > 2 and np.hypot(*np.ptp(nodes[both, :2], axis=0)) > reach:
+                continue  # or a thick line with many hairs would be but one crossing
+            home |= dict.fromkeys(both, both)
+        inner.add(number)
+    return home, inner
+
+
+def _arm(branch: int, side: int, crossing: int, line: np.ndarray, crossings: list[Crossing]) -> Arm:
+    line = line if side == 0 else line[::-1]
+    discs = crossings[crossing].discs
+    off = np.hypot(line[:, None, 0] - discs[None, :, 0], line[:, None, 1] - discs[None, :, 1])
+    beyond = (off > discs[None, :, 2]).all(axis=1)
+    arm = Arm(branch, side == 0, crossing, line, int(np.argmax(beyond)) if beyond.any() else len(line) - 1)
+    crossings[crossing].arms.append(arm)
+    return arm
+
+
+def _share(a: Arm, b: Arm) -> None:
+    """Arms of one branch, whose crossings reach into each other, leave them where they meet."""
+    last = len(a.line) - 1
+    if a.out + b.out > last:
+        a.out = round(last * a.out / (a.out + b.out))
+        b.out = last - a.out
+
+
+def _join(crossing: Crossing) -> None:
+    """Pairs of arms, the straightest first."""
+    turns = []
+    for a, b in combinations(crossing.arms, 2):
+        across = b.line[b.out, :2] - a.line[a.out, :2]
+        turns.append((_turn(-a.direction, across) + _turn(across, b.direction), len(turns), a, b))
+    for turn, _, a, b in sorted(turns, key=lambda each: each[:2]):
+        if turn < STRAIGHTEST_RAD and a.mate is None and b.mate is None:
+            a.mate, b.mate = b, a
+
+
+def _turn(u, v) -> float:
+    return abs(float(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))

@@ -1,0 +1,154 @@
+"""Measurements that no brush can have: other units, rows in a wrong order, values that say nothing. Each refusal says
+what to do."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .errors import Error
+
+LEAST_ALPHA0_DEG = (
+    5.0  # a series that starts nearer to the motion cannot be read; in radians 90 degrees are 1.57
+)
+UNTURNED_DEG = 5.0  # by so much may an angle grow through its noise
+SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
+# Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
+LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
+HALF_PER_DEPTH = (0.01, 20.0)  # 0.42 with round-6
+BEYOND = 1.5  # of the deepest measurement: a law of fourth degree says nothing there
+SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in inches
+
+
+def different(depths_mm: list[float]) -> int:
+    """How many depths there are, taking those for one that hardly differ."""
+    ordered = np.sort(depths_mm)
+    return 1 + int(np.sum(np.diff(ordered) > SPREAD * ordered[-1]))
+
+
+def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
+    """Angles at distances of a drag, as they were read."""
+    if alpha0_deg < LEAST_ALPHA0_DEG:
+        raise Error(
+            f"the series starts {alpha0_deg:g} degrees from the motion, less than the {LEAST_ALPHA0_DEG:g} that can be "
+            "read: turn by 90 degrees before the drag; are these radians?",
+            where,
+            alpha0_deg,
+        )
+    if len(s_mm) == len(alpha_deg) and len(s_mm) > 1:
+        first, last = int(np.argmin(s_mm)), int(np.argmax(s_mm))
+        if alpha_deg[last] > alpha_deg[first] + UNTURNED_DEG:
+            raise Error(
+                f"the angle grows from {alpha_deg[first]:g} degrees after {s_mm[first]:g} mm to {alpha_deg[last]:g} "
+                f"after {s_mm[last]:g} mm, but a dragged brush turns towards its motion: are the rows in the right "
+                "order?",
+                where,
+            )
+
+
+def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:
+    """A law is not followed far beyond what was measured."""
+    if range_mm[1] > BEYOND * deepest_mm:
+        raise Error(
+            f"{law} was measured to a depth of {deepest_mm:g} mm, the brush is to be pressed {range_mm[1]:g} mm: "
+            f'measure it deeper, or give "depth_range_mm": [{range_mm[0]:g}, {deepest_mm:g}]',
+            where,
+        )
+
+
+def refuse_falling(law: str, points) -> None:
+    """A brush that is pressed deeper paints no narrower and trails no less."""
+    depths = np.array([point.depth_mm for point in points])
+    values = np.array([point.value_mm for point in points])
+    slope, middle = np.polyfit(depths - depths.mean(), values, 1)
+    left = values - middle - slope * (depths - depths.mean())
+    freedom = max(len(values) - 2, 1)
+    error = math.sqrt(left @ left / freedom / ((depths - depths.mean()) @ (depths - depths.mean())))
+    drop = -slope * (depths.max() - depths.min())
+    if slope < -3 * error and drop > 0.3 * abs(middle):
+        raise Error(
+            f"the {law} falls by {drop:.3g} mm from depth {depths.min():g} to {depths.max():g} mm, but a brush that is "
+            "pressed deeper paints wider and trails more: are the rows in the right order, and depths counted from "
+            "first contact down?",
+            points[0].where,
+        )
+
+
+def refuse_unexplained(law: str, points, fit) -> None:
+    """Widths that rise with depth in no way: through 0 and rising they are missed by what they differ among each
+    other."""
+    values = np.array([point.value_mm for point in points])
+    if np.ptp(values) <= 0.05 * abs(values.mean()):
+        raise Error(
+            f"the {law} is {values.mean():.3g} mm at every depth: such a pen is made by brushsvg brush new, with "
+            "--lag 0 if it does not trail",
+            points[0].where,
+        )
+    if len(values) > 3 and fit.r_squared < 0.5:
+        raise Error(
+            f"the {law} hardly follows the depth, R^2 {fit.r_squared:.2f}: are the rows in the right order, and all of "
+            "one brush?",
+            points[0].where,
+        )
+
+
+def refuse_brush(brush) -> None:
+    """Laws that do not go together: most of them are units mixed up."""
+    depth = brush.depth_range_mm[1]
+    lag, gap, widest, half = (
+        law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
+    )
+    if not HALF_PER_DEPTH[0] <= half / depth <= HALF_PER_DEPTH[1]:
+        raise Error(
+            f"the width is {2 * half:.3g} mm at depth {depth:g} mm: depths and widths both count in millimetres",
+            "half_width",
+            half,
+        )
+    if not LAG_PER_HALF[0] <= lag / half <= LAG_PER_HALF[1]:
+        raise Error(
+            f"the lag is {lag:.3g} mm and the width {2 * half:.3g} mm at depth {depth:g} mm: all lengths count in "
+            "millimetres; for a pen that does not trail take brushsvg brush new --lag 0",
+            "lag",
+            lag,
+        )
+    if not brush.tip_to_widest.assumed and widest > lag + gap:
+        raise Error(
+            f"the widest section lies {widest:.3g} mm from the tip at depth {depth:g} mm, farther than the tool, "
+            f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres",
+            "tip_to_widest",
+            widest,
+        )
+    length = float(np.max(brush.footprints.dragged[-1].outline_mm[:, 0]))
+    if not brush.tip_gap.assumed and gap > 1.5 * length:
+        raise Error(
+            f"the tip gap is {gap:.3g} mm at depth {depth:g} mm, the footprint {length:.3g} mm long: the centre of "
+            "friction must lie in it; measure the gap from the tip of the footprint, in millimetres",
+            "tip_gap",
+            gap,
+        )
+
+
+def odd(brush, laws) -> list[str]:
+    """Sentences on what may be, but seldom is."""
+    depth = brush.depth_range_mm[1]
+    said = []
+    if depth < SMALL_MM:
+        said.append(
+            f"the brush is pressed {depth:.3g} mm at most: were depths and values read in millimetres?"
+        )
+    share = brush.lag(depth) / brush.half_width(depth)
+    if not ODD_LAG_PER_HALF[0] <= share <= ODD_LAG_PER_HALF[1]:
+        said.append(
+            f"the lag is {share:.2g} half widths at depth {depth:g} mm, which is odd: check the units"
+        )
+    for fitted in laws:
+        if fitted.name != "lag" or fitted.fit is None or len(fitted.points) < 4:
+            continue
+        mean = np.mean([point.value_mm for point in fitted.points])
+        rmse = fitted.fit.law.rmse_mm
+        if rmse is not None and rmse > 0.25 * mean:
+            said.append(
+                f"the lag scatters by {rmse:.2g} mm round a mean of {mean:.2g} mm: are the rows in the right order?"
+            )
+    return said

@@ -1,0 +1,95 @@
+#include "mark_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "brushsvg/error.hpp"
+#include "drop.hpp"
+#include "mark_model.hpp"
+
+using namespace brushsvg;
+using namespace brushsvg::fit;
+
+TEST_CASE("the nearest place on a drop's edge is that of its densely sampled outline") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> where(-6.0, 10.0);
+    for (const Drop& drop : {Drop{3.6, 2.0, 2.0}, Drop{3.6, 2.0, 1.2}, Drop{1.5, 1.0, 1.6}, Drop{0.6, 2.0, 3.0}}) {
+        std::vector<Eigen::Vector2d> edge;
+        for (int i = 0; i <= 20000; ++i) {
+            const double t = i / 20000.0, phi = 0.5 * M_PI * (1.0 - t);
+            edge.emplace_back(t * drop.widest, t * drop.half);
+            edge.emplace_back(drop.widest + drop.front * std::cos(phi), drop.half * std::sin(phi));
+        }
+        for (int i = 0; i < 50; ++i) {
+            const double x = where(random), y = where(random) - 2.0;
+            double least = 1e9;
+            for (const auto& p : edge) least = std::min(least, (p - Eigen::Vector2d(x, std::abs(y))).norm());
+            const NearestEdge found = nearest_edge(drop, x, y);
+            CHECK(std::abs(found.distance) == doctest::Approx(least).epsilon(2e-3));
+            CHECK(found.x == doctest::Approx(found.by_widest * drop.widest + found.by_front * drop.front));
+            CHECK(found.y == doctest::Approx(found.by_half * drop.half));
+            // a step along the normal leads straight away
+            const NearestEdge out = nearest_edge(drop, found.x + 0.01 * found.nx, found.y + 0.01 * found.ny);
+            CHECK(out.distance == doctest::Approx(0.01).epsilon(0.05));
+        }
+    }
+}
+
+TEST_CASE("derivatives of edge distances are those of small steps, events and landings included") {
+    Poses poses(6, 3);
+    poses << 0, 0, 0, 8, 0, -4, 25, 2, -5, 26, 20, -3, 22, 6, -6, 10, 8, -2;
+    PaintedMark mark{"s", poses, {}};
+    Ring ring(40, 2);
+    for (Eigen::Index k = 0; k < 40; ++k)
+        ring.row(k) << 14.0 + 16.0 * std::cos(0.157 * double(k)), 7.0 + 12.0 * std::sin(0.157 * double(k));
+    mark.outline_mm = {ring};
+    MarkOptions options;
+    options.spacing_mm = 0.7;
+    const MarkModel model({mark}, options);
+    MarkLaws laws;
+    laws.lag = {3.1, 0.86, 0.31, -0.03};
+    laws.tip_gap = {0.0, 0.5};
+    laws.half_width = {0.0, 0.42, 0.01};
+    VectorXd x = model.unknowns(laws);
+    x[model.layout().height()] = 0.13;
+    x.tail(3) << 0.3, -0.2, 0.05;
+    Eigen::Vector2d moved(0.1, 0.2);
+    VectorXd at, up, down;
+    RowMajor by = RowMajor::Zero(model.points(0), x.size()), own = RowMajor::Zero(model.points(0), 2);
+    REQUIRE(model.distances(0, x.data(), moved.data(), at, &by, &own));
+    const double step = 1e-5;
+    int wrong = 0;
+    for (Eigen::Index i = 0; i < x.size() + 2; ++i) {
+        double& value = i < x.size() ? x[i] : moved[i - x.size()];
+        value += step;
+        model.distances(0, x.data(), moved.data(), up, nullptr, nullptr);
+        value -= 2.0 * step;
+        model.distances(0, x.data(), moved.data(), down, nullptr, nullptr);
+        value += step;
+        for (Eigen::Index k = 0; k < at.size(); ++k) {
+            const double told = i < x.size() ? by(k, i) : own(k, i - x.size());
+            // a point midway between two footprints has a kink there
+            if (std::abs((up[k] - down[k]) / (2.0 * step) - told) > 1e-3 * (1.0 + std::abs(told))) ++wrong;
+        }
+    }
+    CHECK(wrong <= 0.02 * double(at.size() * (x.size() + 2)));
+}
+
+TEST_CASE("what cannot be fitted is refused") {
+    CHECK_THROWS_AS(fit_marks({}, std::nullopt, {}), Error);
+    Poses poses(2, 3);
+    poses << 0, 0, -3, 30, 0, -3;
+    CHECK_THROWS_AS(fit_marks({{"s", poses, {}}}, std::nullopt, {}), Error);
+    Ring ring(3, 2);
+    ring << 0, 0, 30, 0, NAN, 3;
+    CHECK_THROWS_AS(fit_marks({{"s", poses, {ring}}}, std::nullopt, {}), Error);
+    ring(2, 0) = 30;
+    MarkOptions options;
+    options.lag_terms = 5;
+    CHECK_THROWS_AS(fit_marks({{"s", poses, {ring}}}, std::nullopt, options), Error);
+    options = {};
+    options.deepest_mm = 2.0;
+    CHECK_THROWS_AS(fit_marks({{"s", poses, {ring}}}, std::nullopt, options), Error);
+}

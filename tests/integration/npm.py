@@ -1,0 +1,40 @@
+"""Other people's material from npm, fetched once and kept in pytest's cache."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+LIMIT_S = 600
+
+
+class UnavailableError(Exception):
+    """It cannot be had here; the text says why."""
+
+
+def fetched(folder: Path, packages: dict[str, str]) -> Path:
+    """The folder node_modules with these packages (name -> version) in it; nothing is fetched that is there already.
+    UnavailableError without node and npm, and if npm cannot fetch them."""
+    modules = folder / "node_modules"
+    for tool in ("node", "npm"):
+        if not shutil.which(tool):
+            raise UnavailableError(f"{tool} is missing: apt-get install --no-install-recommends nodejs npm")
+    missing = [name for name, version in packages.items() if not _has(modules, name, version)]
+    if not missing:
+        return modules
+    options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
+    # all of them: what is left out, npm removes
+    wanted = [f"{name}@{version}" for name, version in packages.items()]
+    words = ["npm", "install", "--prefix", str(folder), *options, *wanted]
+    try:
+        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LIMIT_S)
+    except subprocess.TimeoutExpired:
+        raise UnavailableError(f"npm did not fetch {' '.join(missing)} within {LIMIT_S} s") from None
+    if done.returncode or not all(_has(modules, *each) for each in packages.items()):
+        raise UnavailableError(f"npm could not fetch {' '.join(missing)}: {done.stderr[-200:]}")
+    return modules
+
+
+def _has(modules: Path, name: str, version: str) -> bool:
+    about = modules / name / "package.json"
+    return about.exists() and json.loads(about.read_text(encoding="utf-8"))["version"] == version

@@ -1,0 +1,191 @@
+"""Convert to strokes in the real Inkscape: filled letters become lines with a width that Inkscape draws as it was."""
+
+import json
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from command import OPEN, SOUND, brushsvg
+from plugin import Plugin
+
+from brushsvg.importers.svg import read_svg
+from brushsvg.text import text_svg
+
+SVG = "{http://www.w3.org/2000/svg}"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
+OTHERS = """<path id="line" d="M 20,70 H 90" style="fill:none;stroke:#a00000;stroke-width:4"/>
+ <text id="word" x="20" y="20">text</text>"""
+HEADS = {
+    "mm": 'width="150mm" height="130mm" viewBox="0 0 150 130"',
+    "px": 'width="500" height="450"',
+    "in": 'width="6in" height="5in" viewBox="-5 -8 160 130"',
+    "wide": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="xMaxYMid"',
+}
+
+
+def letters(text="oS", size_mm=50.0) -> str:
+    svg, _ = text_svg(text, FONT.read_bytes(), size_mm=size_mm, width_mm=None, sheet_mm=None)
+    root = ET.fromstring(svg)
+    return "".join(
+        f'<path id="{node.get("id")}" style="fill:#203060" d="{node.get("d")}"/>'
+        for node in root.iter(f"{SVG}path")
+    )
+
+
+def drawing(head: str) -> str:
+    body = f"""<g inkscape:groupmode="layer" inkscape:label="Ink" id="layer1" transform="translate(5,3)">
+     <g id="turned" transform="rotate(8) scale(0.9)">{letters()}</g>{OTHERS}</g>"""
+    body = f'<g id="all" transform="scale(3)">{body}</g>' if head == "px" else body
+    spaces = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
+    return f"<svg {spaces} {HEADS[head]}>{body}</svg>"
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+def converted(plugin, source: Path, select: str = "turned") -> Path:
+    """The text is not selected: a warning of it opens a dialog, which waits for somebody to read it."""
+    return plugin.effect("strokes", source, source.with_name("strokes.svg"), select)
+
+
+def lines_of(text: str) -> list:
+    return [node for node in ET.fromstring(text).iter(f"{SVG}path") if node.get(f"{INKSCAPE}original-d")]
+
+
+def redrawn(inkscape, file: Path, out: Path) -> Path:
+    """The file with its path effects drawn anew by Inkscape, which it does when a path changes."""
+    ids = ",".join(node.get("id") for node in lines_of(file.read_text()))
+    moves = "transform-translate:1,0;transform-translate:-1,0"
+    inkscape(f"--actions=select-by-id:{ids};{moves};export-filename:{out};export-do", file)
+    return out
+
+
+def ink(inkscape, file: Path) -> np.ndarray:
+    return cv2.imread(str(inkscape.paint(file, 8)), cv2.IMREAD_UNCHANGED)[..., 3] / 255
+
+
+def overlap(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.minimum(a, b).sum() / np.maximum(a, b).sum())
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, inkscape, tmp_path, head):
+    source = tmp_path / "letters.svg"
+    source.write_text(drawing(head))
+    done = converted(plugin, source)
+    changed = redrawn(inkscape, done, tmp_path / "redrawn.svg")
+    before, ours, theirs = (ink(inkscape, file) for file in (source, done, changed))
+    assert len(lines_of(done.read_text())) == 2
+    for old, new in zip(lines_of(done.read_text()), lines_of(changed.read_text()), strict=True):
+        assert old.get("d") != new.get("d"), "Inkscape has not drawn the effect"
+    assert overlap(ours, theirs) > 0.99
+    assert overlap(theirs, before) > 0.95
+    assert theirs.sum() == pytest.approx(before.sum(), rel=0.04)
+    assert_painted_alike(source, done)
+
+
+def assert_painted_alike(letters: Path, strokes: Path) -> None:
+    plans = []
+    for drawn in (letters, strokes):
+        out = drawn.with_suffix(".json")
+        brushsvg("convert", drawn, out, cwd=drawn.parent, status=0)
+        plans.append(json.loads(out.read_text())["passes"])
+    assert len(plans[0]) == len(plans[1])
+    for letter, stroke in zip(*plans, strict=True):
+        assert (letter["layer"], letter["colour"]) == (stroke["layer"], stroke["colour"])
+        a, b = (np.array(each["poses_mm"]) for each in (letter, stroke))
+        assert np.abs(a.min(axis=0) - b.min(axis=0)).max() < 0.1
+        assert np.abs(a.max(axis=0) - b.max(axis=0)).max() < 0.1
+
+
+def test_letters_that_are_sheared_are_painted_alike(plugin, inkscape, tmp_path):
+    source, out = tmp_path / "letters.svg", tmp_path / "strokes.svg"
+    source.write_text(drawing("mm").replace("scale(0.9)", "skewX(20)"))
+    out.write_bytes(plugin.script("strokes", source, "--id=turned").stdout)
+    assert overlap(ink(inkscape, source), ink(inkscape, out)) > 0.95
+    assert_painted_alike(source, out)
+
+
+def attributes(text: str) -> dict:
+    return {
+        node.get("id"): dict(node.attrib)
+        for node in ET.fromstring(text).iter()
+        if re.fullmatch("glyph-[0-9]-[a-zA-Z]|line|word|layer1|turned", node.get("id") or "")
+    }
+
+
+def test_letters_stay_hidden_beside_their_strokes_and_all_else_as_it_was(plugin, tmp_path):
+    source = tmp_path / "letters.svg"
+    source.write_text(drawing("mm"))
+    done = converted(plugin, source)
+    assert attributes(done.read_text()) == attributes(source.read_text())
+    root = ET.fromstring(done.read_text())
+    parents = {child: parent for parent in root.iter() for child in parent}
+    for node in root.iter(f"{SVG}path"):
+        if (node.get("id") or "") in ("glyph-1-o", "glyph-2-S"):
+            hidden, group = parents[node], parents[parents[node]]
+            assert hidden.get("style") == "display:none" and hidden.get("data-brushsvg-skip") == "yes"
+            assert parents[group].get("id") == "turned" and len(group) >= 2
+    names = [node.get("id") for node in root.iter() if node.get("id")]
+    assert len(names) == len(set(names))
+
+
+def test_a_selection_alone_is_converted(plugin, tmp_path):
+    source = tmp_path / "letters.svg"
+    source.write_text(drawing("mm"))
+    done = converted(plugin, source, "glyph-2-S")
+    text = done.read_text()
+    assert 'id="glyph-2-S-strokes"' in text and 'id="glyph-1-o-strokes"' not in text
+
+
+def test_widths_can_be_edited(plugin, inkscape, tmp_path):
+    """What Inkscape makes of a PowerStroke that it moved is read back by us as the same stroke, moved."""
+    source = tmp_path / "letters.svg"
+    source.write_text(f"{OPEN}{letters('S', 30)}</svg>")
+    done = converted(plugin, source, "")
+    moved = tmp_path / "moved.svg"
+    (line,) = lines_of(done.read_text())
+    move = f"select-by-id:{line.get('id')};transform-translate:10,0"
+    inkscape(f"--actions={move};export-filename:{moved};export-do", done)
+    (a,), (b,) = (
+        read_svg(file.read_text().replace('data-brushsvg-skip="yes"', "").encode()).elements
+        for file in (done, moved)
+    )
+    step_mm = np.ptp(b.subpaths[0].cubics - a.subpaths[0].cubics, axis=(0, 1))
+    assert step_mm.max() < 1e-3, "all of it moves alike"
+    assert b.subpaths[0].widths == pytest.approx(a.subpaths[0].widths, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (SOUND, "There is no filled shape"),
+        (f"{OPEN}</svg>", "the drawing holds nothing to paint"),
+        (f'{OPEN}<text id="word" x="20" y="20">text</text></svg>', "text is not read"),
+    ],
+)
+def test_what_cannot_be_converted_is_told(plugin, tmp_path, body, told):
+    source = tmp_path / "drawing.svg"
+    source.write_text(body)
+    done = plugin.script("strokes", source)
+    assert done.returncode == 1 and not done.stdout
+    assert told in done.stderr.decode() and "Traceback" not in done.stderr.decode()
+
+
+def test_copies_and_drawings_within_the_drawing(plugin, inkscape, tmp_path):
+    inner = f'<svg id="inner" x="70" y="2" width="60" height="60" viewBox="10 0 80 80">{letters("S")}</svg>'
+    copy = '<use id="copy" xlink:href="#glyph-1-S" transform="translate(-10,5) scale(0.7)"/>'
+    source = tmp_path / "drawing.svg"
+    spaces = OPEN.replace("<svg", '<svg xmlns:xlink="http://www.w3.org/1999/xlink"')
+    source.write_text(f"{spaces}{inner}{copy}</svg>")
+    done = plugin.script("strokes", source)
+    assert done.returncode == 0, done.stderr
+    out = tmp_path / "strokes.svg"
+    out.write_bytes(done.stdout)
+    assert overlap(ink(inkscape, source), ink(inkscape, out)) > 0.9

@@ -1,0 +1,194 @@
+"""Painted calibration sheets from the slow stepping simulator: what a person would hold in hands, with its faults.
+
+Nothing of the library: the patch is pulled to within r of the TCP in small steps, its footprints are united by
+shapely, the edges get noise, the marks displacements, the sheet a place of its own and the paper a height.
+Lengths in mm.
+"""
+
+import itertools
+from dataclasses import dataclass, field
+
+import numpy as np
+import oracle
+import shapely
+
+POSES = 260  # per stroke once it is cut for the stepping: every 0.3 mm or so
+
+
+@dataclass
+class TrueBrush:
+    """A round brush: coefficients in ascending powers of depth, drop-shaped footprints."""
+
+    deepest: float
+    lag: np.ndarray
+    tip_gap: np.ndarray
+    half_width: np.ndarray
+    widest_per_half: float
+    front_per_half: float
+
+    def law(self, name):
+        return oracle.Law(getattr(self, name))
+
+
+@dataclass
+class Faults:
+    """How the sheet was painted and read: sigmas."""
+
+    noise: float = 0.1
+    noise_length: float = 1.0
+    displacement: float = 0.5
+    placement: float = 1.0
+    turn: float = 0.01
+    height: float = 0.2
+
+
+@dataclass
+class Sheet:
+    """Marks as read: (stroke id, plan poses (n, 3), outline rings), and what nobody knows."""
+
+    marks: list = field(default_factory=list)
+    height: float = 0.0
+    displacements: list = field(default_factory=list)
+
+
+def random_brush(rng):
+    """Lag of third degree that grows from 1 to 4 mm at touch to 6 to 14 at the deepest, a width that bends."""
+    deepest = rng.uniform(4, 10)
+    first, last = rng.uniform(1, 4), rng.uniform(6, 14)
+    between = np.sort(rng.uniform(0.15, 1.0, 2)) * (last - first) + first
+    controls = np.array([first, *between, last])
+    t = np.array([[1, 0, 0, 0], [-3, 3, 0, 0], [3, -6, 3, 0], [-1, 3, -3, 1]])
+    lag = t @ controls / deepest ** np.arange(4)
+    half, bend = (
+        rng.uniform(1.2, 4.0),
+        rng.uniform(0.4, 0.8),
+    )  # half of the way up at `bend` of the half width
+    half_width = np.array([0, 2 * bend * half / deepest, (1 - 2 * bend) * half / deepest**2])
+    return TrueBrush(
+        deepest,
+        lag,
+        np.array([0, rng.uniform(0.2, 0.6)]),
+        half_width,
+        rng.normal(1.8, 0.25),
+        rng.normal(1.0, 0.15),
+    )
+
+
+def chart_strokes(deepest, depths=5):
+    """[(id, poses (n, 3))]: at each depth a straight stroke, a right angle, an arc and a reversal; and two ramps."""
+    out, place = [], 0
+
+    def add(name, points, depth, landing=8.0):
+        nonlocal place
+        points = np.asarray(points, float)
+        at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        depth = np.minimum(depth, depth * at / landing) if landing else np.full(len(at), float(depth))
+        middle = np.array([40.0 + 70 * (place % 4), 40.0 + 50 * (place // 4)])
+        out.append((name, np.column_stack([points + middle, -depth])))
+        place += 1
+
+    def line(*corners, step=1.0):
+        points = [np.asarray(corners[0], float)]
+        for a, b in itertools.pairwise(np.asarray(corners, float)):
+            n = max(1, int(np.hypot(*(b - a)) / step))
+            points += [a + (b - a) * k / n for k in range(1, n + 1)]
+        return points
+
+    for k in range(1, depths + 1):
+        d = deepest * k / depths
+        away = 1 if k % 2 else -1  # both ways, that displacement is not taken for lag
+        add(f"straight-{k}", line([0, 0], [35 * away, 0]), d)
+        add(f"angular-{k}", line([0, 0], [28 * away, 0], [28 * away, 25]), d)
+        t = np.linspace(0, 4.2, 60)
+        add(f"arc-{k}", np.column_stack([14 * np.sin(t), away * 14 * (1 - np.cos(t))]), d)
+        add(f"reversal-{k}", line([0, 0], [0, 28 * away], [1.0, 4 * away]), d, 0 if k % 2 else 8.0)
+    add("ramp-up", line([0, 0], [45, 0]), deepest, 45.0)
+    add("ramp-back", line([45, 0], [0, 0]), deepest, 45.0)
+    return out
+
+
+def paint(rng, brush, strokes, faults, vertices=33):
+    """A Sheet: what this brush paints along the strokes, with faults drawn at random."""
+    height = rng.normal(0, faults.height)
+    plans = np.array([_stepped(poses, height) for _, poses in strokes])
+    laws = [brush.law("lag")] * len(strokes)
+    contacts = oracle.step_all(plans, laws, 12, "rope")
+    shift, turn = rng.normal(0, faults.placement, 2), rng.normal(0, faults.turn)
+    centre = np.mean(np.concatenate([poses[:, :2] for _, poses in strokes]), axis=0)
+    sheet = Sheet(height=height)
+    for (name, poses), plan, contact in zip(strokes, plans, contacts, strict=True):
+        region = _painted(brush, plan, contact, vertices)
+        moved = rng.normal(0, faults.displacement, 2)
+        rings = [_noisy(rng, np.array(ring.coords)[:-1], faults) for ring in _rings(region)]
+        c, s = np.cos(turn), np.sin(turn)
+        rings = [
+            (ring + moved - centre) @ np.array([[c, s], [-s, c]]) + centre + shift
+            for ring in rings
+            if len(ring) >= 8
+        ]
+        sheet.marks.append((name, poses, rings))
+        sheet.displacements.append(moved)
+    return sheet
+
+
+def _stepped(poses, height):
+    """POSES poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
+    poses = np.vstack([[*poses[:1], 0, 0, 0], poses, poses[-1:]])
+    poses[0, 2] = poses[-1, 2] = 1.0
+    poses[:, 2] -= height
+    size = np.hypot(*np.diff(poses[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(poses[:, 2]))
+    at = np.concatenate([[0.0], np.cumsum(size)])
+    places = np.union1d(np.linspace(0, at[-1], POSES - len(at) + 2), at)
+    while len(places) < POSES:  # where places fell together: halve the widest gap
+        k = int(np.argmax(np.diff(places)))
+        places = np.insert(places, k + 1, 0.5 * (places[k] + places[k + 1]))
+    return np.column_stack([np.interp(places[:POSES], at, poses[:, i]) for i in range(3)])
+
+
+def _painted(brush, plan, contact, vertices):
+    down = ~np.isnan(contact[:, 0]) & (plan[:, 2] <= 0)
+    tcp, contact, depth = plan[down, :2], contact[down], -plan[down, 2]
+    lever = tcp - contact
+    reach = np.hypot(*lever.T)
+    known = reach > 1e-9
+    u = np.where(known[:, None], lever / np.maximum(reach, 1e-12)[:, None], np.nan)
+    first = int(np.argmax(known))
+    u[:first] = u[first]
+    for k in range(first + 1, len(u)):
+        if np.isnan(u[k, 0]):
+            u[k] = u[k - 1]
+    half, gap = brush.law("half_width")(depth), brush.law("tip_gap")(depth)
+    angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
+    unit = np.column_stack(
+        [
+            [0.0, *(brush.widest_per_half + brush.front_per_half * np.cos(angle))],
+            [0.0, *np.sin(angle)],
+        ]
+    )
+    outlines = []
+    for p, axis, b, h in zip(contact, u, gap, half, strict=True):
+        outlines.append(p - b * axis + max(h, 1e-6) * unit @ np.array([axis, [-axis[1], axis[0]]]))
+    return oracle.swept(outlines, True)
+
+
+def _rings(region):
+    parts = getattr(region, "geoms", [region])
+    for part in parts:
+        if isinstance(part, shapely.Polygon) and part.area > 0.2:
+            yield shapely.geometry.polygon.orient(part).exterior
+            yield from (hole for hole in shapely.geometry.polygon.orient(part).interiors if hole.length > 3)
+
+
+def _noisy(rng, ring, faults, step=0.25):
+    """The ring every `step`, moved along its normals by noise that forgets itself within noise_length."""
+    closed = np.vstack([ring, ring[:1]])
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+    n = max(8, round(at[-1] / step))
+    places = np.linspace(0, at[-1], n, endpoint=False)
+    points = np.column_stack([np.interp(places, at, closed[:, i]) for i in range(2)])
+    along = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
+    along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
+    distance = np.minimum(np.arange(n), n - np.arange(n)) * at[-1] / n
+    spectrum = np.maximum(np.fft.rfft(np.exp(-distance / faults.noise_length)).real, 0.0)
+    noise = np.fft.irfft(np.fft.rfft(rng.normal(size=n)) * np.sqrt(spectrum), n) * faults.noise
+    return points + noise[:, None] * np.column_stack([along[:, 1], -along[:, 0]])

@@ -1,0 +1,48 @@
+"""The article's calibrations on data with the article's noise; benchmarks/article_tables.py prints the whole tables."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from brushsvg import find_brush
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+import article_tables as tables
+
+REPEATS = 300
+
+
+@pytest.mark.parametrize("law", [tables.LAG, tables.TIP_GAP, tables.WIDEST], ids=lambda law: law.name)
+def test_its_laws_come_back_within_its_intervals(law):
+    back = tables.come_back(law, REPEATS, np.random.default_rng(3))
+    first = int(law.through_zero)  # no interval where there is no constant term
+    assert 0.92 <= back.in_own[first:].mean() <= 0.985
+    assert back.rmse_mm == pytest.approx(law.rmse_mm, rel=0.06)
+    if law.half_interval_95:
+        assert back.in_article[first:].min() > 0.93
+        # so many values at such depths are what its intervals answer to
+        assert back.half_interval_95[first:] == pytest.approx(law.half_interval_95[first:], rel=0.15)
+
+
+def test_angles_are_about_three_times_worse():
+    rng = np.random.default_rng(4)
+    strokes = tables.by_strokes(100, rng)
+    angles = tables.by_angles(tables.ANGLE_NOISE_RAD, 100, rng)
+    assert strokes.lag_rmse_mm == pytest.approx(0.58, rel=0.1)
+    assert angles.lag_rmse_mm == pytest.approx(1.98, rel=0.15)
+    assert angles.gap_rmse_mm == pytest.approx(1.21, rel=0.15)
+    assert 2.5 < angles.lag_rmse_mm / strokes.lag_rmse_mm < 4
+    assert angles.lag_off_mm > 2.5 * strokes.lag_off_mm  # of the truth, not only of their data
+
+
+def test_what_the_printed_readings_would_give():
+    """(17) lacks the lag: its b is r + b. The outline of an angular stroke shows r - e, the article reads it as r."""
+    brush = find_brush("round-6")
+    for row in tables.readings(brush, np.array([2.0, 6.0, 10.0])):
+        e = brush.tip_to_widest(row.depth_mm) - brush.tip_gap(row.depth_mm)
+        assert row.angular_with_e == pytest.approx(row.lag, abs=0.01)
+        assert row.angular_as_printed - row.lag == pytest.approx(-e, abs=0.01)
+        assert row.straight_with_lag == pytest.approx(row.tip_gap, abs=0.1)  # the tip's recession on the ramp
+        assert row.straight_as_printed - row.tip_gap > 0.9 * row.lag

@@ -1,0 +1,101 @@
+"""Whole painted marks give back the brush that painted them; the slow stepping simulator paints."""
+
+from functools import cache
+
+import numpy as np
+import painter
+import pytest
+
+core = pytest.importorskip("brushsvg._core")
+if not hasattr(core, "fit_marks"):
+    pytest.skip("built without Ceres", allow_module_level=True)
+
+from brushsvg.mark_calibrate import calibrate_marks, expected_brush  # noqa: E402
+from brushsvg.painted import read_painted  # noqa: E402
+
+DEPTHS = np.linspace(0.2, 1.0, 5)
+
+
+@cache
+def sheet(seed, depths=3, **faults):
+    rng = np.random.default_rng(seed)
+    brush = painter.random_brush(rng)
+    strokes = painter.chart_strokes(brush.deepest, depths)
+    return brush, strokes, painter.paint(rng, brush, strokes, painter.Faults(**faults))
+
+
+def as_file(strokes, painted):
+    plan = {
+        "passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
+    }
+    marks = [
+        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks
+    ]
+    return plan, marks
+
+
+def calibrated(seed, **faults):
+    brush, strokes, painted = sheet(seed, **faults)
+    plan, marks = as_file(strokes, painted)
+    return brush, painted, calibrate_marks(read_painted(plan, marks, None), "b")
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_the_brush_comes_back_with_honest_intervals(seed):
+    brush, painted, made = calibrated(seed)
+    found, first, z = made.brush, 0, []
+    covariance = np.array(found.covariance)
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        count = len(getattr(found, law).coefficients)
+        block = covariance[first : first + count, first : first + count]
+        first += count
+        if law == "tip_to_widest":
+            continue
+        for depth in DEPTHS[1:] * brush.deepest:
+            powers = depth ** np.arange(count)
+            z.append((getattr(found, law)(depth) - brush.law(law)(depth)) / np.sqrt(powers @ block @ powers))
+        if law == "lag":
+            for depth in DEPTHS * brush.deepest:
+                assert found.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
+    assert np.sqrt(np.mean(np.square(z))) < 2.2 and np.abs(z).max() < 4
+    sure = np.sqrt(np.array(made.fit.covariance)[-4, -4])
+    assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.2
+    assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
+    assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
+
+
+def test_displacements_come_back():
+    _, painted, made = calibrated(3)
+    found = np.array([miss.displacement_mm for miss in made.fit.marks])
+    off = found - np.array(painted.displacements)
+    off -= off.mean(axis=0)  # which the sheet's own shift may take
+    assert np.sqrt(np.mean(off**2)) < 0.15 < np.sqrt(np.mean(np.square(painted.displacements)))
+
+
+def test_blots_and_gaps_have_no_say():
+    brush, strokes, painted = sheet(3)
+    plan, marks = as_file(strokes, painted)
+    for k in (0, 5, 9):  # a blot on the flank of three marks, half a mark cut off another
+        ring = np.array(marks[k]["outline_mm"][0])
+        blot = np.arange(20, 34)
+        normal = ring[blot] - ring.mean(axis=0)
+        ring[blot] += 4 * normal / np.hypot(*normal.T)[:, None]
+        marks[k]["outline_mm"][0] = ring.tolist()
+    made = calibrate_marks(read_painted(plan, marks, None), "b")
+    for depth in DEPTHS * brush.deepest:
+        assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.05)
+    assert made.fit.left_aside > 0.003
+
+
+def test_what_to_expect_is_what_comes():
+    """The intervals promised before painting are those of the fit afterwards."""
+    _brush, strokes, _ = sheet(3)
+    _, _, made = calibrated(3)
+    plan = core.Plan("b", "", (300.0, 300.0), [core.Pass(name, poses) for name, poses in strokes])
+    promised, remarks = expected_brush(plan, made.brush, noise_mm=0.1, noise_length_mm=1.0)
+    assert not remarks
+    for law, count in (("lag", 4), ("half_width", 3)):
+        told = np.array(getattr(promised, law).half_interval_95)
+        came = np.array(getattr(made.brush, law).half_interval_95)
+        at = slice(0 if law == "lag" else 1, count)
+        assert np.all(np.abs(np.log(told[at] / came[at])) < np.log(1.7))

@@ -1,0 +1,217 @@
+"""The calibration chart: marks that keep apart, markers that are found, a file that is read back."""
+
+import itertools
+import json
+import re
+
+import cv2
+import numpy as np
+import pytest
+import shapely
+
+from brushsvg import _core, find_brush
+from brushsvg.cell_file import cell_names, find_cell
+from brushsvg.chart import chart
+from brushsvg.chart_json import DICTIONARY, read_chart, write_chart
+from brushsvg.chart_page import TEXT_MM, chart_page
+from brushsvg.cli import main
+from brushsvg.errors import Error
+from brushsvg.new_brush import new_brush
+from brushsvg.posts import POSTS
+from brushsvg.uncertainty import with_lag
+
+A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)
+PX_PER_MM = 8
+
+
+def marks_of(made, brush):
+    marks = _core.simulate(made.plan, brush)
+    _core.trace_outlines(marks, brush)
+    return [
+        shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in each.outline_mm])
+        for each in marks.passes
+    ]
+
+
+@pytest.mark.parametrize(
+    ("sheet", "brush"),
+    [
+        (A4, find_brush("round-6")),
+        (A5, find_brush("round-6")),
+        (A5, new_brush("liner", 6.0, [(2, 1.0), (5, 2.0)])),
+    ],
+    ids=["a4", "a5", "liner"],
+)
+@pytest.mark.parametrize("share", [0.75, 1.0, 1.25])
+def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
+    """Also those of a brush that trails by a quarter more or less than was thought."""
+    made = chart(brush, sheet)
+    marks = marks_of(made, with_lag(brush, (share - 1) * np.array(brush.lag.coefficients)))
+    paper = shapely.box(0, 0, *sheet).buffer(-4)
+    markers = [shapely.Polygon(marker.corners_mm) for marker in made.markers]
+    for stroke, mark in zip(made.strokes, marks, strict=True):
+        assert paper.contains(mark) and shapely.box(*stroke.box_mm).contains(mark), stroke.id
+        assert min(mark.distance(marker) for marker in markers) > markers[0].length / 24 - 1e-6, stroke.id
+    tree = shapely.STRtree(marks)
+    pairs = tree.query(marks, "dwithin", 1.0).T
+    assert all(a == b for a, b in pairs), [
+        (made.strokes[a].id, made.strokes[b].id) for a, b in pairs if a < b
+    ]
+    for label in made.labels:
+        x, y = label.at_mm
+        size = min(TEXT_MM, label.width_mm / (0.6 * len(label.text)))
+        text = shapely.box(x, y - 0.25 * size, x + 0.6 * size * len(label.text), y + size)
+        assert size > 1.2 and paper.contains(text)
+        assert min(text.distance(mark) for mark in (*marks, *markers)) > 0, label.text
+
+
+def test_what_is_on_it():
+    brush = find_brush("round-6")
+    made = chart(brush, A4, "normal")
+    kinds = [stroke.kind for stroke in made.strokes]
+    each = ("straight", "angular", "auxiliary", "arc", "reversal")
+    assert [kinds.count(kind) for kind in each] == [6] * 5 and kinds.count("reference") == 4
+    depths = sorted({stroke.depth_mm for stroke in made.strokes if stroke.kind == "arc"})
+    assert depths[0] == 1 and depths[-1] == 10 and len(depths) == 6
+    by_id = {a_pass.stroke: a_pass for a_pass in made.plan.passes}
+    for stroke in made.strokes:
+        poses = by_id[stroke.id].poses_mm
+        assert poses[0, 2] == poses[-1, 2] == 0 and -poses[:, 2].min() == pytest.approx(stroke.depth_mm)
+    for there, back in (("reference-1", "reference-2"), ("reference-3", "reference-4")):
+        ways = [by_id[name].poses_mm[-1, :2] - by_id[name].poses_mm[0, :2] for name in (there, back)]
+        np.testing.assert_allclose(ways[0], -ways[1], atol=1e-9)
+    straight = by_id["straight-6"].poses_mm
+    assert straight[1, 2] / np.hypot(*(straight[1] - straight[0])[:2]) == pytest.approx(-0.25)
+    # the auxiliary stroke of an angular one runs as its second line does
+    second = np.diff(by_id["angular-3"].poses_mm[2:4, :2], axis=0)[0]
+    beside = np.diff(by_id["auxiliary-3"].poses_mm[1:3, :2], axis=0)[0]
+    assert second @ beside == pytest.approx(np.hypot(*second) * np.hypot(*beside))
+    # arcs leave the brush taut
+    marks = _core.simulate(made.plan, brush)
+    for trace in marks.passes:
+        if trace.stroke.startswith("arc"):
+            first = int(np.flatnonzero(trace.taut)[0])
+            assert all(
+                taut for taut, depth in zip(trace.taut[first:], trace.depth_mm[first:], strict=True) if depth
+            )
+
+
+def test_a_larger_sheet_has_more_strokes():
+    brush = find_brush("round-6")
+    counts = [len(chart(brush, sheet).strokes) for sheet in (A5, A4, (297.0, 420.0), (594.0, 841.0))]
+    assert counts == sorted(set(counts))
+
+
+@pytest.mark.parametrize("strokes", [None, "few", "normal", "many"])
+def test_a_sheet_that_is_too_small_is_told_what_would_do(strokes):
+    brush = find_brush("round-6")
+    with pytest.raises(Error, match="too small") as refusal:
+        chart(brush, (60.0, 90.0), strokes)
+    assert refusal.value.where == "sheet"
+    needed = re.search(r"needs (\d+) x (\d+) mm", str(refusal.value)).groups()
+    made = chart(brush, tuple(map(float, needed)), strokes)
+    assert len(made.strokes) >= 24
+    with pytest.raises(Error, match="is a pen"):
+        chart(find_brush("rigid"), A4)
+
+
+@pytest.mark.parametrize("name", [name for name in cell_names() if find_cell(name).language in POSTS])
+def test_a_program_for_every_cell(name, tmp_path, capsys):
+    suffix = POSTS[find_cell(name).language].extensions[0]
+    out = tmp_path / f"chart{suffix}"
+    assert main(["chart", str(out), "--cell", name]) == 0
+    assert "strokes on 210 x 297 mm, depths" in capsys.readouterr().out
+    assert out.stat().st_size > 10_000
+    assert main(["check", str(out), "--cell", name]) == 0
+    assert "nothing forbids to run it" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("sheet", ["a5", "letter", "300x200"])
+def test_the_markers_are_found_on_the_page(sheet, tmp_path):
+    page, file = tmp_path / "page.svg", tmp_path / "chart.json"
+    out = tmp_path / "plan.json"
+    assert main(["chart", str(out), "--sheet", sheet, "--page", str(page), "--chart", str(file)]) == 0
+    made = read_chart(file.read_bytes())
+    found = detected(page.read_text(), made.plan.sheet_mm)
+    assert sorted(found) == [marker.id for marker in made.markers] == [0, 1, 2, 3]
+    height = made.plan.sheet_mm[1]
+    for marker in made.markers:
+        corners = np.array(marker.corners_mm)
+        on_page = np.column_stack([corners[:, 0], height - corners[:, 1]])
+        np.testing.assert_allclose(found[marker.id], on_page, atol=0.15)
+    assert _core.write_plan(made.plan) == out.read_text()
+
+
+def detected(svg, sheet_mm):
+    """Corners in mm of the page, by id, of what OpenCV sees when the page's shapes are drawn."""
+    size = [round(side * PX_PER_MM) for side in sheet_mm]
+    image = np.full((size[1], size[0]), 255, np.uint8)
+    for data in re.findall(r'<path data-marker[^>]* d="([^"]*)"', svg):
+        rings = [
+            np.array([point.split(",") for point in re.findall(r"[-\d.]+,[-\d.]+", ring)], float)
+            for ring in data.split("Z")[:-1]
+        ]
+        shift = 4
+        fixed = [np.round((ring * PX_PER_MM - 0.5) * 2**shift).astype(np.int32) for ring in rings]
+        cv2.fillPoly(image, fixed, 0, cv2.LINE_AA, shift)
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, DICTIONARY))
+    corners, ids, _ = cv2.aruco.ArucoDetector(dictionary).detectMarkers(image)
+    return {int(i): (c[0] + 0.5) / PX_PER_MM for i, c in zip(ids.ravel(), corners, strict=True)}
+
+
+def test_the_file_is_read_back():
+    made = chart(find_brush("round-6"), LETTER)
+    text = write_chart(made)
+    again = read_chart(text.encode())
+    assert write_chart(again) == text
+    assert [stroke.id for stroke in again.strokes] == [each.stroke for each in again.plan.passes]
+    assert chart_page(made).count("<text") == len(made.labels)
+
+
+@pytest.mark.parametrize(
+    ("change", "where", "said"),
+    [
+        ({"format": "x"}, "format", "does not say"),
+        ({"version": 2}, "version", "version 2 of brushsvg/chart is not known; known is 1"),
+        ({"dictionary": "DICT_6X6"}, "dictionary", "must be of DICT_4X4_50"),
+        ({"plan": None}, "plan", "has no plan"),
+        ({"markers": [{"id": 0}]}, "markers[0]", "four corners_mm"),
+        (
+            {"markers": [{"id": 0, "corners_mm": [[0, 0]] * 3 + [[0, None]]}]},
+            "markers[0].corners_mm",
+            "2 finite",
+        ),
+        ({"strokes": []}, "strokes", "are not those of the plan"),
+        (
+            {"strokes": [{"id": "a", "kind": "arc", "depth_mm": "x"}]},
+            "strokes[0].depth_mm",
+            "1 finite number",
+        ),
+    ],
+)
+def test_a_damaged_file_names_the_key(change, where, said):
+    content = json.loads(write_chart(chart(find_brush("round-6"), A5)))
+    with pytest.raises(Error, match=re.escape(said)) as refusal:
+        read_chart(json.dumps(content | change).encode())
+    assert refusal.value.where == where
+    with pytest.raises(Error):
+        read_chart(b"{")
+
+
+def test_wrong_usage(tmp_path, capsys):
+    out = str(tmp_path / "plan.json")
+    for flags, said in (
+        (["--sheet", "a9"], "a9"),
+        (["--page", str(tmp_path / "p.png")], "does not end in .svg"),
+        (["--chart", out], "two of the files are the same"),
+        (["--strokes", "lots"], "invalid choice"),
+    ):
+        assert main(["chart", out, *flags]) == 2
+        assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_same_chart_each_time():
+    texts = [write_chart(chart(find_brush("round-6"), A5)) for _ in range(2)]
+    assert len(set(texts)) == 1
+    assert all(a != b for a, b in itertools.pairwise(read_chart(texts[0].encode()).strokes))

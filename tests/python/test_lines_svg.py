@@ -1,0 +1,84 @@
+"""Strokes written as lines with a width are read again as the same strokes."""
+
+import json
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from svg_text import HEAD, read
+
+from brushsvg import strokes
+from brushsvg.cli import main
+from brushsvg.importers.svg import read_svg
+from brushsvg.lines_svg import EVEN, lines_svg
+
+SVG = "{http://www.w3.org/2000/svg}"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+# a wedge that bends, a bar of one width, a ring that swells, a dot
+WEDGE = (
+    '<path id="wedge" d="M10 10C30 10 40 20 60 40L56 43C40 26 30 12 10 12Z" fill="#203060" stroke="none"/>'
+)
+BAR = '<path id="bar" d="M10 40H50V44H10Z" fill="#203060" stroke="none"/>'
+RING = (
+    '<path id="ring" d="M70 20A15 15 0 1 0 100 20A15 15 0 1 0 70 20ZM73 20A10 12 0 1 1 93 20A10 12 0 1 1 73 20Z" '
+    'fill="red" stroke="none" fill-rule="evenodd" transform="translate(-4 4)"/>'
+)
+DOT = '<circle id="dot" cx="50" cy="10" r="2" fill="red" stroke="none"/>'
+LINE = '<path id="line" d="M60 45H80" stroke-width="2.5"/>'
+
+
+def again(body):
+    before, _ = strokes(read(body))
+    text = lines_svg(before, (100.0, 50.0), "a & b")
+    design = read_svg(text.encode())
+    assert not design.notices
+    return before, strokes(design)[0], ET.fromstring(text)
+
+
+def width_mm(stroke, at):
+    return 2 * np.interp(at, *np.array(stroke.half_width).T)
+
+
+@pytest.mark.parametrize("body", [WEDGE, BAR, RING, DOT, LINE, WEDGE + BAR + RING + DOT + LINE])
+def test_read_again_they_are_the_same_strokes(body):
+    before, after, _ = again(body)
+    assert len(before) == len(after) > 0
+    at = np.linspace(0, 1, 201)
+    for a, b in zip(before, after, strict=True):
+        assert np.abs(a.middle_mm - b.middle_mm).max() < 1e-3
+        assert (a.closed, a.colour, a.layer) == (b.closed, b.colour, b.layer)
+        assert np.abs(width_mm(a, at) - width_mm(b, at)).max() < EVEN * width_mm(a, at).max()
+
+
+def test_one_width_is_a_stroke_width_and_a_varying_one_a_power_stroke():
+    _, _, root = again(WEDGE + LINE)
+    wedge, line = root.iter(f"{SVG}path")
+    assert "stroke-width:2.5;" in line.get("style") and line.get(f"{INKSCAPE}original-d") is None
+    assert wedge.get(f"{INKSCAPE}path-effect") == "#width-wedge" and wedge.get("data-outline") == "yes"
+    points = root.find(f".//{INKSCAPE}path-effect").get("offset_points").split(" | ")
+    assert 2 <= len(points) < 15
+    assert line.get("data-outline") is None
+
+
+def test_layers_settings_and_odd_ids_are_kept():
+    body = (
+        '<g inkscape:groupmode="layer" inkscape:label="A &lt; B"><path id="a/b" d="M10 10H30" data-brushsvg-passes="2" '
+        'data-brushsvg-speed="7" data-brushsvg-reload="yes"/><path id="a#b" d="M10 20H30"/></g>' + LINE
+    )
+    before, after, root = again(body)
+    assert [stroke.layer for stroke in after] == [stroke.layer for stroke in before] == ["A < B"] * 3 + [""]
+    assert [json.loads(stroke.settings) for stroke in after] == [json.loads(s.settings) for s in before]
+    assert [path.get("id") for path in root.iter(f"{SVG}path")] == ["a-b", "a-b-2", "line"]
+    assert [path.get("data-stroke") for path in root.iter(f"{SVG}path")] == ["a/b", "a#b", "line"]
+
+
+def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.svg").write_text(f"{HEAD}{WEDGE}</svg>")
+    (tmp_path / "empty.svg").write_text(f"{HEAD}</svg>")
+    assert main(["import", "in.svg", "out.svg", "--editable"]) == 0
+    assert "powerstroke" in (tmp_path / "out.svg").read_text()
+    assert main(["import", "empty.svg", "none.svg", "--editable"]) == 1
+    assert main(["import", "in.svg", "out.png", "--editable"]) == 2
+    assert not (tmp_path / "none.svg").exists() and not (tmp_path / "out.png").exists()
+    assert "--editable writes an SVG" in capsys.readouterr().err

@@ -1,0 +1,173 @@
+"""Measurement files with painted marks: what is read, and what is refused in which words."""
+
+import json
+
+import numpy as np
+import pytest
+
+from brushsvg import _core
+from brushsvg.errors import Error
+from brushsvg.measurements import read_measurements
+from brushsvg.painted import depths_painted, read_painted
+
+
+def strokes():
+    """Two depths, each with a corner, and a straight one."""
+    out = []
+    for k, depth in enumerate((2.0, 4.0)):
+        y = 40.0 * k
+        out.append(
+            (
+                f"corner-{k}",
+                [[20, 20 + y, 0], [30, 20 + y, -depth], [50, 20 + y, -depth], [50, 40 + y, -depth]],
+            )
+        )
+        out.append((f"straight-{k}", [[90, 20 + y, 0], [100, 20 + y, -depth], [130, 20 + y, -depth]]))
+    return out
+
+
+def around(poses, grow=2.0):
+    """Something like a mark: a box round the way."""
+    xy = np.array(poses)[:, :2]
+    (x0, y0), (x1, y1) = xy.min(axis=0) - grow, xy.max(axis=0) + grow
+    return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+
+
+def plan():
+    return {"passes": [{"stroke": name, "poses_mm": poses, "speed_mm_s": 20} for name, poses in strokes()]}
+
+
+def marks():
+    return [{"stroke": name, "outline_mm": [around(poses)]} for name, poses in strokes()]
+
+
+def scaled(by):
+    by = np.array(by, float)
+    return [
+        {"stroke": m["stroke"], "outline_mm": [(np.array(m["outline_mm"][0]) * by).tolist()]} for m in marks()
+    ]
+
+
+def test_marks_and_plan_inline():
+    painted = read_painted(plan(), marks(), None)
+    assert [mark.stroke for mark in painted.marks] == ["corner-0", "straight-0", "corner-1", "straight-1"]
+    assert painted.deepest_mm == 4 and painted.depths >= 2
+    np.testing.assert_allclose(_core.area(painted.marks[0].outline_mm), 34 * 24, rtol=1e-6)
+
+
+def test_marks_and_plan_from_our_own_files():
+    brush_less = _core.Plan("", "", (200.0, 200.0), [_core.Pass(n, np.array(p, float)) for n, p in strokes()])
+    brush = _core.Brush()
+    brush.depth_range_mm = (0.0, 10.0)
+    brush.lag = _core.Profile([3.0])
+    brush.tip_gap = brush.tip_to_widest = brush.half_width = _core.Profile([0.0, 0.5])
+    square = [[0, 0], [4, -2], [4, 2]]
+    brush.footprints = _core.FootprintTable([_core.Footprint(4.0, square)])
+    done = _core.simulate(brush_less, brush)
+    _core.trace_outlines(done, brush)
+    files = {
+        "plan.json": _core.write_plan(brush_less).encode(),
+        "marks.json": _core.write_marks(done).encode(),
+    }
+    painted = read_painted("plan.json", "marks.json", files.__getitem__)
+    assert len(painted.marks) == 4
+    assert _core.overlap(painted.marks[2].outline_mm, done.passes[2].outline_mm) > 0.999
+
+
+def test_depths_are_counted_where_something_is_painted():
+    def at(*depths):
+        return np.array([[30.0 * k, 0, -d] for k, d in enumerate(depths)])
+
+    assert depths_painted([at(3, 3)]) == 1
+    assert depths_painted([at(3, 3), at(5, 5)]) == 2
+    assert depths_painted([at(0, 0)]) == 0
+    assert depths_painted([np.array([[0, 0, 0], [200, 0, -5.0]])]) > 4
+
+
+def bent(mark, **changes):
+    rows = marks()
+    rows[mark] |= changes
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("plan_", "marks_", "where", "said"),
+    [
+        (plan(), scaled([1e-3, 1e-3]), "marks", "are the outlines in metres? They count in mm"),
+        (plan(), scaled([1 / 25.4, 1 / 25.4]), "marks", "are the outlines in inches? They count in mm"),
+        (
+            plan(),
+            [
+                m | {"outline_mm": [(np.array(m["outline_mm"][0]) * [1, -1] + [0, 120]).tolist()]}
+                for m in marks()
+            ],
+            "marks",
+            "stands upside down: y must go up",
+        ),
+        (
+            plan(),
+            [m | {"outline_mm": marks()[(k + 1) % 4]["outline_mm"]} for k, m in enumerate(marks())],
+            "marks[0]",
+            "do the marks have the ids of their strokes?",
+        ),
+        (
+            plan(),
+            [*scaled([1, 1])[:1], {"stroke": "x", "outline_mm": []}],
+            "marks[1]",
+            "no stroke 'x' in the plan",
+        ),
+        (plan(), marks() + marks()[:1], "marks[4]", "has two marks"),
+        (plan(), bent(1, outline_mm=[]), "marks[1]", "the mark has no outline: leave out"),
+        (plan(), bent(1, outline_mm=[[[0, 0], [1, 1]]]), "marks[1].outline_mm[0]", "three or more points"),
+        (
+            plan(),
+            bent(1, outline_mm=[[[90, 20], [float("nan"), 20], [90, 25]]]),
+            "marks[1].outline_mm[0]",
+            "is not a finite number",
+        ),
+        (plan(), bent(1, colour="red"), "marks[1].colour", "this is not known here"),
+        (plan(), [], "marks", "there is no mark in it"),
+        (None, marks(), "plan", 'marks need "plan"'),
+        ({"passes": [{"stroke": "a"}]}, marks(), None, ""),
+        ({"passes": plan()["passes"] * 2}, marks(), "plan", "two passes paint stroke"),
+        (
+            {"passes": [p for p in plan()["passes"] if "straight" in p["stroke"]]},
+            [m for m in marks() if "straight" in m["stroke"]],
+            "plan",
+            "all strokes are straight: lag and displacement of the marks cannot be told apart; add corners",
+        ),
+        (
+            {
+                "passes": [
+                    {"stroke": n, "poses_mm": [[x, y, -3] for x, y, _ in p], "speed_mm_s": 20}
+                    for n, p in strokes()
+                ]
+            },
+            marks(),
+            "plan",
+            "all was painted at one depth",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused(plan_, marks_, where, said):
+    with pytest.raises(Error) as refusal:
+        read_painted(plan_, marks_, None)
+    assert said in str(refusal.value)
+    if where is not None:
+        assert refusal.value.where == where
+
+
+@pytest.mark.parametrize(
+    ("keys", "where", "said"),
+    [
+        ({"plan": "p.json"}, "plan", "there are none"),
+        ({"marks": [], "lag": [{"depth_mm": 3, "value_mm": 7}]}, "lag", "fitted alone"),
+        ({"marks": [], "expected": {"weather": 1}}, "expected.weather", "known are placement_mm"),
+        ({"marks": [], "expected": {"height_mm": -1}}, "expected.height_mm", "outside the range [0, 30]"),
+    ],
+)
+def test_the_file_itself(keys, where, said):
+    head = {"format": "brushsvg/measurements", "version": 1}
+    with pytest.raises(Error) as refusal:
+        read_measurements(json.dumps(head | keys).encode(), ".json")
+    assert said in str(refusal.value) and refusal.value.where == where

@@ -1,0 +1,63 @@
+"""Each reason from a stroke that asks for it."""
+
+import numpy as np
+import pytest
+
+from brushsvg import _core, compensate, find_brush, flatten, report, simulate
+from brushsvg.reach import within_reach
+
+
+def stroke(points, half, closed=False, wanted=None):
+    p = np.asarray(points, float)
+    a, b = p[:-1], p[1:]
+    cubics = np.hstack([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b])
+    halves = np.broadcast_to(half, 2)
+    made = _core.Stroke("s", cubics, closed, [(0.0, float(halves[0])), (1.0, float(halves[1]))])
+    made.wanted_mm = wanted or []
+    return made
+
+
+def arc(radius, turns, count=40):
+    angle = np.linspace(0, 2 * np.pi * turns, count)
+    return 60 + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def box(x0, y0, x1, y1):
+    return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)]
+
+
+def found(wanted, how="closed"):
+    brush = find_brush("round-6")
+    painted, wanted, _ = within_reach([wanted], brush)
+    plan = compensate(painted, brush, (120, 120), how).plan
+    rows, _ = report.measure(plan, simulate(plan, brush), brush, wanted, compensation=how)
+    return rows[0].worst
+
+
+@pytest.mark.parametrize(
+    ("wanted", "says", "near"),
+    [
+        (stroke([(30, 40), (30, 40)], 2.0), "too short for the brush: a dab", (30, 40)),
+        (stroke([(30, 40), (60, 40)], 6, wanted=box(15, 30, 75, 50)), "12 mm wide there, wider than", None),
+        (stroke([(20, 40), (70, 40)], 0.3), "thinner than the finest line that was measured", None),
+        (stroke([(20, 40), (60, 40), (25, 50)], 1.5), "a corner of 164 degrees", (60, 40)),
+        (stroke(arc(4.0, 1.0, 60), 3.9, True), "turns tighter than", None),
+        (stroke([(20, 40), (70, 40)], 2.0), "it begins there", (19, 40)),
+        (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "it ends there", None),
+    ],
+)
+def test_the_reason_is_told(wanted, says, near):
+    worst = found(wanted)
+    assert says in worst.reason
+    if near:
+        assert worst.place_mm == pytest.approx(near, abs=3.0)
+
+
+def test_without_compensation_the_lag_is_the_reason():
+    wanted = stroke([(20, 40), (60, 40), (60, 80)], 1.5)
+    assert "nothing makes up for the lag" in found(wanted, "none").reason
+
+
+def test_a_flattened_dab_has_no_corner():
+    line = flatten(stroke([(30, 40), (30, 40)], 2.0), 0.01)
+    assert len(line) == 1

@@ -1,0 +1,90 @@
+"""What is said of how sure a brush is: in the report, in the picture, once where nothing is known."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from brushsvg import _core, find_brush, uncertainty
+from brushsvg.cli import main
+
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+    '<path id="line" fill="none" stroke="#000000" stroke-width="3" d="M20 20 H95"/>'
+    '<path id="bow" fill="none" stroke="#000000" stroke-width="3" d="M20 40 C40 20 60 60 95 40"/></svg>'
+)
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    path = tmp_path / "two.svg"
+    path.write_text(DRAWING)
+    return str(path)
+
+
+def report(drawing, capsys, *flags):
+    assert main(["report", drawing, *flags]) == 0
+    return capsys.readouterr()
+
+
+def test_the_report_says_how_far_off_and_where_from(drawing, capsys):
+    told = report(drawing, capsys).out
+    assert "middle +-  ends +-  width +-" in told
+    assert "95 %, no covariance: from RMSE; half_width not counted, nobody measured it." in told
+    found = json.loads(report(drawing, capsys, "--json").out)
+    assert found["uncertainty_from"] == "RMSE"
+    line, bow = (row["uncertainty_95"] for row in found["strokes"])
+    # r and b as far off as single readings: the ends of any stroke follow from (16) alone
+    ends = 1.96 * np.hypot(0.58, 0.85)
+    assert line["ends_mm"] == pytest.approx(ends, rel=0.02) == bow["ends_mm"]
+    assert line["middle_mm"] < 0.1 < bow["middle_mm"]  # a lag that is wrong shows where the line bends
+    assert line["width_mm"] is None
+    assert found["total"]["uncertainty_95"]["middle_mm"] == bow["middle_mm"]
+
+
+def test_a_width_that_was_measured_counts(drawing, tmp_path, capsys):
+    brush = find_brush("round-6")
+    law = brush.half_width
+    brush.half_width = _core.Profile(law.coefficients, rmse_mm=0.2)
+    (tmp_path / "own.json").write_text(_core.write_brush(brush))
+    found = json.loads(report(drawing, capsys, "--json", "--brush", str(tmp_path / "own.json")).out)
+    assert found["strokes"][0]["uncertainty_95"]["width_mm"] == pytest.approx(2 * 1.96 * 0.2)
+
+
+def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):
+    told = report(drawing, capsys, "--brush", "rigid").out
+    assert "+-" not in told
+    assert told.count("neither covariance nor RMSE") == 1
+    assert json.loads(report(drawing, capsys, "--brush", "rigid", "--json").out)["uncertainty_from"] is None
+    out = tmp_path / "p.svg"
+    assert main(["predict", drawing, str(out), "--brush", "rigid", "--band"]) == 0
+    assert capsys.readouterr().err.count("neither covariance nor RMSE") == 1
+    assert 'class="band"' not in out.read_text()
+
+
+@pytest.mark.parametrize("suffix", [".svg", ".png"])
+def test_a_band_with_a_legend(drawing, tmp_path, suffix):
+    plain, banded = tmp_path / f"plain{suffix}", tmp_path / f"banded{suffix}"
+    assert main(["predict", drawing, str(plain)]) == 0
+    assert main(["predict", drawing, str(banded), "--band"]) == 0
+    if suffix == ".svg":
+        text = banded.read_text()
+        assert text.count('class="band"') == 2 and "no covariance: from RMSE" in text
+        assert "band" not in plain.read_text()
+        return
+    plain, banded = (cv2.imread(str(path)).astype(int) for path in (plain, banded))
+    changed = np.abs(plain - banded).max(axis=2) > 20
+    assert changed[: changed.shape[0] * 9 // 10].mean() > 0.01  # round the marks
+    assert changed[changed.shape[0] * 9 // 10 :].mean() > 0.001  # the legend
+
+
+def test_a_band_is_for_pictures(drawing, tmp_path, capsys):
+    assert main(["predict", drawing, str(tmp_path / "m.json"), "--band"]) == 2
+    assert "--band is for pictures" in capsys.readouterr().err
+
+
+def test_a_law_on_its_floor_does_not_move():
+    law = _core.Profile([-1.0, 1.0], floor=0.0)
+    moved = uncertainty._powers(law, np.array([0.5, 2.0]))
+    np.testing.assert_allclose(moved, [[0, 0], [1, 2]])
