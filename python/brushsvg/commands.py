@@ -325,14 +325,13 @@ def _prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work
 
 
 def _options(args, cell: Cell, brush=None) -> convert.Options:
-    is_plan = _suffix(args.input) == ".json"
     return convert.Options(
         brush=brush or _brush(args),
         reading=_reading(args),
         layout=_layout(args),
         compensation=args.compensation or convert.Options.compensation,
         lag_mm=args.lag,
-        tolerance_mm=(not is_plan and args.tolerance) or convert.Options.tolerance_mm,
+        tolerance_mm=(_suffix(args.input) != ".json" and args.tolerance) or convert.Options.tolerance_mm,
         paths_as=args.paths_as,
         wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
