@@ -573,7 +573,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         (
             "press_mm_s = 6.0",
             "press_mm_s = 0",
-            "speeds.press_mm_s: speeds.press_mm_s 0 is outside the range [0.01, 10000]",
+            "speeds.press_mm_s: speeds.press_mm_s 0 is outside the range [0.01, 5000]",
         ),
         ("name =", "nom =", "nom: a cell has no key nom; known here: name, description, language, decimals"),
     ):
