@@ -31,9 +31,10 @@ class Law : public ceres::EvaluationCallback {
             unknown.push_back(c * power);
             power *= options.range_mm[1];
         }
-        PrepareForEvaluation(true, true);
+        lay_down();
     }
-    void PrepareForEvaluation(bool, bool) override {
+    void PrepareForEvaluation(bool, bool) override { lay_down(); }
+    void lay_down() {
         std::vector<Jet> c;
         std::vector<double> values;
         for (std::size_t i = 0; i < unknown.size(); ++i) {

@@ -14,7 +14,8 @@ constexpr double kTurnStepRad = 0.2;
 /// A chord of a turn in place. The patch rests whatever it is; much more lets the bristles relax half way, by its
 /// cosine.
 constexpr double kTurnChordRad = 0.4;
-/// Where a line asks for more (a taper far too steep for the lever), finer steps no longer help: the miss is reported.
+/// Beyond those it begins with. Where a line asks for more (a taper far too steep for the lever), finer steps no longer
+/// help: the miss is reported.
 constexpr std::size_t kMostSamples = 20000;
 
 /// A place on the middle line and what the inverse finds there.
@@ -118,7 +119,8 @@ double off_chord(const Sample& a, const Sample& b, const Sample& between);
 template <class Solve>
 void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {
     const double least = std::min(1e-3, 0.1 * tolerance);
-    for (bool done = false; !done && samples.size() < kMostSamples;) {
+    const std::size_t most = samples.size() + kMostSamples;
+    for (bool done = false; !done && samples.size() < most;) {
         Samples finer;
         std::vector<bool> trial;
         done = true;

@@ -230,6 +230,18 @@ TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest 
     }
 }
 
+TEST_CASE("a line of very many short cubics is followed as one of few") {
+    const Brush brush = shipped("round-6");
+    const auto bow = [&](int n) {
+        std::vector<V> points;
+        for (int k = 0; k <= n; ++k)
+            points.emplace_back(60 - 40 * std::cos(2.0 * k / n), 40 + 40 * std::sin(2.0 * k / n));
+        return compensate(stroke_of(polyline(points), {{0.0, brush.half_width(4.0)}}), brush).miss;
+    };
+    CHECK(bow(200).largest_mm < 0.05);
+    CHECK(bow(15000).largest_mm < 0.05);
+}
+
 TEST_CASE("what the brush cannot paint is refused, what it was not measured for is warned of once") {
     const Brush brush = shipped("round-6");
     const Cubics line = polyline({V(20, 20), V(60, 20)});
