@@ -54,7 +54,10 @@ def best_size(strokes, brush, tolerance_mm: float = 0.05) -> Size:
 
 
 def advice(size: Size, scale: float | None = 1.0) -> str:
-    """A sentence for people. scale: what was asked of --scale; None where the size is given in another way."""
+    """A sentence for people, "" where no size can be painted. scale: what was asked of --scale; None where the size is
+    given in another way."""
+    if not any(size.overlaps.values()):
+        return ""
     sample = f"tried on {size.tried} of {size.strokes} strokes" if size.tried < size.strokes else "tried"
     if size.best == 1.0:
         return (

@@ -91,15 +91,18 @@ def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, ink
 
 
 def assert_painted_alike(letters: Path, strokes: Path) -> None:
-    plans = []
+    """The same strokes with the same marks; poses may differ within the tolerance of the mark."""
+    plans, marks = [], []
     for drawn in (letters, strokes):
-        out = drawn.with_suffix(".json")
-        brushsvg("convert", drawn, out, cwd=drawn.parent, status=0)
-        plans.append(json.loads(out.read_text())["passes"])
+        for command, found in (("convert", plans), ("predict", marks)):
+            out = drawn.with_suffix(f".{command}.json")
+            brushsvg(command, drawn, out, cwd=drawn.parent, status=0)
+            found.append(json.loads(out.read_text())["passes"])
     assert len(plans[0]) == len(plans[1])
     for letter, stroke in zip(*plans, strict=True):
         assert (letter["layer"], letter["colour"]) == (stroke["layer"], stroke["colour"])
-        a, b = (np.array(each["poses_mm"]) for each in (letter, stroke))
+    for letter, stroke in zip(*marks, strict=True):
+        a, b = (np.vstack(each["outline_mm"]) for each in (letter, stroke))
         assert np.abs(a.min(axis=0) - b.min(axis=0)).max() < 0.1
         assert np.abs(a.max(axis=0) - b.max(axis=0)).max() < 0.1
 

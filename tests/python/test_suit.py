@@ -35,6 +35,10 @@ def test_a_drawing_of_the_right_size_is_left_alone():
     assert "tried on 16 of 40 strokes" in suit.advice(found)
 
 
+def test_nothing_is_advised_where_no_size_can_be_painted():
+    assert suit.advice(suit.best_size([line(200, 40.0)], find_brush("round-6"))) == ""
+
+
 def test_scaling_a_stroke_scales_all_of_it():
     stroke = line(50, 2.0)
     stroke.wanted_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
