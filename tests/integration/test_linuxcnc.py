@@ -21,7 +21,7 @@ WAYS = {
     **{source: (source, ()) for source in SOURCES},
     "uncompensated": ("robot", ("--compensation", "none")),
     "constant lag": ("robot", ("--compensation", "constant", "--lag", "9")),
-    "fine": ("robot", ("--tolerance", "0.0005")),
+    "fine": ("robot", ("--tolerance", "0.01")),
     "rigid pen": ("vincent", ("--brush", "rigid")),
 }
 BRUSHES = {"rigid pen": "rigid"}
@@ -292,16 +292,22 @@ def test_linuxcnc_refuses_a_broken_program(fault, converted, tmp_path):
     assert done.returncode == 1
 
 
+def painting_line(lines):
+    """The number of a pose in the middle of the program."""
+    poses = [k for k, line in enumerate(lines) if re.search(r"X.* Z-\d", line)]
+    return poses[len(poses) // 2]
+
+
 def moved(text):
     lines = text.splitlines()
-    k = len(lines) // 2
+    k = painting_line(lines)
     lines[k] = re.sub(r"X(-?[\d.]+)", lambda found: f"X{float(found[1]) + 0.002:.4f}", lines[k])
     return "\n".join(lines)
 
 
 def without_a_line(text):
     lines = text.splitlines()
-    del lines[len(lines) // 2]
+    del lines[painting_line(lines)]
     return "\n".join(lines)
 
 

@@ -72,7 +72,7 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
     (desk / "link.ngc").symlink_to("old.ngc")
 
     def limit():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
     told = refused(desk, "convert", "sound.svg", out, preexec_fn=limit)
     assert re.match(rf"{out}: .*cannot be written: file too large", told)
