@@ -18,14 +18,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-Stroke stroke_of(const Cubics& middle, std::vector<WidthKnot> half_width) {
-    Stroke s;
-    s.id = "s";
-    s.middle_mm = middle;
-    s.half_width = std::move(half_width);
-    return s;
-}
-
 /// The contact at every pose, where first there.
 Ring at_poses(const PassMarks& marks) {
     Ring out = Ring::Zero(Eigen::Index(marks.pose.back()) + 1, 2);

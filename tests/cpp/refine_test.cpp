@@ -21,14 +21,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-Stroke stroke_of(const Cubics& middle, std::vector<WidthKnot> half_width) {
-    Stroke s;
-    s.id = "s";
-    s.middle_mm = middle;
-    s.half_width = std::move(half_width);
-    return s;
-}
-
 Stroke line() { return stroke_of(polyline({V(20, 20), V(50, 28)}), {{0.0, 1.7}}); }
 Stroke taper() { return stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 2.6}, {1.0, 0.6}}); }
 Stroke corner() { return stroke_of(polyline({V(20, 50), V(50, 50), V(44, 20)}), {{0.0, 1.7}}); }

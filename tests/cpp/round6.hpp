@@ -3,6 +3,8 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "brush_json.hpp"
 #include "brushsvg/brush.hpp"
@@ -24,4 +26,13 @@ inline brushsvg::Cubics polyline(const std::vector<Eigen::Vector2d>& points) {
         out.row(i) << a.transpose(), (a + third).transpose(), (b - third).transpose(), b.transpose();
     }
     return out;
+}
+
+/// The stroke "s" along cubics.
+inline brushsvg::Stroke stroke_of(const brushsvg::Cubics& middle, std::vector<brushsvg::WidthKnot> half_width) {
+    brushsvg::Stroke s;
+    s.id = "s";
+    s.middle_mm = middle;
+    s.half_width = std::move(half_width);
+    return s;
 }
