@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import _core
-from .blends import blend_radii, blended
+from .blends import blend_radii
 from .cell import Blending, Cell, robot_from_paper, value_mm
 from .errors import Error
 from .frame import moved
 from .limits import broken_limits, workspace_problems
-from .machine import off_sheet
+from .machine import as_run, off_sheet
 from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
@@ -64,9 +64,9 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
         for on in found if stroke else ():
             poses, radii, speed, arcs = _pass(section, track, on)
-            joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm))
+            joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
-            cut.append(_core.Pass(name, blended(poses, joint)[0], speed))
+            cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
             lines = np.array([section.steps[number].line for number in track.step[on]])
             begun.append(np.r_[lines[1:] == lines[:-1], False])
             numbers.append(int(stroke[1]))
