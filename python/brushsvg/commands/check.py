@@ -17,7 +17,7 @@ from .work import prepare
 
 
 def check_file(args) -> None:
-    from .. import checking, comparing
+    from .. import checking, comparing, rewriting
     from ..readback import read_program
     from ..readback.header import made as made_of
 
@@ -42,8 +42,8 @@ def check_file(args) -> None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
         problems = ran.problems
-        again = comparing.again(ran, brush, cell, z_offset_mm)
-        changed = again and comparing.differing_line(text, again, cell)
+        again = rewriting.again(ran, brush, cell, z_offset_mm)
+        changed = again and rewriting.differing_line(text, again, cell)
         problems = problems + ([("", changed)] if changed else [])
         strokes, drawn = None, None
         if work:
