@@ -61,7 +61,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             line = section.steps[track.step[found[0].start]].line
             problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
         for on in found if stroke else ():
-            poses, radii, speed, arcs = _pass(section, track, on)
+            poses, radii, speed, arcs = _pass(section, track, on, cell)
             joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
             cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
@@ -181,7 +181,7 @@ def _touches(track: Track, slack: float) -> Iterator[slice]:
         yield slice(int(first), int(last))
 
 
-def _pass(section: ReadSection, track: Track, on: slice) -> tuple:
+def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
     """Poses, blends, speed and arcs of one touch."""
     poses = track.points[on].copy()
     poses[:, 2] = np.minimum(poses[:, 2], 0.0)
@@ -191,6 +191,11 @@ def _pass(section: ReadSection, track: Track, on: slice) -> tuple:
     radii = np.where(is_end, [step.blend_mm for step in steps], 0.0)
     speeds = [step.speed_mm_s for step in steps[1:] or steps]
     speed = max((speed for speed in speeds if np.isfinite(speed)), default=0.0)
+    # on paper that leans straight down is straight down only up to rounding: the slower feed tells what was meant
+    sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
+    slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
+    for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
+        poses[k + 1, :2] = poses[k, :2]
     return poses, radii, speed, _arcs(owner, track.centres)
 
 
@@ -219,7 +224,7 @@ def _careless(
     before = np.vstack([track.points[:1] if here is None else here, track.points[:-1]])
     low = np.minimum(before[:, 2], track.points[:, 2])
     high = np.maximum(before[:, 2], track.points[:, 2])
-    sideways = np.abs(track.points[:, :2] - before[:, :2]).max(axis=1) > slack
+    sideways = np.abs(track.points[:, :2] - before[:, :2]).max(axis=1) > 2 * slack  # both ends were rounded
     sideways[0] |= here is None
     touches, is_low = low <= paper_mm + slack, low < safe - slack
     careless = rapid & is_low & (touches | sideways)

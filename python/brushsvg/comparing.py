@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from . import _core
 from .cell import Cell
 from .checking import Problems, Ran, chords, slack_mm
 from .errors import Error
@@ -76,6 +77,7 @@ def _written(name: str) -> str:
 
 def _strayed(a_pass, meant, cell: Cell) -> Problems:
     """Where a pass that was read does not run where it should, or not as fast."""
+    meant = _with_circles_of(a_pass, meant)
     limit_mm = max(STRAY_MM, slack_mm(cell)) + (cell.servo.step_mm if cell.servo else 0.0)
     away_mm = _pose_by_pose(a_pass, meant)
     if away_mm > limit_mm:  # it may yet be the same path, with other poses on it
@@ -95,6 +97,23 @@ def _strayed(a_pass, meant, cell: Cell) -> Problems:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
         problems.append((a_pass.stroke, f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"))
     return problems
+
+
+def _with_circles_of(a_pass, meant):
+    """A plan's pass with only those circles that the pass has, too: others are run straight from pose to pose, as on
+    paper that leans."""
+    known = [(*arc.centre_mm, arc.direction) for arc in a_pass.arcs]
+    arcs = [
+        arc
+        for arc in meant.arcs
+        if any(math.dist(each, (*arc.centre_mm, arc.direction)) < CIRCLE_MM for each in known)
+    ]
+    return _core.Pass(meant.stroke, meant.poses_mm, meant.speed_mm_s, arcs=arcs)
+
+
+CIRCLE_MM = (
+    0.5  # farther apart, two centres are those of two circles; less than the 2 between both directions
+)
 
 
 def _pose_by_pose(a_pass, meant) -> float:

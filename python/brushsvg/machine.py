@@ -206,7 +206,7 @@ def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
         f"time: about {clock(duration_s(made))}",
     ]
     if job.z_offset_mm:
-        lines.append(f"paper: {job.z_offset_mm:+.4f} mm against the cell's")
+        lines.append(f"paper: {job.z_offset_mm:+.10g} mm against the cell's")
     if made.cell.paper.example:
         lines.append("caution: the paper's place is the example of the cell file; teach yours")
     return lines

@@ -106,8 +106,9 @@ def _folded(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
 
 
 _NUMBER = re.compile(r"([A-Z]|\br=)?(-?\d+(?:\.\d+)?)")
-# what rounded poses make of a blend, which hangs on the angle between two moves: metres, or a part of it
-LEAST_BLEND_M, BLENDS = 1e-5, 0.05
+# what rounded poses make of a blend, which hangs on the angle between two moves: metres, or a part of it; and the part
+# for each metre of rounding, where few decimals turn moves of a millimetre by more than such an angle
+LEAST_BLEND_M, BLENDS, BLENDS_PER_M = 1e-5, 0.05, 2e5
 
 
 def _alike(line: str, expected: str, waits_s: float) -> bool:
@@ -120,7 +121,7 @@ def _alike(line: str, expected: str, waits_s: float) -> bool:
             if letter == "P" and waits_s:
                 slack = max(slack, waits_s, waits_s * float(wanted))
             elif letter == "r=":
-                slack = max(slack, LEAST_BLEND_M, BLENDS * float(wanted))
+                slack = max(LEAST_BLEND_M, max(BLENDS, BLENDS_PER_M * 10.0**-decimals) * float(wanted))
         else:
             slack = letter == "S"  # a servo's values; codes and numbers of strokes are what they are
         if len(found.partition(".")[2]) != decimals or abs(float(found) - float(wanted)) > slack:
