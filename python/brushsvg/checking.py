@@ -52,7 +52,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
         problems += [(name, sentence) for sentence in said]
-        stroke = re.match(r"stroke (\d{1,6}) of ", section.title)
+        stroke = _stroke(section)
         found = list(_touches(track, slack))
         if stroke and len(found) != 1:
             times = f"{len(found)} times, not once" if found else "never"
@@ -119,7 +119,7 @@ def _visits(read: Readback, cell: Cell) -> tuple:
             if name not in by_name:
                 raise Error(f"cell {cell.name} has no station {name!r}, which the program visits")
             waiting.append(by_name[name])
-        elif section.title.startswith("stroke "):
+        elif _stroke(section):
             found.append(tuple(waiting))
             waiting = []
     return tuple(found)
@@ -132,6 +132,11 @@ class Track:
     points: np.ndarray
     step: np.ndarray
     centres: list
+
+
+def _stroke(section: ReadSection) -> re.Match | None:
+    """Its number, if it is that of a stroke."""
+    return re.match(r"stroke (\d{1,6}) of ", section.title)
 
 
 def _name(section: ReadSection) -> str:

@@ -333,6 +333,7 @@ CHANGED = {
             "mm/s while the brush touches, limit 25.0 mm/s",
         ),
         (edited(r"(?m)^G4 P0\.150\n", "", 0), "for these strokes and this cell brushsvg would write 'M3"),
+        (edited(r"(?m)^(M3 .*\n)((?:.*\n)*?)(\(stroke 2.*\n)", r"\2\1\3G4 P0.017\n"), "brushsvg would write"),
         (edited(r"S800", "S750", 0), "below the safe height 5 mm"),
         (edited(r"S800", "S950", 0), "S950 is outside the range \\[200, 800\\] of the cell's servo"),
         (edited(r"(?m)^(G1 .* S)48\d$", r"\g<1>220"), "at once while the brush touches"),
@@ -355,6 +356,10 @@ CHANGED = {
     ".ngc": [
         (edited("G1 (.*) Z1.0000", r"G0 \1 Z1.0000"), "would write 'G1 X"),
         (edited(r"(?m)^\(stroke 1 of 2", "(stroke 1 of 3"), "would write '.stroke 1 of 2"),
+        (
+            edited(r"(?m)^\(stroke 1 of 2", "(stroke 1e9 of 2"),
+            "the brush touches the paper outside of any stroke",
+        ),
         (
             edited(r"(?m)^M2$", "G0 X-29.0000 Y-29.0000 Z2.0000\nM2"),
             "travels at 2.00 mm|below the safe height",
