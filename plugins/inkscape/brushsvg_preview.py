@@ -38,8 +38,10 @@ def main() -> None:
 
 
 def remove_layer(root, name: str) -> None:
-    for old in [node for node in root.iter() if node.get("id") == name]:
-        old.getparent().remove(old)
+    """A layer or a page of ours. What else has its name is somebody's own and stays."""
+    for node in [node for node in root.iter() if node.get("id") == name]:
+        if node.get("data-brushsvg-skip") or node.tag == f"{INKSCAPE}page":
+            node.getparent().remove(node)
 
 
 def _layer(etree, marks, root, warnings: list[str]):
@@ -95,7 +97,7 @@ def user_from_mm(root, width_mm: float, height_mm: float) -> str:
         return f"scale({PX_PER_MM:.9g})"
     x, y, width, height = numbers
     across, down = width_mm / width, height_mm / height  # mm per unit
-    wish = (root.get("preserveAspectRatio") or "xMidYMid").replace("defer", "").split()
+    wish = (root.get("preserveAspectRatio") or "").replace("defer", "").split() or ["xMidYMid"]
     if wish[0] != "none":
         across = down = (max if wish[1:] == ["slice"] else min)(across, down)
         place = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}

@@ -153,6 +153,23 @@ def test_odd_ids_can_be_selected(plugin, tmp_path):
     assert b"1 stroke," in done.stdout
 
 
+def test_what_is_somebodys_own_stays_though_it_has_the_name_of_our_layer(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND.replace('id="line"', 'id="brushsvg-preview"'))
+    shown = ET.fromstring(plugin.script("preview", source).stdout)
+    assert [node.get("d") for node in shown if node.get("id") == "brushsvg-preview"] == [
+        "M20 40 C40 10 60 10 90 30",
+        None,
+    ]
+
+
+def test_a_page_whose_ratio_says_nothing(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND.replace("<svg ", '<svg preserveAspectRatio=" " '))
+    done = plugin.script("preview", source)
+    assert done.returncode == 0, done.stderr
+
+
 def test_settings_stay_in_the_document_and_the_command_line_uses_them(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm"))
