@@ -187,9 +187,9 @@ def choices(args: argparse.Namespace) -> list[str]:
     return words
 
 
-def selection(args: argparse.Namespace, *but: str) -> list[str]:
-    """Flags for what is selected, if anything is; but: ids that do not count."""
-    chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in args.ids if each not in but]
+def selection(ids: list[str]) -> list[str]:
+    """Flags for what is selected, if anything is."""
+    chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in ids]
     return ["--select", ", ".join(f'[id="{each}"]' for each in chosen)] if chosen else []
 
 

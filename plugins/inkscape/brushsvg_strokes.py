@@ -13,7 +13,7 @@ import sys
 import tempfile
 from xml.etree import ElementTree
 
-from brushsvg_preview import INKSCAPE, SVG, user_from_mm
+from brushsvg_preview import INKSCAPE, OUTLINE, SKIPPED, SVG, own_ids, user_from_mm
 from brushsvg_program import Run, StopError, arguments, element_of, guarded, selection
 from brushsvg_text import name_of, with_letters
 
@@ -29,7 +29,11 @@ HIDDEN = "display:none"
 
 def main() -> None:
     args = arguments(shapes="filled")
-    words = ["--editable", *selection(args), *(["--as", "outline"] if args.shapes == "all" else [])]
+    words = [
+        "--editable",
+        *selection(own_ids(args.input_file, args.ids)),
+        *(["--as", "outline"] if args.shapes == "all" else []),
+    ]
     import inkex
     from lxml import etree
 
@@ -86,8 +90,8 @@ class _Writer:
         parent.replace(shape, group)  # what follows it in the file goes with it, which is white space
         kept = self.etree.SubElement(group, f"{SVG}g", style=HIDDEN)
         kept.set("id", self._free(f"{shape.get('id')}-outline"))
-        kept.set(f"{INKSCAPE}label", "outline")
-        kept.set("data-brushsvg-skip", "yes")
+        kept.set(f"{INKSCAPE}label", OUTLINE)
+        kept.set(SKIPPED, "yes")
         kept.append(shape)
         place = self.user_from_mm
         if self._is_plain(parent):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 
-from brushsvg_preview import INKSCAPE, SVG
+from brushsvg_preview import INKSCAPE, SKIPPED, SVG
 
 TEXT = (f"{SVG}text", f"{SVG}flowRoot")
 LETTERS = "letters.svg"
@@ -40,7 +40,7 @@ def with_letters(etree, root, drawing: str, folder: str) -> tuple[str, dict]:
 
 
 def _may_be_painted(text) -> bool:
-    return not any(each.get("data-brushsvg-skip") for each in (text, *text.iterancestors()))
+    return not any(each.get(SKIPPED) for each in (text, *text.iterancestors()))
 
 
 def name_of(shape) -> str:
