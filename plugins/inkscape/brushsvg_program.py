@@ -44,6 +44,8 @@ def guarded(main) -> None:
         main()
     except StopError as stop:
         told = str(stop)
+    except OSError as problem:  # a full disk, no folder for temporary files
+        told = f"{problem.filename or 'Temporary files'} cannot be written or read: {problem.strerror}."
     except Exception as mistake:
         told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
     else:

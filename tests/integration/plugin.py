@@ -54,12 +54,13 @@ class Plugin:
         assert out.exists()
         return out
 
-    def script(self, name: str, drawing: Path, *words: str) -> subprocess.CompletedProcess:
-        """The script as Inkscape starts it, to read what its dialog would say."""
+    def script(
+        self, name: str, drawing: Path, *words: str, before: tuple = ()
+    ) -> subprocess.CompletedProcess:
+        """The script as Inkscape starts it, to read what its dialog would say; before: words that start it."""
         script = str(self.installed / f"brushsvg_{name}.py")
-        return self._run(
-            ["/usr/bin/env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3", script, *words, str(drawing)]
-        )
+        start = [*before, "/usr/bin/env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3"]
+        return self._run([*start, script, *words, str(drawing)])
 
     def _run(self, words) -> subprocess.CompletedProcess:
         return subprocess.run(

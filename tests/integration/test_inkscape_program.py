@@ -95,3 +95,9 @@ def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
         assert plugin.script("save", drawing).stdout.endswith(b"M2\n")
     finally:
         note.unlink()
+
+
+@pytest.mark.parametrize("script", ["save", "preview", "strokes"])
+def test_a_disk_that_takes_nothing_is_told(plugin, drawing, script):
+    told = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=0")))
+    assert "cannot be written or read: " in told and "mistake" not in told
