@@ -76,8 +76,8 @@ def _noted() -> str:
     beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), BESIDE)
     if not os.path.exists(beside):
         return ""
-    with open(beside, encoding="utf-8") as file:
-        return file.read().strip()
+    with open(beside, "rb") as file:
+        return os.fsdecode(file.read()).strip()
 
 
 class Run:

@@ -37,7 +37,7 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
                 old.unlink()
         for name, data in files.items():
             (folder / name).write_bytes(data)
-        (folder / NOTE).write_text(f"{note}\n" if note else "", encoding="utf-8")
+        (folder / NOTE).write_bytes(os.fsencode(f"{note}\n") if note else b"")
     except OSError as problem:
         raise Error(
             f"cannot be written: {(problem.strerror or str(problem)).lower()}", file=str(folder)

@@ -88,6 +88,16 @@ def test_inkscape_without_a_path_saves_with_the_one_that_installed_the_extension
     assert (tmp_path / "saved.ngc").read_bytes().endswith(b"M2\n")
 
 
+def test_a_place_whose_name_is_no_text_is_noted_too(tmp_path, drawing):
+    odd = tmp_path / os.fsdecode(b"p\xff") / "brushsvg"
+    odd.parent.mkdir()
+    odd.symlink_to(COMMAND)
+    alone = Plugin(tmp_path, command=None)
+    environment = {"HOME": str(tmp_path), "INKSCAPE_PROFILE_DIR": str(alone.profile), "PATH": ""}
+    subprocess.run([odd, "install-plugin", "inkscape"], env=environment, check=True, capture_output=True)
+    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
+
+
 def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
     note = plugin.installed / "brushsvg-executable.txt"
     note.write_text("/nowhere/brushsvg\n")
