@@ -44,10 +44,10 @@ def own_ids(drawing: str, ids: list[str]) -> list[str]:
     with open(drawing, "rb") as file:
         if not ids or SKIPPED.encode() not in file.read():
             return ids
-    root = ElementTree.parse(drawing).getroot()
+    root, wanted = ElementTree.parse(drawing).getroot(), set(ids)
     parents = {child: parent for parent in root.iter() for child in parent}
     found = []
-    for node in (node for node in root.iter() if node.get("id") in ids):
+    for node in (node for node in root.iter() if node.get("id") in wanted):
         above = [node]
         while above[-1] in parents:
             above.append(parents[above[-1]])

@@ -17,6 +17,7 @@ NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
 BESIDE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inkscape`
+LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
 USUAL = (
     "~/.local/bin",
     "/usr/local/bin",
@@ -192,7 +193,13 @@ def choices(args: argparse.Namespace) -> list[str]:
 def selection(ids: list[str]) -> list[str]:
     """Flags for what is selected, if anything is."""
     chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in ids]
-    return ["--select", ", ".join(f'[id="{each}"]' for each in chosen)] if chosen else []
+    words = ", ".join(f'[id="{each}"]' for each in chosen)
+    if len(words.encode()) > LONGEST:
+        raise StopError(
+            f"{len(ids)} objects are selected, more than can be told to brushsvg: select their layer or group "
+            "instead, or nothing for the page."
+        )
+    return ["--select", words] if chosen else []
 
 
 def element_of(by_id: dict, where: str):

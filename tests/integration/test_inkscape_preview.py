@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from command import SOUND, brushsvg
-from plugin import Plugin
+from plugin import Plugin, sentence
 
 from brushsvg import read_drawing
 from brushsvg.importers import ReadOptions
@@ -203,6 +203,15 @@ def test_a_page_whose_ratio_says_nothing(plugin, tmp_path):
     source.write_text(SOUND.replace("<svg ", '<svg preserveAspectRatio=" " '))
     done = plugin.script("preview", source)
     assert done.returncode == 0, done.stderr
+
+
+def test_too_many_to_be_told_are_refused_in_a_sentence(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND)
+    told = sentence(plugin.script("preview", source, *[f"--id=path{k}" for k in range(8000)]))
+    assert told.startswith("8000 objects are selected, more than can be told")
+    done = plugin.script("preview", source, "--id=line", *[f"--id=path{k}" for k in range(3000)])
+    assert b": 1 stroke, " in done.stdout, done.stderr
 
 
 def test_settings_stay_in_the_document_and_the_command_line_uses_them(plugin, tmp_path):
