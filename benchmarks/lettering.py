@@ -24,21 +24,13 @@ from brushsvg.reach import within_reach
 from brushsvg.strokes import strokes
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "integration"))
-from lettering import CHARACTER_MM, PACKAGES, Lettering, letter, outline
+from lettering import PACKAGES, Lettering, letter
 from npm import fetched
 
 TEXT = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 FONTS = (("sans", 100.0), ("script", 60.0))  # at 100 mm the script is wider than round-6 almost everywhere
 SEARCHED = 30  # characters that the best constant lag is searched on
 TOLERANCE_MM = 0.05
-
-
-def characters(lettering: Lettering, count: int, seed: int) -> list[Design]:
-    sheet = (CHARACTER_MM, CHARACTER_MM)
-    return [
-        Design(sheet, tuple(outline(f"s{k}", data) for k, data in enumerate(each["strokes"])))
-        for _, each in lettering.characters(count, seed)
-    ]
 
 
 def found(design: Design, brush) -> tuple[list, list[score.Meant]]:
@@ -114,7 +106,10 @@ def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:
     some, wanted = found(design, brush)
     return np.array(
         [
-            [overlap(Way("", "constant", lag).paint(stroke, brush, (0.0, 0.0)), each, brush) for lag in lags_mm]
+            [
+                overlap(Way("", "constant", lag).paint(stroke, brush, (0.0, 0.0)), each, brush)
+                for lag in lags_mm
+            ]
             for stroke, each in zip(some, wanted, strict=True)
         ]
     ).reshape(-1, len(lags_mm))
@@ -146,13 +141,40 @@ def measured(title: str, designs: list[Design], brush, processes: int) -> None:
             print(f"\r{count} of {len(designs)}", end="", file=sys.stderr, flush=True)
     print("\r", end="", file=sys.stderr)
     every = len(done[0].alone)
-    print(f"{title}: {len(designs)} of them, {every} strokes, {wide / every:.1%} wider than the brush somewhere")
+    print(
+        f"{title}: {len(designs)} of them, {every} strokes, {wide / every:.1%} wider than the brush somewhere"
+    )
     print(f"  the best constant lag was searched on {tried} of the strokes")
     print(f"  {'':<28}{'per stroke':<24}{'per character':<24}{'ms per stroke':<16}poses per stroke")
     print(f"  {'':<28}" + 2 * f"{'mean   median 5th %':<24}" + f"{'median  mean':<16}mean")
     for way in done:
         print(way.row())
     print(f"  {time.monotonic() - begin:.0f} s", flush=True)
+
+
+def one_limit(place: tuple[Design, int], name: str, tries: int, seed: int) -> dict[str, float]:
+    from limit import search  # brings packages that nothing else here needs
+
+    brush, (design, k) = find_brush(name), place
+    some, wanted = found(design, brush)
+    return search(some[k % len(some)], wanted[k % len(some)], brush, tries, seed)
+
+
+def limits(designs: list[Design], brush, options) -> None:
+    """One stroke of each character, drawn at random, as near as a global search comes."""
+    random = np.random.default_rng(options.seed)
+    places = [(design, int(random.integers(100))) for design in designs[: options.limit]]
+    work = partial(one_limit, name=brush.name, tries=options.tries, seed=options.seed)
+    print(f"one stroke of each of {len(places)} characters, {options.tries} simulations from each beginning")
+    with ProcessPoolExecutor(options.processes) as pool:
+        rows = []
+        for each in pool.map(work, places):
+            rows.append(each)
+            print("  " + "  ".join(f"{key} {value:.4f}" for key, value in each.items()), flush=True)
+    for key in rows[0]:
+        print(f"  {key:<8} mean {np.mean([each[key] for each in rows]):.4f}")
+    won, there = (sum(each[key] - each["closed"] for each in rows) for key in ("refined", "found"))
+    print(f"  refined wins {won / there:.0%} of what the search wins over closed", flush=True)
 
 
 def main() -> None:
@@ -162,12 +184,18 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=20260)
     parser.add_argument("--brush", default="round-6")
     parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--limit", type=int, metavar="N", help="a global search on N strokes")
+    parser.add_argument("--limit", type=int, metavar="N", help="a global search on N strokes, instead")
+    parser.add_argument(
+        "--tries", type=int, default=4000, help="simulations of that search, per stroke and beginning"
+    )
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     lettering, brush = Lettering(fetched(options.folder, PACKAGES)), find_brush(options.brush)
     print(f"brush {brush.name}, seed {options.seed}")
-    chosen = characters(lettering, options.count, options.seed)
+    chosen = lettering.drawings(options.count, options.seed)
+    if options.limit:
+        limits(chosen, brush, options)
+        return
     measured("Chinese characters at 100 mm", chosen, brush, options.processes)
     for kind, em_mm in FONTS:
         font = lettering.font(kind)

@@ -167,7 +167,8 @@ def _in_blocks(values: np.ndarray, block: int) -> np.ndarray:
     if block == 1 or not rows or not columns:
         return values
     whole = values[: rows * block, : columns * block]
-    across = sum(whole[k::block] for k in range(block))  # numpy's own sum takes six times as long on short axes
+    # numpy's own sum takes six times as long on short axes
+    across = sum(whole[k::block] for k in range(block))
     return sum(across[:, k::block] for k in range(block))
 
 

@@ -142,7 +142,8 @@ def _all_effects(plan, brush, marks):
     factor, steps = _factor(covariance), _factor(covariance[lag, lag])
     mixing = np.linalg.pinv(steps) @ factor[lag]  # the independent directions of all, in steps of the lag
     runs = [_both_sides(plan, brush, step / scale[lag]) for step in steps.T]
-    runs = [(up.passes, down.passes, part) for up, down, part in runs]  # once: every look at them copies the list
+    # once: every look at the passes copies the list
+    runs = [(up.passes, down.passes, part) for up, down, part in runs]
     parts = {law: (factor / scale[:, None])[place] for law, place in places.items()}
     for k, trace in enumerate(marks.passes):
         lag_runs = [(up[k], down[k], part) for up, down, part in runs]
