@@ -11,7 +11,7 @@ from ..errors import Error
 # Off the curves: an edge costs as much as all the rest, and middle lines are smoothed by more than half of this.
 FLATTENED_MM = 0.02
 # An alphabet has some thousands of edges and hardly a crossing; ten seconds' work is all that a shape may ask for.
-_MOST_EDGES, _MOST_CROSSINGS = 200_000, 10_000
+_MOST_EDGES, _MOST_CROSSINGS, _MOST_PAIRS, _FEW_PAIRS = 200_000, 10_000, 50_000_000, 1_000_000
 
 
 def filled(element: Element) -> list[np.ndarray]:
@@ -21,8 +21,14 @@ def filled(element: Element) -> list[np.ndarray]:
     edges = sum(map(len, outlines))
     if edges > _MOST_EDGES:
         raise Error(f"its outline has {edges} edges, more than {_MOST_EDGES}")
-    if (crossings := _crossings(outlines)) > _MOST_CROSSINGS:
+    tails = np.vstack(outlines)
+    heads = np.vstack([np.roll(ring, -1, axis=0) for ring in outlines])
+    if (crossings := _crossings(tails, heads)) > _MOST_CROSSINGS:
         raise Error(f"its outline crosses itself about {crossings:.2g} times, more than {_MOST_CROSSINGS}")
+    if (pairs := _side_by_side(np.minimum(tails, heads), np.maximum(tails, heads))) > _MOST_PAIRS:
+        raise Error(
+            f"its outline lies too densely: {pairs:.2g} pairs of edges side by side, more than {_MOST_PAIRS:.2g}"
+        )
     return _core.fill([ring for ring in outlines if len(ring) >= 3], element.fill_rule or "evenodd")
 
 
@@ -41,13 +47,11 @@ def flattened(cubics: np.ndarray, tolerance_mm: float = FLATTENED_MM) -> np.ndar
     return np.vstack([cubics[:1, 0], points])
 
 
-def _crossings(outlines: list[np.ndarray], pairs: int = 100_000) -> float:
-    """About how often the outlines cross: of pairs of edges drawn at random, always the same."""
-    tails = np.vstack(outlines)
+def _crossings(tails: np.ndarray, heads: np.ndarray, pairs: int = 100_000) -> float:
+    """About how often edges cross: of pairs of them drawn at random, always the same."""
     count = len(tails)
     if count < 200:
         return 0.0
-    heads = np.vstack([np.roll(ring, -1, axis=0) for ring in outlines])
     one, two = np.random.default_rng(0).integers(0, count, (2, pairs))
 
     def side(a, b, p):  # which side of a line from a to b
@@ -56,3 +60,24 @@ def _crossings(outlines: list[np.ndarray], pairs: int = 100_000) -> float:
     a, b, c, d = tails[one], heads[one], tails[two], heads[two]
     cross = (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
     return float(cross.mean()) * count * (count - 1) / 2
+
+
+def _side_by_side(low: np.ndarray, high: np.ndarray) -> float:
+    """How many pairs of edges, given by the corners of their boxes (n, 2), _core.fill holds against each other: all
+    that share an x, in bands of y where few edges lead from one band to the next."""
+    count = len(low)
+    if count < 1000:
+        return count * count / 2
+    order = np.argsort(low[:, 0])
+    behind = np.searchsorted(low[order, 0], high[order, 0]) - np.arange(1, count + 1)
+    pairs = float(np.maximum(behind, 0).sum())
+    ys = np.unique([low[:, 1], high[:, 1]])
+    ys = ys[len(ys) // 3 : len(ys) - len(ys) // 3]
+    across = np.searchsorted(np.sort(low[:, 1]), ys, "right") - np.searchsorted(
+        np.sort(high[:, 1]), ys, "right"
+    )
+    cut = ys[np.argmin(across)]
+    below, above = low[:, 1] < cut, high[:, 1] >= cut
+    if pairs < _FEW_PAIRS or across.min() > count / 9 or below.all() or above.all():
+        return pairs
+    return _side_by_side(low[below], high[below]) + _side_by_side(low[above], high[above])
