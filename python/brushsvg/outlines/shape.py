@@ -11,7 +11,8 @@ from ..errors import Error
 # Off the curves: an edge costs as much as all the rest, and middle lines are smoothed by more than half of this.
 FLATTENED_MM = 0.02
 # An alphabet has some thousands of edges and hardly a crossing; ten seconds' work is all that a shape may ask for.
-_MOST_EDGES, _MOST_CROSSINGS, _MOST_PAIRS, _FEW_PAIRS = 200_000, 10_000, 50_000_000, 1_000_000
+_MOST_EDGES, _MOST_CROSSINGS, _MOST_PAIRS = 200_000, 10_000, 30_000_000
+_PASSED = 0.04  # what a pair costs that is passed over, beside one that is looked at
 
 
 def filled(element: Element) -> list[np.ndarray]:
@@ -25,7 +26,9 @@ def filled(element: Element) -> list[np.ndarray]:
     heads = np.vstack([np.roll(ring, -1, axis=0) for ring in outlines])
     if (crossings := _crossings(tails, heads)) > _MOST_CROSSINGS:
         raise Error(f"its outline crosses itself about {crossings:.2g} times, more than {_MOST_CROSSINGS}")
-    if (pairs := _side_by_side(np.minimum(tails, heads), np.maximum(tails, heads))) > _MOST_PAIRS:
+    low, high = np.minimum(tails, heads), np.maximum(tails, heads)
+    from_left = np.argsort(low[:, 0])
+    if (pairs := _side_by_side(low[from_left], high[from_left])) > _MOST_PAIRS:
         raise Error(
             f"its outline lies too densely: {pairs:.2g} pairs of edges side by side, more than {_MOST_PAIRS:.2g}"
         )
@@ -62,22 +65,29 @@ def _crossings(tails: np.ndarray, heads: np.ndarray, pairs: int = 100_000) -> fl
     return float(cross.mean()) * count * (count - 1) / 2
 
 
-def _side_by_side(low: np.ndarray, high: np.ndarray) -> float:
-    """How many pairs of edges, given by the corners of their boxes (n, 2), _core.fill holds against each other: all
-    that share an x, in bands of y where few edges lead from one band to the next."""
+def _side_by_side(
+    low: np.ndarray, high: np.ndarray, floor: float = -np.inf, ceiling: float = np.inf
+) -> float:
+    """How many pairs of edges, given by the corners of their boxes (n, 2) in the order of their left ones, _core.fill
+    holds against each other: all that share an x, in bands of y where few edges lead from one band to the next."""
     count = len(low)
-    if count < 1000:
+    if count < 300:
         return count * count / 2
-    order = np.argsort(low[:, 0])
-    behind = np.searchsorted(low[order, 0], high[order, 0]) - np.arange(1, count + 1)
-    pairs = float(np.maximum(behind, 0).sum())
     ys = np.unique([low[:, 1], high[:, 1]])
-    ys = ys[len(ys) // 3 : len(ys) - len(ys) // 3]
+    ys = ys[(ys >= floor) & (ys < ceiling)]
+    ys = ys[max(len(ys) // 3, 1) : len(ys) - len(ys) // 3 + 1]
     across = np.searchsorted(np.sort(low[:, 1]), ys, "right") - np.searchsorted(
         np.sort(high[:, 1]), ys, "right"
     )
-    cut = ys[np.argmin(across)]
-    below, above = low[:, 1] < cut, high[:, 1] >= cut
-    if pairs < _FEW_PAIRS or across.min() > count / 9 or below.all() or above.all():
-        return pairs
-    return _side_by_side(low[below], high[below]) + _side_by_side(low[above], high[above])
+    if len(ys) and across.min() <= count / 9:
+        cut = ys[np.argmin(across)]
+        below, above = low[:, 1] < cut, high[:, 1] >= cut
+        return _side_by_side(low[below], high[below], floor, cut) + _side_by_side(
+            low[above], high[above], cut, ceiling
+        )
+    behind = np.searchsorted(low[:, 0], high[:, 0]) - np.arange(1, count + 1)
+    # those that reach up into the band are passed over one by one, until one lies in it
+    inside = low[:, 1] >= floor
+    ends = np.append(np.flatnonzero(inside), count)
+    follows = ends[np.searchsorted(low[inside, 0], high[~inside, 0])]
+    return float(np.maximum(behind, 0).sum() + _PASSED * (follows - np.flatnonzero(~inside)).sum())
