@@ -31,6 +31,7 @@ NEAR_MM = 8.0
 JOINED_MM = 1.5
 FEW = 30  # strokes on which the search begins
 MARGIN_MM = 8.0  # around way and paint, while searching
+OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAWS = ("lag", "tip_gap", "half_width")
 SETS = ("round_v1", "small_16_20", "loops_constant_depth", "marker_control")
@@ -313,9 +314,8 @@ def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
     return part, (x + left * stroke.px, y + tall - top * stroke.px - size[1], *size)
 
 
-def _soft_overlaps(strokes, seen, fit, options) -> list[float]:
-    """Means of `fixed` and `shift` of anti-aliased pictures, which change smoothly; footprints of half as many
-    vertices."""
+def _soft_overlaps(strokes, seen, fit, options) -> list[tuple[float, float]]:
+    """`fixed` and `shift` of anti-aliased pictures, which change smoothly; footprints of half as many vertices."""
     brush = brush_for(strokes, fit, options)
     outlines = [(one.depth_mm, np.array(one.outline_mm)[::2]) for one in brush.footprints.dragged]
     brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
@@ -326,7 +326,7 @@ def _soft_overlaps(strokes, seen, fit, options) -> list[float]:
         both = float(np.minimum(mask, painted).sum())
         either = float(mask.sum() + painted.sum()) - both
         fixed = both / either if either > 0 else 1.0
-        out.append(0.5 * (fixed + max(fixed, best_shift(painted, mask, 2 * stroke.px)[0])))
+        out.append((fixed, max(fixed, best_shift(painted, mask, 2 * stroke.px)[0])))
     return out
 
 
@@ -402,22 +402,35 @@ def laws_in_words(fit) -> str:
     )
 
 
-def residual_words(strokes, fit) -> list[str]:
-    """What the distances that stay are made of: width of the whole mark, its place, its shape."""
-    width, whole, place = [], [], []
-    for miss in fit.marks:
-        d = np.array(miss.distance_mm)
-        d = d[np.abs(d) < 5 * fit.noise_mm]
-        if len(d) > 20:
-            width.append(d.mean())
-            whole.append(d.std())
-        place.append(np.hypot(*miss.displacement_mm))
-    total = np.sqrt(np.mean(np.square(width)) + np.mean(np.square(whole)))
+def residual_words(strokes, fit, options) -> list[str]:
+    """What is missing to a whole overlap, by what wins it back when each stroke may have its own: place, width, lag."""
+    laws, seen = fit.laws, [_coarse(stroke) for stroke in strokes]
+
+    def places(width, lag):
+        tried = SimpleNamespace(
+            laws=_core.MarkLaws(
+                [lag * c for c in laws.lag],
+                laws.tip_gap,
+                [width * c for c in laws.half_width],
+                laws.widest_per_half,
+                laws.front_per_half,
+                laws.round_tail,
+            ),
+            shift_mm=fit.shift_mm,
+            height_mm=fit.height_mm,
+        )
+        return np.array(_soft_overlaps(strokes, seen, tried, options))
+
+    by = np.array([[places(width, lag) for lag in OWN_LAGS] for width in OWN_WIDTHS])
+    usual = (OWN_WIDTHS.index(1.0), OWN_LAGS.index(1.0))
+    fixed, place = by[usual][:, 0].mean(), by[usual][:, 1].mean()
+    own_width = by[:, usual[1], :, 1].max(axis=0).mean()
+    own_both = by[..., 1].max(axis=(0, 1)).mean()
+    best = np.array(OWN_WIDTHS)[by[:, usual[1], :, 1].argmax(axis=0)]
     return [
-        f"edges lie {total:.2f} mm off (rms, {100 * fit.left_aside:.0f} % of the points left aside as wild)",
-        f"  of it {np.std(width):.2f} mm: whole marks wider or narrower than their depth says (paint load, bristles)",
-        f"  of it {np.sqrt(np.mean(np.square(whole))):.2f} mm: along each mark (hairs, shape, depth)",
-        f"  displacements found: {np.sqrt(np.mean(np.square(place))):.2f} mm (rms); without them they would add to it",
+        f"what is missing to 1: place {place - fixed:.3f}, width of the whole mark {own_width - place:.3f} (best "
+        f"widths {100 * best.std():.0f} % apart, rms), lag of the whole mark {own_both - own_width:.3f}; left "
+        f"{1 - own_both:.3f}: ends, hairs, gaps, blocks of the compressed pictures"
     ]
 
 
@@ -460,7 +473,7 @@ def main():
         )
         for what, one in (("edges", fit), ("overlap", best)):
             print(f"    {what}: {laws_in_words(one)}")
-        for line in [*residual_words(seen, fit), *fit.remarks]:
+        for line in [*residual_words(unseen, best, options), *fit.remarks]:
             print(f"    {line}")
         if args.pictures:
             picture(unseen, predicted, shifts, moved, args.pictures / f"{name}.png")
