@@ -83,12 +83,13 @@ def _loops(data) -> list[Stroke]:
         right, bottom = np.minimum(np.ceil(pixels.max(axis=0) + 60).astype(int), paint.shape[::-1])
         part = np.where(near > 0, paint, 0)[top:bottom, left:right]
         window = (left * px, height - bottom * px, (right - left) * px, (bottom - top) * px)
-        out.append(_stroke(np.column_stack([xy, -depth]), part, window, px))
+        out.append(_stroke(np.column_stack([xy, -depth]), part, window, px, filled=False))
     return out
 
 
-def _stroke(poses, paint, window, px) -> Stroke:
-    """One blob: parts less than twice JOINED_MM apart are one, gaps between hairs closed; the largest is the stroke."""
+def _stroke(poses, paint, window, px, filled=True) -> Stroke:
+    """One blob: parts less than twice JOINED_MM apart are one, and the largest is the stroke. filled: so are the gaps
+    between hairs; not where strokes come back beside themselves."""
     size = 2 * round(JOINED_MM / px) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     closed = cv2.morphologyEx(np.uint8(paint > LEVEL), cv2.MORPH_CLOSE, near)
@@ -96,7 +97,7 @@ def _stroke(poses, paint, window, px) -> Stroke:
     mask = np.zeros(paint.shape, bool)
     if count > 1:
         best = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-        mask = labels == best
+        mask = (labels == best) & (filled | (paint > LEVEL))
     return Stroke(poses, mask, np.where(mask, np.maximum(paint, LEVEL + 1), 0), window, px)
 
 
