@@ -98,8 +98,7 @@ class Fit {
         priors_[std::size_t(at.height())] = options.height_mm;
         for (int i = 0; i < 2; ++i) priors_[std::size_t(at.shift() + i)] = {0.0, options.placement_mm};
         priors_[std::size_t(at.turn())] = {0.0, options.turn_rad};
-        held.resize(priors_.size());
-        for (std::size_t i = 0; i < held.size(); ++i) held[i] = priors_[i].sigma == 0.0;
+        hold_shape(false);
         shared = VectorXd::Zero(at.size());
         own.assign(std::size_t(model.marks()), Eigen::Vector2d::Zero());
     }
@@ -110,6 +109,13 @@ class Fit {
         shared[at.front()] = priors_[std::size_t(at.front())].value;
         shared[at.height()] = priors_[std::size_t(at.height())].value;
         std::fill(own.begin(), own.end(), Eigen::Vector2d::Zero());
+    }
+
+    /// The footprint's shape stays as it is, besides what is known.
+    void hold_shape(bool hold) {
+        held.resize(priors_.size());
+        for (std::size_t i = 0; i < held.size(); ++i) held[i] = priors_[i].sigma == 0.0;
+        if (hold) held[std::size_t(model.layout().widest())] = held[std::size_t(model.layout().front())] = true;
     }
 
     /// Half the loss of all marks; infinite where there is no prediction.
@@ -348,8 +354,12 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     } else {
         if (start)
             fit.begin(*start);
-        else
+        else {
+            fit.hold_shape(true);
             scan(fit, marks, options);
+            fit.solve(options.most_iterations);
+            fit.hold_shape(false);
+        }
         for (const Loss loss : {Loss::huber, Loss::huber, Loss::tukey, Loss::tukey}) {
             fit.weighing.loss = loss;
             out.converged = fit.solve(options.most_iterations);
