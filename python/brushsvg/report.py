@@ -170,19 +170,20 @@ def _out_of_reach(stroke, brush) -> int:
     return sum(not least - 1e-9 <= half_width <= greatest + 1e-9 for _, half_width in stroke.half_width)
 
 
+def _rounded(value):
+    if isinstance(value, dict):
+        return {key: _rounded(each) for key, each in value.items()}
+    if isinstance(value, tuple):
+        return [_rounded(each) for each in value]
+    return round(value, 6) if isinstance(value, float) else value
+
+
 def to_json(report: Report) -> str:
     """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
 
-    def rounded(value):
-        if isinstance(value, dict):
-            return {key: rounded(each) for key, each in value.items()}
-        if isinstance(value, tuple):
-            return [rounded(each) for each in value]
-        return round(value, 6) if isinstance(value, float) else value
-
     def figures(row: Figures, sure) -> dict:
-        known = {} if sure is None else {"uncertainty_95": rounded(asdict(sure))}
-        return rounded(asdict(row)) | known
+        known = {} if sure is None else {"uncertainty_95": _rounded(asdict(sure))}
+        return _rounded(asdict(row)) | known
 
     sure = report.sure
     sures = [None] * len(report.strokes) if sure is None else sure.strokes
@@ -299,6 +300,13 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
     )
     heading = "Compensations compared; distances of the widest point from the middle line in mm:"
     return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+
+
+def brushes_json(title: str, suits) -> str:
+    """Several suit.Suit, in their order; overlaps to 1e-6."""
+    rows = [_rounded(asdict(each)) for each in suits]
+    made = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
+    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
 
 
 def brushes_text(title: str, suits) -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -110,12 +109,3 @@ def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
 
 def best_first(suits: list[Suit]) -> list[Suit]:
     return sorted(suits, key=lambda each: (-(each.overlap or 0.0), each.brush))
-
-
-def to_json(title: str, suits: list[Suit]) -> str:
-    def rounded(value):
-        return round(value, 6) if isinstance(value, float) else value
-
-    rows = [{key: rounded(value) for key, value in asdict(each).items()} for each in suits]
-    made = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
-    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"

@@ -38,8 +38,6 @@ def report_file(args) -> None:
 
 
 def _all_brushes(args) -> None:
-    from .. import suit
-
     given, args.brush = args.brush or [], None
     settle(args)
     asked = [*brush_names(), *(name for name in given if name not in brush_names())]
@@ -51,4 +49,4 @@ def _all_brushes(args) -> None:
     with about(args.input):
         suits = convert.suits(args.input, options_of(args, cell), brushes, stage)
         title = arrange(read_drawing(args.input, reading_of(args)), layout_of(args)).title
-        tell(suit.to_json(title, suits) if args.json else report.brushes_text(title, suits))
+        tell(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))
