@@ -5,7 +5,11 @@
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
 3 mm. Beside ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
-that is linear in depth.
+that is linear in depth, each fitted to the largest `fixed`; those with a lag once more to what ours is fitted to.
+
+Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` goes on from there to the largest mean of `fixed` and
+`shift` of the same laws. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the
+set's displacement 2 (at one depth lag 1, half width 1, no height); `edges` also has a shift for each fitted stroke.
 """
 
 from __future__ import annotations
@@ -31,6 +35,13 @@ NEAR_MM = 8.0
 JOINED_MM = 1.5
 FEW = 30  # strokes on which the search begins
 MARGIN_MM = 8.0  # around way and paint, while searching
+DISCS = (
+    (0, False, "disc, no lag"),
+    (1, False, "disc, constant r"),
+    (2, False, "disc, r0 + r1 depth"),
+    (1, True, "constant r, for both"),
+    (2, True, "r0 + r1 d, for both"),
+)
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAWS = ("lag", "tip_gap", "half_width")
@@ -160,14 +171,20 @@ def disc_marks(strokes, x, lag_terms) -> list[np.ndarray]:
     return out
 
 
-def fit_disc(strokes, lag_terms) -> np.ndarray:
-    """Largest mean overlap on the strokes, one displacement for all."""
+def fit_disc(strokes, lag_terms, both=False) -> np.ndarray:
+    """Largest mean overlap on the strokes, one displacement for all; both: largest mean of `fixed` and `shift`."""
+
+    def score(predicted, stroke):
+        fixed = overlap(predicted, stroke.mask)
+        if not both:
+            return fixed
+        return 0.5 * (fixed + best_shift(predicted[::2, ::2], stroke.mask[::2, ::2], 2 * stroke.px)[0])
 
     def loss(x):
         if np.any(x[4:] < -20) or x[0] < 0:
             return 1.0
         return 1 - np.mean(
-            [overlap(p, s.mask) for p, s in zip(disc_marks(strokes, x, lag_terms), strokes, strict=True)]
+            [score(p, s) for p, s in zip(disc_marks(strokes, x, lag_terms), strokes, strict=True)]
         )
 
     best = None
@@ -435,6 +452,11 @@ def residual_words(strokes, fit, options) -> list[str]:
     ]
 
 
+def _paint_per_mm(strokes) -> float:
+    lengths = [np.hypot(*np.diff(s.poses[:, :2], axis=0).T).sum() for s in strokes]
+    return float(np.median([s.mask.sum() * s.px**2 / n for s, n in zip(strokes, lengths, strict=True)]))
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     arguments.add_argument("folder", type=Path)
@@ -445,10 +467,13 @@ def main():
     for name in args.sets:
         strokes = load(args.folder, name)
         seen, unseen = strokes[::2], strokes[1::2]
-        print(f"\n{name}: {len(seen)} strokes fitted, {len(unseen)} scored")
+        print(
+            f"\n{name}: {len(seen)} strokes fitted, {len(unseen)} scored; {_paint_per_mm(seen):.2f} and "
+            f"{_paint_per_mm(unseen):.2f} mm^2 of paint per mm of way (median)"
+        )
         if not args.no_peers:
-            for terms, what in ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth")):
-                x = fit_disc(seen, terms)
+            for terms, both, what in DISCS:
+                x = fit_disc(seen, terms, both)
                 fixed, moved, _ = scores(unseen, disc_marks(unseen, x, terms))
                 lag = ", ".join(f"{v:.2f}" for v in x[4:])
                 print(f"  {what:22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  r {lag}", flush=True)
