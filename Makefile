@@ -12,7 +12,7 @@ SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: plugins help setup system test-system demo test lint format cpp-test python-test integration fuzz bench asan clean
+.PHONY: plugins help setup system test-system demo test lint format cpp-test python-test integration fuzz bench asan clean FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -53,7 +53,12 @@ $(VENV)/.created:
 	$(BIN)/pip install -q "scikit-build-core>=1.0" "pybind11>=3.0"
 	touch $@
 
-$(VENV)/.installed: $(VENV)/.created pyproject.toml $(CPP_SOURCES)
+# which modules there are: an editable install knows those that it found, and not those of a later checkout
+$(VENV)/.modules: $(VENV)/.created FORCE
+	@find python -name '*.py' | sort > $@.now
+	if cmp -s $@.now $@; then rm $@.now; else mv $@.now $@; fi
+
+$(VENV)/.installed: $(VENV)/.created $(VENV)/.modules pyproject.toml $(CPP_SOURCES)
 	@echo "building (a few minutes the first time)"
 	$(BIN)/pip install -q --no-build-isolation -e .
 	touch $@

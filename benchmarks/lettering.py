@@ -1,8 +1,9 @@
-"""How well other people's lettering is painted, by every compensation: overlap of predicted and wanted mark, stroke by
-stroke and whole character by whole character, and milliseconds per stroke.
+"""How well other people's lettering is painted, by every compensation: overlap of predicted and wanted mark as the
+report has it, stroke by stroke and whole character by whole character, poses, and milliseconds of processor time.
 
 Chinese characters drawn at random from `hanzi-writer-data`, 100 mm high, and letters of two fonts, all fetched by npm
 once into a folder. Widths beyond the brush's are painted at the nearest, and held against the outline as it is.
+`--limit N` compares N strokes with the best that a global search finds, instead.
 """
 
 from __future__ import annotations
@@ -10,112 +11,170 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from brushsvg import _core, find_brush
+from brushsvg import _core, find_brush, score
 from brushsvg.design import Design
 from brushsvg.reach import within_reach
 from brushsvg.strokes import strokes
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "integration"))
-from lettering import CHARACTER_MM, Lettering, letter, outline
+from lettering import PACKAGES, Lettering, letter
+from npm import fetched
 
-RINGS_MM = 0.01
 TEXT = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 FONTS = (("sans", 100.0), ("script", 60.0))  # at 100 mm the script is wider than round-6 almost everywhere
-SEARCHED = 300  # strokes that the best constant lag is searched on
+SEARCHED = 30  # characters that the best constant lag is searched on
+TOLERANCE_MM = 0.05
 
 
-def characters(lettering: Lettering, count: int, seed: int) -> list[Design]:
-    sheet = (CHARACTER_MM, CHARACTER_MM)
+def found(design: Design, brush) -> tuple[list, list[score.Meant]]:
+    """Strokes to paint, and what each should become."""
+    painted, wanted, _ = within_reach(strokes(design)[0], brush)
+    return painted, list(map(score.meant, wanted))
+
+
+def overlap(trace, wanted: score.Meant, brush) -> float:
+    return score.areas(score.view([trace], [wanted], brush)).overlap
+
+
+@dataclass
+class Way:
+    """One compensation and what came of it, stroke by stroke and character by character."""
+
+    name: str
+    method: str
+    lag_mm: float | None = None
+    alone: list = field(default_factory=list)
+    whole: list = field(default_factory=list)
+    times_ms: list = field(default_factory=list)
+    poses: list = field(default_factory=list)
+
+    def paint(self, stroke, brush, sheet_mm):
+        begin = time.thread_time()
+        done = _core.compensate([stroke], brush, sheet_mm, self.method, TOLERANCE_MM, self.lag_mm)
+        self.times_ms.append(1e3 * (time.thread_time() - begin))
+        self.poses.append(len(done.plan.passes[0].poses_mm))
+        return _core.simulate(done.plan, brush).passes[0]
+
+    def add(self, other: Way) -> None:
+        for mine, theirs in ((getattr(self, k), getattr(other, k)) for k in self.lists):
+            mine += theirs
+
+    lists = ("alone", "whole", "times_ms", "poses")
+
+    def row(self) -> str:
+        cells = [
+            f"{np.mean(each):.3f}  {np.median(each):.3f}  {np.percentile(each, 5):.3f}"
+            for each in (self.alone, self.whole)
+        ]
+        times = f"{np.median(self.times_ms):6.1f} {np.mean(self.times_ms):6.1f}"
+        return f"  {self.name:<28}{cells[0]:<24}{cells[1]:<24}{times:<16}{np.mean(self.poses):6.1f}"
+
+
+def ways(best_mm: float) -> list[Way]:
     return [
-        Design(sheet, tuple(outline(f"s{k}", data) for k, data in enumerate(each["strokes"])))
-        for _, each in lettering.characters(count, seed)
+        Way("none", "none"),
+        Way(f"constant {best_mm:g} mm", "constant", best_mm),
+        Way("constant, each at its depth", "constant"),
+        Way("closed", "closed"),
+        Way("refined", "refined"),
     ]
 
 
-def plan_of(some, brush, sheet_mm, method: str, lag_mm=None):
-    return _core.compensate(some, brush, sheet_mm, method, 0.05, lag_mm).plan
+def painted(design: Design, name: str, best_mm: float) -> tuple[list[Way], int]:
+    """One character by all ways, and how many of its strokes are wider than the brush."""
+    brush = find_brush(name)  # processes exchange values, which it is not
+    some, wanted = found(design, brush)
+    done = ways(best_mm)
+    for way in done:
+        traces = [way.paint(stroke, brush, design.sheet_mm) for stroke in some]
+        way.alone = [overlap(trace, each, brush) for trace, each in zip(traces, wanted, strict=True)]
+        way.whole = [score.areas_of_sheet(traces, wanted, brush).overlap]
+    widest = brush.half_width_range_mm()[1]
+    return done, sum(max(half for _, half in each.stroke.half_width) > widest for each in wanted)
 
 
-def marks_of(plan, brush):
-    marks = _core.simulate(plan, brush)
-    _core.trace_outlines(marks, brush)
-    return marks
-
-
-def by_pixels(stroke, brush, method: str, lag_mm: float, px_per_mm: float = 8.0) -> float:
-    """Overlap to 0.001, in a tenth of the rings' time."""
-    rings = _core.wanted_outline(stroke, RINGS_MM)
-    marks = _core.simulate(plan_of([stroke], brush, (0.0, 0.0), method, lag_mm), brush, tolerance_mm=0.05)
-    box = _core.painted_bounds(marks.passes[0], brush)
-    low = np.minimum(np.vstack(rings).min(axis=0), box[:2])
-    high = np.maximum(np.vstack(rings).max(axis=0), box[2:])
-    window = (*low, *(high - low))
-    painted, meant = (
-        _core.coverage(marks, brush, window, px_per_mm),
-        _core.coverage(rings, window, px_per_mm),
-    )
-    return float(np.minimum(painted, meant).sum() / np.maximum(painted, meant).sum())
-
-
-def best_constant_mm(some, brush) -> float:
-    """The one lag for all strokes whose marks overlap most with what is wanted, to 0.25 mm."""
-    few = some[:: max(1, len(some) // SEARCHED)]
-
-    def mean(lag_mm: float) -> float:
-        return float(np.mean([by_pixels(stroke, brush, "constant", lag_mm) for stroke in few]))
-
-    coarse = max(np.arange(0.0, 14.0, 1.0).tolist(), key=mean)
-    return max((coarse + np.arange(-0.75, 1.0, 0.25)).clip(0.0).tolist(), key=mean)
-
-
-def spread(values) -> str:
-    return f"{np.mean(values):.4f}  {np.median(values):.4f}  {np.percentile(values, 5):.4f}"
-
-
-def measured(title: str, designs: list[Design], brush) -> None:
-    drawings, wide = [], 0
-    for design in designs:
-        found, _ = strokes(design)
-        painted, wanted, _ = within_reach(found, brush)
-        wide += sum(max(half for _, half in s.half_width) > brush.half_width_range_mm()[1] for s in found)
-        drawings.append((design.sheet_mm, painted, wanted))
-    every = [stroke for _, painted, _ in drawings for stroke in painted]
-    print(f"{title}: {len(designs)} of them, {len(every)} strokes")
-    print(f"  wider than the brush somewhere: {wide / len(every):.1%} of the strokes")
-    best_mm = best_constant_mm(every, brush)
-    ways = [("none", "none", None), (f"constant {best_mm:g} mm", "constant", best_mm)]
-    ways += [("constant, each at its depth", "constant", None), ("closed", "closed", None)]
-    ways += [("refined", "refined", None)]
-    print(f"  {'':<28}{'per stroke':<24}{'per character':<24}ms per stroke")
-    print(f"  {'':<28}" + 2 * f"{'mean    median  5th %':<24}" + "median  mean")
-    for name, method, lag_mm in ways:
-        alone, whole, times = [], [], []
-        for sheet_mm, painted, wanted in drawings:
-            marks = _core.Marks()
-            passes = []
-            for stroke in painted:
-                begin = time.thread_time()
-                plan = plan_of([stroke], brush, sheet_mm, method, lag_mm)
-                times.append(1e3 * (time.thread_time() - begin))
-                passes.append(marks_of(plan, brush).passes[0])
-            marks.passes = passes
-            rings = [_core.wanted_outline(stroke, RINGS_MM) for stroke in wanted]
-            alone += [
-                _core.overlap(trace.outline_mm, each) for trace, each in zip(passes, rings, strict=True)
+def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:
+    """Overlaps of a character's strokes: a row each, a column per lag."""
+    brush = find_brush(name)
+    some, wanted = found(design, brush)
+    return np.array(
+        [
+            [
+                overlap(Way("", "constant", lag).paint(stroke, brush, (0.0, 0.0)), each, brush)
+                for lag in lags_mm
             ]
-            union, meant = (
-                _core.unite([ring for trace in passes for ring in trace.outline_mm]),
-                _core.unite([ring for each in rings for ring in each]),
-            )
-            whole.append(_core.overlap(union, meant))
-        print(
-            f"  {name:<28}{spread(alone):<24}{spread(whole):<24}{np.median(times):6.1f} {np.mean(times):6.1f}",
-            flush=True,
-        )
+            for stroke, each in zip(some, wanted, strict=True)
+        ]
+    ).reshape(-1, len(lags_mm))
+
+
+def best_constant_mm(pool, designs: list[Design], brush) -> tuple[float, int]:
+    """The one lag for all strokes whose marks overlap most with what is wanted, to 0.25 mm; tried on how many."""
+
+    def best(lags_mm) -> tuple[float, int]:
+        work = partial(by_lag, name=brush.name, lags_mm=lags_mm.tolist())
+        rows = np.vstack(list(pool.map(work, designs[:SEARCHED])))
+        return float(lags_mm[rows.mean(axis=0).argmax()]), len(rows)
+
+    greatest = max(brush.lag(depth) for depth in np.linspace(*brush.depth_range_mm, 101))
+    coarse, _ = best(np.arange(0.0, greatest + 1.0, 1.0))
+    return best((coarse + np.arange(-0.75, 1.0, 0.25)).clip(0.0))
+
+
+def measured(title: str, designs: list[Design], brush, processes: int) -> None:
+    begin, wide = time.monotonic(), 0
+    with ProcessPoolExecutor(processes) as pool:
+        best_mm, tried = best_constant_mm(pool, designs, brush)
+        done = ways(best_mm)
+        work = partial(painted, name=brush.name, best_mm=best_mm)
+        for count, (each, wider) in enumerate(pool.map(work, designs), start=1):
+            for way, more in zip(done, each, strict=True):
+                way.add(more)
+            wide += wider
+            print(f"\r{count} of {len(designs)}", end="", file=sys.stderr, flush=True)
+    print("\r", end="", file=sys.stderr)
+    every = len(done[0].alone)
+    print(
+        f"{title}: {len(designs)} of them, {every} strokes, {wide / every:.1%} wider than the brush somewhere"
+    )
+    print(f"  the best constant lag was searched on {tried} of the strokes")
+    print(f"  {'':<28}{'per stroke':<24}{'per character':<24}{'ms per stroke':<16}poses per stroke")
+    print(f"  {'':<28}" + 2 * f"{'mean   median 5th %':<24}" + f"{'median  mean':<16}mean")
+    for way in done:
+        print(way.row())
+    print(f"  {time.monotonic() - begin:.0f} s", flush=True)
+
+
+def one_limit(place: tuple[Design, int], name: str, tries: int, seed: int) -> dict[str, float]:
+    from limit import search  # brings packages that nothing else here needs
+
+    brush, (design, k) = find_brush(name), place
+    some, wanted = found(design, brush)
+    return search(some[k % len(some)], wanted[k % len(some)], brush, tries, seed)
+
+
+def limits(designs: list[Design], brush, options) -> None:
+    """One stroke of each character, drawn at random, as near as a global search comes."""
+    random = np.random.default_rng(options.seed)
+    places = [(design, int(random.integers(100))) for design in designs[: options.limit]]
+    work = partial(one_limit, name=brush.name, tries=options.tries, seed=options.seed)
+    print(f"one stroke of each of {len(places)} characters, {options.tries} simulations from each beginning")
+    with ProcessPoolExecutor(options.processes) as pool:
+        rows = []
+        for each in pool.map(work, places):
+            rows.append(each)
+            print("  " + "  ".join(f"{key} {value:.4f}" for key, value in each.items()), flush=True)
+    for key in rows[0]:
+        print(f"  {key:<8} mean {np.mean([each[key] for each in rows]):.4f}")
+    won, there = (sum(each[key] - each["closed"] for each in rows) for key in ("refined", "found"))
+    print(f"  refined wins {won / there:.0%} of what the search wins over closed", flush=True)
 
 
 def main() -> None:
@@ -124,15 +183,24 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=500, help="characters, and letters at most")
     parser.add_argument("--seed", type=int, default=20260)
     parser.add_argument("--brush", default="round-6")
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--limit", type=int, metavar="N", help="a global search on N strokes, instead")
+    parser.add_argument(
+        "--tries", type=int, default=4000, help="simulations of that search, per stroke and beginning"
+    )
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
-    lettering, brush = Lettering(options.folder), find_brush(options.brush)
+    lettering, brush = Lettering(fetched(options.folder, PACKAGES)), find_brush(options.brush)
     print(f"brush {brush.name}, seed {options.seed}")
-    measured("Chinese characters at 100 mm", characters(lettering, options.count, options.seed), brush)
+    chosen = lettering.drawings(options.count, options.seed)
+    if options.limit:
+        limits(chosen, brush, options)
+        return
+    measured("Chinese characters at 100 mm", chosen, brush, options.processes)
     for kind, em_mm in FONTS:
         font = lettering.font(kind)
         letters = [letter(font, text, em_mm) for text in TEXT[: options.count]]
-        measured(f"letters of the {kind} font at {em_mm:g} mm to the em", letters, brush)
+        measured(f"letters of the {kind} font at {em_mm:g} mm to the em", letters, brush, options.processes)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,15 @@
 """Poses per stroke for a mark whose middle stays within 0.05 mm of the line: sampling every 0.5 mm, simplifying the
 tool's path (Douglas and Peucker in x, y, z, with the largest tolerance whose mark is as exact), and ours.
 
-Seed and counts are printed; `--count N` curves of each kind.
+Seed and counts are printed; `--count N` curves and strokes of characters, these only where `--lettering FOLDER` names
+the folder where npm puts, or has put, them.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import sys
 import time
 from pathlib import Path
 
@@ -15,6 +17,7 @@ import numpy as np
 
 import brushsvg
 from brushsvg import _core
+from brushsvg.reach import within_reach
 
 TOLERANCE_MM = 0.05
 EVERY_MM = 0.5
@@ -85,6 +88,17 @@ def curves(count: int, random) -> list:
     return strokes
 
 
+def characters(folder: Path, count: int, seed: int, brush) -> list:
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "integration"))
+    from lettering import PACKAGES, Lettering
+    from npm import fetched
+
+    drawings = Lettering(fetched(folder, PACKAGES)).drawings(max(1, count // 10), seed)
+    return [each for drawing in drawings for each in within_reach(brushsvg.strokes(drawing)[0], brush)[0]][
+        :count
+    ]
+
+
 def compared(title: str, strokes, brush) -> None:
     begin = time.process_time()
     ours = _core.compensate(strokes, brush, SHEET_MM, "closed", TOLERANCE_MM)
@@ -95,8 +109,11 @@ def compared(title: str, strokes, brush) -> None:
     few = np.array([len(each.poses_mm) for each in ours.plan.passes])
     sampled = np.array([math.ceil(length_mm(each.poses_mm) / EVERY_MM) + 1 for each in ours.plan.passes])
     thinned = np.array([by_simplifying(stroke, brush) for stroke in strokes])
-    within = sum(miss.within_tolerance for miss in ours.misses)
-    print(f"{title}: {len(strokes)} strokes, {within} within {TOLERANCE_MM} mm")
+    within = np.array([miss.within_tolerance for miss in ours.misses])
+    print(
+        f"{title}: {len(strokes)} strokes, of them {within.sum()} within {TOLERANCE_MM} mm, which are compared"
+    )
+    few, sampled, thinned = few[within], sampled[within], thinned[within]
     for name, counts in (("every 0.5 mm", sampled), ("Douglas-Peucker", thinned), ("ours", few)):
         print(f"  {name:16} mean {counts.mean():6.1f}  median {np.median(counts):6.1f}")
     print(
@@ -111,6 +128,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--lettering", type=Path, metavar="FOLDER")
     args = parser.parse_args()
     brush = brushsvg.find_brush("round-6")
     print(f"seed {args.seed}")
@@ -118,6 +136,8 @@ def main() -> None:
     strokes, _ = brushsvg.strokes(brushsvg.read_drawing(drawing))
     compared("examples/vincent.svg", strokes, brush)
     compared("random curves", curves(args.count, np.random.default_rng(args.seed)), brush)
+    if args.lettering:
+        compared("Chinese characters", characters(args.lettering, args.count, args.seed, brush), brush)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "brushsvg/simulate.hpp"
+#include "middle_line.hpp"
 #include "touch.hpp"
 
 namespace brushsvg::fit {
@@ -20,8 +21,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kWayPerRadian = 1.0;
 /// A dab is given some way, or no factor could make it a stroke.
 constexpr double kLeastWayMm = 1.0;
-/// As where the plan turns in place: the heading between poses is never far from what it says.
-constexpr double kTurnStepRad = 0.2;
 
 /// Values of n uniform cubic B-splines at t in [0, 1].
 void splines(double t, int n, Eigen::Ref<Eigen::RowVectorXd> out) {

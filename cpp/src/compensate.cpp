@@ -276,8 +276,11 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
 }
 
 /// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
-/// of it for that, less only costs time.
-constexpr double kStepShare = 0.4;
+/// of it for that, less costs time, and poses where the brush is loose, which stay as they are.
+constexpr double kStepShare = 0.35;
+/// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
+/// little off the truth between them.
+constexpr double kThinShare = 0.9, kSurely = 0.95;
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
@@ -321,8 +324,8 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         bool turns = false;
         Pass trial = pass;
         closed_form(stroke, brush, line, step_tolerance, turns).into(trial);
-        if (options.few_poses && thin_out(trial, 0.8, 0.9 * options.tolerance_mm, stroke, brush, options.tolerance_mm,
-                                          result.pass, result.miss)) {
+        if (options.few_poses && thin_out(trial, kThinShare, kSurely * options.tolerance_mm, stroke, brush,
+                                          options.tolerance_mm, result.pass, result.miss)) {
             result.miss.has_turn_in_place = turns;
             return result;
         }

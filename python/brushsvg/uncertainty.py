@@ -142,9 +142,11 @@ def _all_effects(plan, brush, marks):
     factor, steps = _factor(covariance), _factor(covariance[lag, lag])
     mixing = np.linalg.pinv(steps) @ factor[lag]  # the independent directions of all, in steps of the lag
     runs = [_both_sides(plan, brush, step / scale[lag]) for step in steps.T]
+    # once: every look at the passes copies the list
+    runs = [(up.passes, down.passes, part) for up, down, part in runs]
     parts = {law: (factor / scale[:, None])[place] for law, place in places.items()}
     for k, trace in enumerate(marks.passes):
-        lag_runs = [(up.passes[k], down.passes[k], part) for up, down, part in runs]
+        lag_runs = [(up[k], down[k], part) for up, down, part in runs]
         yield _effects(brush, trace, parts, lag_runs, mixing)
 
 

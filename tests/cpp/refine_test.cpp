@@ -167,11 +167,11 @@ TEST_CASE("a line, a taper, a corner, a hook, a curve and a blunt head are paint
         Stroke stroke;
         double at_least;  // a little below what was reached
     };
-    for (const Case& each : {Case{line(), 0.973},
-                             {taper(), 0.967},
-                             {corner(), 0.978},
-                             {hook(), 0.972},
-                             {curve(), 0.984},
+    for (const Case& each : {Case{line(), 0.971},
+                             {taper(), 0.965},
+                             {corner(), 0.979},
+                             {hook(), 0.970},
+                             {curve(), 0.982},
                              {head(), 0.81}}) {
         const double closed = overlap_of(each.stroke, compensate(each.stroke, brush).pass, brush);
         const RefinedPass r = refine(each.stroke, brush);

@@ -6,7 +6,7 @@ import numpy as np
 from svgpathtools import Line, parse_path
 
 from brushsvg import _core
-from brushsvg.design import Element, SubPath
+from brushsvg.design import Design, Element, SubPath
 from brushsvg.importers.svg import read_svg
 from brushsvg.text import text_svg
 
@@ -33,6 +33,14 @@ class Lettering:
         files = sorted(f for f in (self.modules / "hanzi-writer-data").glob("*.json") if len(f.stem) == 1)
         chosen = np.random.default_rng(seed).choice(len(files), count, replace=False)
         return [(files[k].stem, json.loads(files[k].read_text(encoding="utf-8"))) for k in chosen]
+
+    def drawings(self, count: int, seed: int) -> list[Design]:
+        """The same as filled shapes, one per stroke."""
+        sheet_mm = (CHARACTER_MM, CHARACTER_MM)
+        return [
+            Design(sheet_mm, tuple(outline(f"s{k}", data) for k, data in enumerate(each["strokes"])))
+            for _, each in self.characters(count, seed)
+        ]
 
     def font(self, kind: str) -> bytes:
         name = FONTS[kind]

@@ -217,7 +217,7 @@ def test_wrong_usage(tmp_path, capsys):
     for flags, said in (
         (["--sheet", "a9"], "a9"),
         (["--page", str(tmp_path / "p.png")], "does not end in .svg"),
-        (["--chart", out], "two of the files are the same"),
+        (["--chart", out], "cannot be two files at once"),
         (["--strokes", "lots"], "invalid choice"),
     ):
         assert main(["chart", out, *flags]) == 2

@@ -568,7 +568,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
-    text = (Path(commands.__file__).parent / "data" / "cells" / "grbl-3axis.toml").read_text()
+    text = (Path(commands.__file__).parents[1] / "data" / "cells" / "grbl-3axis.toml").read_text()
     for old, new, said in (
         (
             "press_mm_s = 6.0",

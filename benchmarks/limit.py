@@ -1,0 +1,84 @@
+"""How well a stroke can be painted at all: a global search that knows nothing of the brush but its simulation.
+
+The poses of a plan are moved in x, y and depth by cubic B-splines along the tool's way; CMA-ES (the package `cma`)
+looks for those whose mark overlaps best, from the plan in closed form with wide steps and from the refined one with
+narrower ones. What it finds is a lower bound of what can be had, above all else that is tried here.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import cma
+import numpy as np
+from scipy.interpolate import BSpline
+
+from brushsvg import _core, score
+
+CONTROLS = 8
+EVERY_MM = 1.5  # poses along the way: a spline bends between those of a plan
+STARTS = (("closed", 1.0), ("refined", 0.3))  # and the first step [mm]
+WINDOW_PX = 6.0  # per mm
+ROUND_MM = 2.0  # paper round both marks, for what moves out of them
+
+
+def search(stroke, wanted: score.Meant, brush, tries: int, seed: int) -> dict[str, float]:
+    """Overlaps as the report has them: closed, refined, and the best that so many simulations from each find."""
+    found, best, most = {}, None, -1.0
+    for method, step_mm in STARTS:
+        start = _core.compensate([stroke], brush, (0.0, 0.0), method).plan.passes[0]
+        found[method] = reported(start, wanted, brush)
+        moved = searched(start, wanted, brush, step_mm, tries, seed)
+        for each in (start, moved):
+            overlap = reported(each, wanted, brush)
+            if overlap > most:
+                best, most = each, overlap
+    assert best is not None
+    return found | {"found": most}
+
+
+def reported(a_pass, wanted: score.Meant, brush) -> float:
+    (trace,) = _core.simulate(plan_of(a_pass, brush), brush).passes
+    return score.areas(score.view([trace], [wanted], brush)).overlap
+
+
+def plan_of(a_pass, brush):
+    plan = _core.Plan()
+    plan.brush, plan.sheet_mm, plan.passes = brush.name, (400.0, 400.0), [a_pass]
+    return plan
+
+
+def searched(start, wanted: score.Meant, brush, step_mm: float, tries: int, seed: int):
+    poses = close_together(np.asarray(start.poses_mm))
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(poses, axis=0), axis=1))])
+    knots = np.concatenate([[0.0] * 3, np.linspace(0.0, 1.0, CONTROLS - 2), [1.0] * 3])
+    splines = BSpline.design_matrix(along / along[-1], knots, 3).toarray()
+    box = score.joint(
+        [wanted.box_mm, score.box_of_paint(_core.simulate(plan_of(start, brush), brush).passes[0], brush)]
+    )
+    low, size = box[:2] - ROUND_MM, box[2:] - box[:2] + 2 * ROUND_MM
+    window = (*low.tolist(), *size.tolist())
+    meant = score.wanted_pixels([wanted], window, WINDOW_PX)
+
+    def moved(x: np.ndarray):
+        out = poses + splines @ x.reshape(CONTROLS, 3)
+        out[:, 2] = np.clip(out[:, 2], -brush.depth_range_mm[1], 0.0)
+        out[[0, -1], 2] = 0.0
+        return _core.Pass(start.stroke, out, start.speed_mm_s)
+
+    def worse(x: np.ndarray) -> float:
+        marks = _core.simulate(plan_of(moved(x), brush), brush, tolerance_mm=0.05)
+        painted = _core.coverage(marks, brush, window, WINDOW_PX)
+        return 1.0 - float(np.minimum(painted, meant).sum() / np.maximum(painted, meant).sum())
+
+    options = {"maxfevals": tries, "seed": seed, "verbose": -9, "tolfun": 1e-5}
+    done, _ = cma.fmin2(worse, np.zeros(3 * CONTROLS), step_mm, options)
+    return moved(done)
+
+
+def close_together(poses: np.ndarray) -> np.ndarray:
+    rows = [poses[:1]]
+    for a, b in itertools.pairwise(poses):
+        count = max(1, int(np.ceil(np.linalg.norm(b - a) / EVERY_MM)))
+        rows.append(a + (b - a) * (np.arange(1, count + 1) / count)[:, None])
+    return np.vstack(rows)

@@ -1,0 +1,59 @@
+"""brushsvg border and brushsvg height: what is run before the first stroke."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .. import convert, machine
+from ..brushes import find_brush
+from ..console import about
+from ..program import Job
+from .choices import brush_of, cell_of, settle, warn_of_example
+from .outputs import check_places, suffix_of, write
+from .work import look
+
+
+def border_file(args) -> None:
+    from ..jobs import around, border
+
+    check_places(args.output)
+    settle(args)
+    cell = cell_of(args)
+    work, marks, _ = look(args, cell, outlines=False)
+    cell = machine.as_exact_as(cell, work.options.tolerance_mm)
+    with about(args.input):
+        post = machine.post_for(suffix_of(args.output), cell)
+        left, bottom, right, top = around_mm = around(machine.bounds_mm(marks, work.brush))
+        made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
+        header = (
+            f"title: border of {work.title or 'untitled'}",
+            f"brush: {work.brush.name}, {len(work.plan.passes)} strokes",
+            "sheet: {:g} x {:g} mm".format(*work.plan.sheet_mm),
+            *convert.notes(work),
+            f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
+            *machine.about(made, Job(args.z_offset)),
+        )
+        text = machine.text_of(post, replace(made, header=header))
+    warn_of_example(args, cell)
+    write({args.output: text})
+
+
+def height_file(args) -> None:
+    from ..jobs import paper_height
+
+    check_places(args.output)
+    cell = machine.as_exact_as(cell_of(args), machine.DEFAULT_TOLERANCE_MM)
+    brush = brush_of(args) or find_brush(convert.DEFAULT_BRUSH)
+    with about(cell.name):
+        post = machine.post_for(suffix_of(args.output), cell)
+        made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
+        header = (
+            "title: how high the paper lies",
+            f"brush: {brush.name}, {sum(1 for _ in made.sections())} strokes",
+            "sheet: {:g} x {:g} mm".format(*args.sheet),
+            f"heights: {args.highest:.10g} to {args.lowest:.10g} mm, {args.step:.10g} mm apart",
+            *machine.about(made),
+        )
+        text = machine.text_of(post, replace(made, header=header))
+    warn_of_example(args, cell)
+    write({args.output: text})

@@ -1,0 +1,64 @@
+"""What was typed and what the drawing says, as the options of the steps."""
+
+from __future__ import annotations
+
+from .. import convert
+from ..brushes import brush_names, find_brush
+from ..cell import Cell
+from ..cell_file import DEFAULT_CELL, cell_names, find_cell
+from ..console import about, say
+from ..errors import Error
+from ..importers import ReadOptions, settings_in
+from ..layout import Layout
+from .outputs import suffix_of
+
+
+def settle(args) -> None:
+    """What was not typed is as the drawing says. It can only name what comes along: it reads no other file."""
+    with about(args.input):
+        said = settings_in(args.input)
+        if args.brush is None and said.get("brush") not in brush_names():
+            said.pop("brush", None)  # the strokes that ask for it are warned of
+        if args.cell is None and said.get("cell", DEFAULT_CELL) not in cell_names():
+            raise Error(f"the drawing asks for cell {said['cell']}, which does not come along: give --cell")
+    for name, value in said.items():
+        if getattr(args, name) is None:
+            setattr(args, name, value)
+
+
+def brush_of(args):
+    with about(args.brush or ""):
+        return find_brush(args.brush) if args.brush is not None else None
+
+
+def cell_of(args) -> Cell:
+    with about(args.cell or ""):
+        return find_cell(args.cell) if args.cell is not None else find_cell()
+
+
+def reading_of(args) -> ReadOptions:
+    return ReadOptions(args.sheet, args.units, args.select, lenient=True)  # damage is told with all the rest
+
+
+def layout_of(args) -> Layout:
+    return Layout(tuple(args.layer or ()), args.width, args.fit, args.scale, args.origin)
+
+
+def options_of(args, cell: Cell, brush=None) -> convert.Options:
+    return convert.Options(
+        brush=brush or brush_of(args),
+        reading=reading_of(args),
+        layout=layout_of(args),
+        compensation=args.compensation or convert.Options.compensation,
+        lag_mm=args.lag,
+        tolerance_mm=(suffix_of(args.input) != ".json" and args.tolerance) or convert.Options.tolerance_mm,
+        paths_as=args.paths_as,
+        wide=args.wide or convert.Options.wide,
+        speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
+    )
+
+
+def warn_of_example(args, cell: Cell) -> None:
+    if cell.paper.example and suffix_of(args.output) != ".json":
+        sentence = "the paper's place is an example: teach yours (brushsvg cell new --taught ...)"
+        say(cell.name, "paper", sentence)

@@ -1,0 +1,41 @@
+"""Where a command writes: places asked for before any work, all files or none."""
+
+from __future__ import annotations
+
+import os
+
+from ..console import RefusedError, about, clear_stage, stage, tell
+from ..files import write_files
+
+
+def suffix_of(path: str | None) -> str:
+    return os.path.splitext(path or "")[1].lower()
+
+
+def check_places(*paths: str | None) -> None:
+    """Whether the outputs can be written, as far as that can be said before any work is done."""
+    for path in filter(None, paths):
+        folder = os.path.dirname(os.path.realpath(path))
+        reason = None
+        if os.path.isdir(path):
+            reason = "it is a directory"
+        elif not os.path.isdir(folder):
+            reason = "its directory does not exist"
+        elif not os.access(folder, os.W_OK | os.X_OK):
+            reason = "its directory is not writable"
+        if reason:
+            raise RefusedError([(path, "", f"the file cannot be written: {reason}")])
+
+
+def write(files) -> None:
+    stage("writing")
+    with about(""):  # the error names the file
+        write_files(files)
+    clear_stage()
+
+
+def tell_list(names: list[str], describe) -> None:
+    width = max(map(len, names))
+    for name in names:
+        with about(name):
+            tell(f"{name.ljust(width)}  {describe(name)}\n")

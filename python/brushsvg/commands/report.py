@@ -1,0 +1,54 @@
+"""brushsvg report: how near the paint comes to the drawing, with one brush or with all."""
+
+from __future__ import annotations
+
+from .. import convert, report
+from ..brushes import brush_names, find_brush
+from ..console import RefusedError, about, stage, tell
+from ..fold import folded
+from ..importers import read_drawing
+from ..layout import arrange
+from .choices import cell_of, layout_of, options_of, reading_of, settle
+from .outputs import check_places, suffix_of, write
+from .work import look
+
+
+def report_file(args) -> None:
+    check_places(args.preview)
+    if args.all_brushes:
+        return _all_brushes(args)
+    args.brush = args.brush[0] if args.brush else None
+    settle(args)
+    cell = cell_of(args)
+    work, marks, warnings = look(args, cell, outlines=suffix_of(args.preview) == ".svg", partly=True)
+    with about(args.input):
+        stage("trying other sizes")
+        advice = convert.advice(work)
+        if args.preview:
+            write({args.preview: convert.misses_picture(suffix_of(args.preview), work, marks)})
+        suffix = ".json" if args.json else ".txt"
+        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice)
+    if work.plan.passes or args.json:
+        tell(text)
+    elif advice:
+        tell(advice + "\n")
+    if work.refused:
+        refused = folded((notice.where, notice.sentence) for notice in work.refused)
+        raise RefusedError([(args.input, *each) for each in refused])
+
+
+def _all_brushes(args) -> None:
+    from .. import suit
+
+    given, args.brush = args.brush or [], None
+    settle(args)
+    asked = [*brush_names(), *(name for name in given if name not in brush_names())]
+    brushes = []
+    for name in asked:
+        with about(name):
+            brushes.append(find_brush(name))
+    cell = cell_of(args)
+    with about(args.input):
+        suits = convert.suits(args.input, options_of(args, cell), brushes, stage)
+        title = arrange(read_drawing(args.input, reading_of(args)), layout_of(args)).title
+        tell(suit.to_json(title, suits) if args.json else report.brushes_text(title, suits))

@@ -1,0 +1,37 @@
+"""A drawing or plan prepared and simulated, with what is to be warned of."""
+
+from __future__ import annotations
+
+from .. import convert, machine, paint
+from ..cell import Cell
+from ..console import about, say, stage, warn
+from .choices import options_of
+from .outputs import suffix_of
+
+LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
+
+
+def prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
+    if suffix_of(args.input) == ".json":
+        for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
+            if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
+                say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
+    with about(args.input):
+        return convert.prepare(args.input, options_of(args, cell, brush), stage, partly)
+
+
+def look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
+    """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
+    work = prepare(args, cell, partly=partly)
+    with about(args.input):
+        cell = machine.as_exact_as(cell, work.options.tolerance_mm)
+        if in_loads:
+            work = convert.in_loads(work, cell)
+            too_long = paint.too_long(work.plan, work.brush, cell)
+        marks = convert.predict(work, outlines, stage, whole)
+        warnings = [(n.where, n.sentence) for n in work.notices]
+        if work.plan.passes or not work.refused:
+            warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+        warnings += too_long if in_loads else []
+    warn(args.input, warnings)
+    return work, marks, warnings

@@ -1,0 +1,105 @@
+"""The commands about a machine: border, height, check, cell, and the drawing program to install for."""
+
+from __future__ import annotations
+
+from . import values
+from .flags import add_choices, add_input, add_layout, add_looks, add_wide, add_z_offset, programs
+from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
+
+
+def add_border(commands) -> None:
+    border = commands.add_parser("border", help="make an air run round what will be painted, at safe height")
+    add_input(border)
+    border.add_argument("output", metavar="OUT", help=programs())
+    add_choices(border)
+    add_z_offset(border)
+    border.set_defaults(run="border_file", parser=border, check=_check_border)
+
+
+def _check_border(args) -> None:
+    check_drawing(args)
+    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], [(args.output, PROGRAMS)])
+
+
+def add_height(commands) -> None:
+    height = commands.add_parser("height", help="make strokes that tell how high the paper lies")
+    height.add_argument("output", metavar="OUT", help=programs())
+    height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
+    height.add_argument(
+        "--sheet", metavar="WxH", type=values.size, default=(200.0, 100.0), help="default: 200x100"
+    )
+    height.add_argument(
+        "--from", metavar="MM", dest="highest", type=values.height, default=1.0, help="default: 1"
+    )
+    height.add_argument(
+        "--to", metavar="MM", dest="lowest", type=values.height, default=-1.0, help="default: -1"
+    )
+    height.add_argument("--step", metavar="MM", type=values.step, default=0.1, help="default: 0.1")
+    height.set_defaults(run="height_file", parser=height, check=_check_height)
+
+
+def _check_height(args) -> None:
+    check_files(args, [(args.brush, None)], [(args.output, PROGRAMS)])
+
+
+def add_check(commands) -> None:
+    check = commands.add_parser(
+        "check", help="read a program back, simulate it and hold it against a drawing"
+    )
+    check.add_argument("program", metavar="PROGRAM", help=programs())
+    check.add_argument(
+        "input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint"
+    )
+    check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
+    check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
+    add_layout(check)
+    add_wide(check)
+    check.add_argument(
+        "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
+    )
+    check.add_argument("--lenient", action="store_true", help="take what is sound of damaged geometry")
+    check.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
+    check.add_argument("--json", action="store_true", help="figures as JSON")
+    check.set_defaults(
+        run="check_file", parser=check, check=_check_check, lag=None, compensation=None, tolerance=None
+    )
+
+
+def _check_check(args) -> None:
+    if args.input is not None:
+        check_drawing(args)
+    read = [(args.program, PROGRAMS), (args.input, DRAWINGS), (args.brush, None)]
+    check_files(args, read, [(args.preview, PICTURES)])
+
+
+def add_cell(commands) -> None:
+    about, told = "look at cells: machines and their limits", "heights, speeds and limits"
+    whats = add_looks(commands, "cell", about, told, "cell.toml")
+    new = whats.add_parser("new", help="write a cell file of your own, to be edited")
+    new.add_argument("output", metavar="FILE", help="a cell.toml")
+    new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
+    new.add_argument(
+        "--taught",
+        metavar="X,Y,Z",
+        action="append",
+        type=values.point3,
+        help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
+        "left edge, and anywhere else on it, each just touching, in the robot's frame",
+    )
+    new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
+
+
+def _check_cell_new(args) -> None:
+    check_extension(args, args.output, (".toml",))
+    if len(args.taught or ()) not in (0, 3, 4):
+        args.parser.error(f"--taught is given {len(args.taught)} times, not three or four")
+
+
+def add_install_plugin(commands) -> None:
+    install = commands.add_parser("install-plugin", help="put our extension where a drawing program looks")
+    install.add_argument("plugin", metavar="inkscape", choices=("inkscape",), help="which one")
+    install.add_argument(
+        "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"
+    )
+    install.set_defaults(run="install_plugin", parser=install)
