@@ -60,7 +60,7 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
                 assert found.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
     assert np.sqrt(np.mean(np.square(z))) < 2.2 and np.abs(z).max() < 4
     sure = np.sqrt(np.array(made.fit.covariance)[-4, -4])
-    assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.2
+    assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # 1.2 is what was known before
     assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
     assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
 
