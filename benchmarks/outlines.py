@@ -16,9 +16,9 @@ import numpy as np
 
 from brushsvg import _core
 from brushsvg.importers.svg import read_svg
-from brushsvg.outlines import _connected, _strokes, filled, outline_strokes
+from brushsvg.outlines import LEAST_SHARE, _connected, _strokes, filled, outline_strokes
 from brushsvg.outlines.habit import joined, ordered
-from brushsvg.outlines.skeleton import LEAST_SHARE, skeleton
+from brushsvg.outlines.skeleton import skeleton
 from brushsvg.text import text_svg
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
@@ -57,12 +57,13 @@ def main() -> None:
     filling, shapes = ms_each(elements, filled)
     areas = [area for shape in shapes for area in _connected(shape)]
     per_glyph = len(areas) / len(shapes)
-    axis, _ = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE))
-    joining, found = ms_each(areas, skeleton)
+    axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE))
+    joined_up = list(zip(areas, axes, strict=True))
+    joining, found = ms_each(joined_up, lambda each: skeleton(each[0], *each[1]))
     writing, _ = ms_each(
         [each for each in found if each.pieces], lambda each: ordered(joined(each.pieces, each))
     )
-    strokes, made = ms_each(areas, _strokes)
+    strokes, made = ms_each(joined_up, lambda each: _strokes(each[0], *each[1]))
     whole, _ = ms_each(shapes, outline_strokes)
     edges = np.mean([sum(map(len, shape)) for shape in shapes])
     count = sum(len(each) for each in made)
@@ -72,7 +73,7 @@ def main() -> None:
     print(f"{count / len(shapes):.2f} strokes each")
     print(f"  {'flattening and filling':<46} {filling:7.2f} ms")
     print(f"  {'medial axis':<46} {axis * per_glyph:7.2f} ms")
-    print(f"  {'crossings, lines':<46} {(joining - axis) * per_glyph:7.2f} ms")
+    print(f"  {'crossings, lines':<46} {joining * per_glyph:7.2f} ms")
     print(f"  {'direction, corners, order':<46} {writing * per_glyph:7.2f} ms")
     print(f"  {'curves, widths, parts of the shape':<46} {(strokes - joining - writing) * per_glyph:7.2f} ms")
     print(f"  {'all (aim: 10 ms)':<46} {filling + whole:7.2f} ms")

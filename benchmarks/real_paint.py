@@ -5,7 +5,11 @@
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
 3 mm. Beside ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
-that is linear in depth.
+that is linear in depth, each fitted to the largest `fixed`; those with a lag once more to what ours is fitted to.
+
+Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` goes on from there to the largest mean of `fixed` and
+`shift` of the same laws. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the
+set's displacement 2 (at one depth lag 1, half width 1, no height); `edges` also has a shift for each fitted stroke.
 """
 
 from __future__ import annotations
@@ -28,6 +32,18 @@ from brushsvg.masks import mask_outlines
 LEVEL = 70
 FARTHEST_MM = 3.0
 NEAR_MM = 8.0
+JOINED_MM = 1.5
+FEW = 30  # strokes on which the search begins
+MARGIN_MM = 8.0  # around way and paint, while searching
+DISCS = (
+    (0, False, "disc, no lag"),
+    (1, False, "disc, constant r"),
+    (2, False, "disc, r0 + r1 depth"),
+    (1, True, "constant r, for both"),
+    (2, True, "r0 + r1 d, for both"),
+)
+OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
+ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAWS = ("lag", "tip_gap", "half_width")
 SETS = ("round_v1", "small_16_20", "loops_constant_depth", "marker_control")
 
@@ -78,19 +94,22 @@ def _loops(data) -> list[Stroke]:
         right, bottom = np.minimum(np.ceil(pixels.max(axis=0) + 60).astype(int), paint.shape[::-1])
         part = np.where(near > 0, paint, 0)[top:bottom, left:right]
         window = (left * px, height - bottom * px, (right - left) * px, (bottom - top) * px)
-        out.append(_stroke(np.column_stack([xy, -depth]), part, window, px))
+        out.append(_stroke(np.column_stack([xy, -depth]), part, window, px, filled=False))
     return out
 
 
-def _stroke(poses, paint, window, px) -> Stroke:
-    """One blob: the largest, and what lies within 1.5 mm of it (a stroke that broke off where paint ran out)."""
-    above = np.uint8(paint > LEVEL)
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(above, connectivity=8)
+def _stroke(poses, paint, window, px, filled=True) -> Stroke:
+    """One blob: parts less than twice JOINED_MM apart are one, and the largest is the stroke. filled: so are the gaps
+    between hairs; not where strokes come back beside themselves."""
+    size = 2 * round(JOINED_MM / px) + 1
+    near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    closed = cv2.morphologyEx(np.uint8(paint > LEVEL), cv2.MORPH_CLOSE, near)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
     mask = np.zeros(paint.shape, bool)
     if count > 1:
         best = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-        mask = labels == best
-    return Stroke(poses, mask, np.where(mask, paint, 0), window, px)
+        mask = (labels == best) & (filled | (paint > LEVEL))
+    return Stroke(poses, mask, np.where(mask, np.maximum(paint, LEVEL + 1), 0), window, px)
 
 
 # Scores ---------------------------------------------------------------------------------------------
@@ -152,14 +171,20 @@ def disc_marks(strokes, x, lag_terms) -> list[np.ndarray]:
     return out
 
 
-def fit_disc(strokes, lag_terms) -> np.ndarray:
-    """Largest mean overlap on the strokes, one displacement for all."""
+def fit_disc(strokes, lag_terms, both=False) -> np.ndarray:
+    """Largest mean overlap on the strokes, one displacement for all; both: largest mean of `fixed` and `shift`."""
+
+    def score(predicted, stroke):
+        fixed = overlap(predicted, stroke.mask)
+        if not both:
+            return fixed
+        return 0.5 * (fixed + best_shift(predicted[::2, ::2], stroke.mask[::2, ::2], 2 * stroke.px)[0])
 
     def loss(x):
         if np.any(x[4:] < -20) or x[0] < 0:
             return 1.0
         return 1 - np.mean(
-            [overlap(p, s.mask) for p, s in zip(disc_marks(strokes, x, lag_terms), strokes, strict=True)]
+            [score(p, s) for p, s in zip(disc_marks(strokes, x, lag_terms), strokes, strict=True)]
         )
 
     best = None
@@ -195,58 +220,152 @@ def fit_ours(strokes, name):
     return _core.fit_marks(painted, None, options), options
 
 
-def by_overlap(strokes, fit, options, most=120):
-    """The fitted laws, changed to the largest mean overlap on the same strokes: lag, tip gap and width each by one
-    factor, the footprint's two lengths, and the set's displacement. Edges say where a mark lies, overlap also what to
-    do about marks that vary in width and place: paint a little fatter. From our fit, and from a disc about the contact.
+def by_overlap(strokes, fit, options):
+    """The fitted brush, changed to the largest overlap on the same strokes, mean of `fixed` and `shift`, as scored.
+    Edges say what the usual mark is, overlap also what to predict where marks vary and lie off: a little more.
+
+    Changed are lag and half width (as values at control depths), tip gap, the footprint's two lengths, the height of
+    the paper and the set's displacement. A simplex search, from the edges' fit and from a disc; on a part of the
+    strokes first. Returns a fit of the same kind, the overlap reached and how many numbers were changed.
     """
-    chosen = strokes[:: max(1, len(strokes) // 40)]
-    laws = fit.laws
+    begin = _controls(fit, options)
+    half = begin["half_width"].sum()
+    disc = begin | {"tip_gap": np.array([half]), "shape": np.ones(2)}
+    starts = [begin, disc] if options.round_tail else [begin]
+    sizes = np.cumsum([len(v) for v in begin.values()])[:-1]
 
-    def changed(x):
-        new = _core.MarkLaws(
-            *([float(f) * c for c in getattr(laws, name)] for f, name in zip(x, LAWS, strict=False)),
-            float(x[3]),
-            float(x[4]),
-            laws.round_tail,
-        )
-        return SimpleNamespace(laws=new, shift_mm=np.array(fit.shift_mm) + x[5:], height_mm=fit.height_mm)
+    def named(x):
+        return dict(zip(begin, np.split(x, sizes), strict=True))
 
-    def loss(x):
-        if np.any(x[:3] < 0.02) or np.any(x[3:5] < 0.1):
-            return 1.0
-        predicted = our_marks(chosen, changed(x), options)
-        return 1 - np.mean([overlap(p, s.mask) for p, s in zip(predicted, chosen, strict=True)])
+    def loss_on(chosen):
+        seen = [_coarse(stroke) for stroke in chosen]
 
-    steps = np.diag([0.2, 0.3, 0.25, -0.2, -0.2, 0.4, 0.4])
-    deepest = np.vander([options.deepest_mm], 9, increasing=True)[0]
-    gap, half = (float(deepest[: len(c)] @ c) for c in (laws.tip_gap, laws.half_width))
-    starts = [
-        np.array([1.0, 1.0, 1.0, laws.widest_per_half, laws.front_per_half, 0.0, 0.0]),
-        np.array([1.15, max(0.1, 1.25 * half / gap) if gap > 0 else 1.0, 1.25, 1.0, 1.0, 0.0, 0.0]),
-    ]
-    best = None
-    for x in starts:
-        simplex = np.vstack([x, *(x + d for d in steps)])
-        found = minimize(loss, x, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": most})
-        best = found if best is None or found.fun < best.fun else best
-    return changed(best.x), best.x
+        def loss(x):
+            now = named(x)
+            if _impossible(now, options):
+                return 1.0
+            return 1 - np.mean(_soft_overlaps(chosen, seen, _from_controls(now, fit, options), options))
+
+        return loss
+
+    few, steps = (
+        loss_on(strokes[:: max(1, len(strokes) // FEW)]),
+        np.concatenate(list(_steps(begin).values())),
+    )
+    found = [_simplex(few, np.concatenate(list(start.values())), steps, 260) for start in starts]
+    best = min(found, key=lambda one: one.fun)
+    best = _simplex(loss_on(strokes), best.x, 0.4 * steps, 200)
+    return _from_controls(named(best.x), fit, options), 1 - best.fun, len(best.x)
+
+
+def _simplex(loss, x, steps, most):
+    simplex = np.vstack([x, *(x + d for d in np.diag(steps))])
+    told = {"initial_simplex": simplex, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
+    return minimize(loss, x, method="Nelder-Mead", options=told)
+
+
+def _controls(fit, options) -> dict[str, np.ndarray]:
+    """The unknowns of a fit: lag and half width as values at as many depths as they have numbers."""
+    laws, deepest = fit.laws, options.deepest_mm
+    depths = _control_depths(options.lag_terms, deepest)
+    half = np.polyval(laws.half_width[::-1], np.linspace(0, deepest, options.half_width_terms + 1))
+    return {
+        "lag": np.polyval(laws.lag[::-1], depths),
+        "tip_gap": np.array([laws.tip_gap[1] * deepest]),
+        "half_width": np.diff(half),
+        "shape": np.array([laws.widest_per_half, laws.front_per_half]),
+        "height": np.array([fit.height_mm] if options.height_mm.sigma > 0 else []),
+        "shift": np.array(fit.shift_mm),
+    }
+
+
+def _steps(x: dict) -> dict[str, np.ndarray]:
+    size = {"lag": 0.8, "tip_gap": 0.4, "half_width": 0.4, "shape": 0.2, "height": 0.4, "shift": 0.4}
+    return {name: np.full(len(values), size[name]) for name, values in x.items()}
+
+
+def _control_depths(terms: int, deepest: float) -> np.ndarray:
+    return np.linspace(0, deepest, terms) if terms > 1 else np.array([deepest / 2])
+
+
+def _through(depths, values, powers) -> list[float]:
+    out = np.zeros(max(powers) + 1)
+    out[list(powers)] = np.linalg.solve(np.asarray(depths)[:, None] ** np.array(powers), values)
+    return out.tolist()
+
+
+def _from_controls(x: dict, fit, options) -> SimpleNamespace:
+    deepest, terms = options.deepest_mm, options.half_width_terms
+    laws = _core.MarkLaws(
+        _through(_control_depths(options.lag_terms, deepest), x["lag"], range(options.lag_terms)),
+        [0.0, float(x["tip_gap"][0]) / deepest],
+        _through(np.linspace(0, deepest, terms + 1)[1:], np.cumsum(x["half_width"]), range(1, terms + 1)),
+        *(float(v) for v in x["shape"]),
+        fit.laws.round_tail,
+    )
+    height = float(x["height"][0]) if len(x["height"]) else fit.height_mm
+    return SimpleNamespace(laws=laws, shift_mm=x["shift"], height_mm=height)
+
+
+def _impossible(x: dict, options) -> bool:
+    """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes."""
+    height = float(x["height"][0]) if len(x["height"]) else 0.0
+    if abs(height) > 3.0 or x["shape"].min() < 0.1 or x["half_width"][0] <= 0:
+        return True
+    new = _from_controls(x, SimpleNamespace(laws=SimpleNamespace(round_tail=True), height_mm=0.0), options)
+    depths = np.linspace(0, options.deepest_mm + max(0.0, height), 12)
+    half = np.polyval(new.laws.half_width[::-1], depths)
+    return np.polyval(new.laws.lag[::-1], depths).min() < 0.02 or np.diff(half).min() < 0 or half[-1] > 20
+
+
+def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
+    """The paint in pixels twice as large, and their window: no larger than way and paint need."""
+    x, y, _, tall = stroke.window
+    way = np.column_stack([stroke.poses[:, 0] - x, y + tall - stroke.poses[:, 1]]) / stroke.px
+    seen = np.vstack([way, np.argwhere(stroke.mask)[:, ::-1]])
+    left, top = np.maximum(np.floor(seen.min(axis=0) - MARGIN_MM / stroke.px).astype(int), 0)
+    right, bottom = np.ceil(seen.max(axis=0) + MARGIN_MM / stroke.px).astype(int)
+    part = np.float32(stroke.mask[top:bottom, left:right])
+    height, width = (n // 2 for n in part.shape)
+    part = cv2.resize(part[: 2 * height, : 2 * width], (width, height), interpolation=cv2.INTER_AREA)
+    size = np.array([width, height]) * 2 * stroke.px
+    return part, (x + left * stroke.px, y + tall - top * stroke.px - size[1], *size)
+
+
+def _soft_overlaps(strokes, seen, fit, options) -> list[tuple[float, float]]:
+    """`fixed` and `shift` of anti-aliased pictures, which change smoothly; footprints of half as many vertices."""
+    brush = brush_for(strokes, fit, options)
+    outlines = [(one.depth_mm, np.array(one.outline_mm)[::2]) for one in brush.footprints.dragged]
+    brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
+    plan, out = _core.Plan("fitted", "", (1.0, 1.0), []), []
+    for stroke, (mask, window) in zip(strokes, seen, strict=True):
+        plan.passes = [_moved(stroke, fit)]
+        painted = _core.coverage(_core.simulate(plan, brush, ROUGHLY_MM), brush, window, 0.5 / stroke.px)
+        both = float(np.minimum(mask, painted).sum())
+        either = float(mask.sum() + painted.sum()) - both
+        fixed = both / either if either > 0 else 1.0
+        out.append((fixed, max(fixed, best_shift(painted, mask, 2 * stroke.px)[0])))
+    return out
+
+
+def brush_for(strokes, fit, options) -> _core.Brush:
+    deepest = max(options.deepest_mm, *(-stroke.poses[:, 2].min() for stroke in strokes))
+    return brush_of(fit.laws, "fitted", (0.0, deepest + max(0.0, fit.height_mm)))
+
+
+def _moved(stroke: Stroke, fit) -> _core.Pass:
+    """The TCP's way on the paper as the fit found it to lie."""
+    poses = np.array(stroke.poses)
+    poses[:, :2] += fit.shift_mm
+    poses[:, 2] = np.minimum(poses[:, 2] - fit.height_mm, 0.0)
+    return _core.Pass("stroke", poses)
 
 
 def our_marks(strokes, fit, options) -> list[np.ndarray]:
-    deepest = max(options.deepest_mm, *(-stroke.poses[:, 2].min() for stroke in strokes))
-    reach = deepest + max(0.0, fit.height_mm)
-    brush = brush_of(fit.laws, "fitted", (0.0, reach))
-    passes = []
-    for k, stroke in enumerate(strokes):
-        poses = np.array(stroke.poses)
-        poses[:, :2] += fit.shift_mm
-        poses[:, 2] = np.minimum(poses[:, 2] - fit.height_mm, 0.0)
-        passes.append(_core.Pass(str(k), poses))
-    plan = _core.Plan("fitted", "", (1.0, 1.0), passes)
-    out = []
-    for one, stroke in zip(passes, strokes, strict=True):
-        plan.passes = [one]
+    brush = brush_for(strokes, fit, options)
+    plan, out = _core.Plan("fitted", "", (1.0, 1.0), []), []
+    for stroke in strokes:
+        plan.passes = [_moved(stroke, fit)]
         marks = _core.simulate(plan, brush)
         out.append(_core.coverage(marks, brush, stroke.window, 1 / stroke.px) > 0.5)
     return out
@@ -289,23 +408,53 @@ def picture(strokes, predicted, shifts, score, path: Path) -> None:
     cv2.imwrite(str(path), np.vstack(rows))
 
 
-def residual_words(strokes, fit) -> list[str]:
-    """What the distances that stay are made of: width of the whole mark, its place, its shape."""
-    width, whole, place = [], [], []
-    for miss in fit.marks:
-        d = np.array(miss.distance_mm)
-        d = d[np.abs(d) < 5 * fit.noise_mm]
-        if len(d) > 20:
-            width.append(d.mean())
-            whole.append(d.std())
-        place.append(np.hypot(*miss.displacement_mm))
-    total = np.sqrt(np.mean(np.square(width)) + np.mean(np.square(whole)))
+def laws_in_words(fit) -> str:
+    def told(law):
+        return " ".join(f"{c:+.3f} d^{k}" if k else f"{c:.3f}" for k, c in enumerate(law) if k == 0 or c)
+
+    laws = fit.laws
+    return (
+        "; ".join(f"{name} = {told(getattr(laws, name))}" for name in LAWS)
+        + f"; widest {laws.widest_per_half:.2f} h from the tip, front {laws.front_per_half:.2f} h; paper "
+        f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm"
+    )
+
+
+def residual_words(strokes, fit, options) -> list[str]:
+    """What is missing to a whole overlap, by what wins it back when each stroke may have its own: place, width, lag."""
+    laws, seen = fit.laws, [_coarse(stroke) for stroke in strokes]
+
+    def places(width, lag):
+        tried = SimpleNamespace(
+            laws=_core.MarkLaws(
+                [lag * c for c in laws.lag],
+                laws.tip_gap,
+                [width * c for c in laws.half_width],
+                laws.widest_per_half,
+                laws.front_per_half,
+                laws.round_tail,
+            ),
+            shift_mm=fit.shift_mm,
+            height_mm=fit.height_mm,
+        )
+        return np.array(_soft_overlaps(strokes, seen, tried, options))
+
+    by = np.array([[places(width, lag) for lag in OWN_LAGS] for width in OWN_WIDTHS])
+    usual = (OWN_WIDTHS.index(1.0), OWN_LAGS.index(1.0))
+    fixed, place = by[usual][:, 0].mean(), by[usual][:, 1].mean()
+    own_width = by[:, usual[1], :, 1].max(axis=0).mean()
+    own_both = by[..., 1].max(axis=(0, 1)).mean()
+    best = np.array(OWN_WIDTHS)[by[:, usual[1], :, 1].argmax(axis=0)]
     return [
-        f"edges lie {total:.2f} mm off (rms, {100 * fit.left_aside:.0f} % of the points left aside as wild)",
-        f"  of it {np.std(width):.2f} mm: whole marks wider or narrower than their depth says (paint load, bristles)",
-        f"  of it {np.sqrt(np.mean(np.square(whole))):.2f} mm: along each mark (hairs, shape, depth)",
-        f"  displacements found: {np.sqrt(np.mean(np.square(place))):.2f} mm (rms); without them they would add to it",
+        f"what is missing to 1: place {place - fixed:.3f}, width of the whole mark {own_width - place:.3f} (best "
+        f"widths {100 * best.std():.0f} % apart, rms), lag of the whole mark {own_both - own_width:.3f}; left "
+        f"{1 - own_both:.3f}: ends, hairs, gaps, blocks of the compressed pictures"
     ]
+
+
+def _paint_per_mm(strokes) -> float:
+    lengths = [np.hypot(*np.diff(s.poses[:, :2], axis=0).T).sum() for s in strokes]
+    return float(np.median([s.mask.sum() * s.px**2 / n for s, n in zip(strokes, lengths, strict=True)]))
 
 
 def main():
@@ -318,10 +467,13 @@ def main():
     for name in args.sets:
         strokes = load(args.folder, name)
         seen, unseen = strokes[::2], strokes[1::2]
-        print(f"\n{name}: {len(seen)} strokes fitted, {len(unseen)} scored")
+        print(
+            f"\n{name}: {len(seen)} strokes fitted, {len(unseen)} scored; {_paint_per_mm(seen):.2f} and "
+            f"{_paint_per_mm(unseen):.2f} mm^2 of paint per mm of way (median)"
+        )
         if not args.no_peers:
-            for terms, what in ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth")):
-                x = fit_disc(seen, terms)
+            for terms, both, what in DISCS:
+                x = fit_disc(seen, terms, both)
                 fixed, moved, _ = scores(unseen, disc_marks(unseen, x, terms))
                 lag = ", ".join(f"{v:.2f}" for v in x[4:])
                 print(f"  {what:22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  r {lag}", flush=True)
@@ -336,23 +488,18 @@ def main():
             f"{fit.iterations} iterations{converged})",
             flush=True,
         )
-        best, factors = by_overlap(seen, fit, options)
+        best, reached, numbers = by_overlap(seen, fit, options)
+        took = time.perf_counter() - begin
         predicted = our_marks(unseen, best, options)
         fixed, moved, shifts = scores(unseen, predicted)
-        told = ", ".join(f"{f:.2f}" for f in factors[:3])
-        told += f"; widest {factors[3]:.2f} h, front {factors[4]:.2f} h"
         print(
-            f"  {'ours, overlap':22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  (lag, tip gap, width times "
-            f"{told})"
+            f"  {'ours, overlap':22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  ({took:.1f} s; {reached:.3f} "
+            f"on the strokes fitted; {numbers} numbers)",
+            flush=True,
         )
-        laws = fit.laws
-        for law in LAWS:
-            print(f"    {law} = " + " ".join(f"{c:+.3f} d^{k}" for k, c in enumerate(getattr(laws, law))))
-        print(
-            f"    widest {laws.widest_per_half:.2f} h, front {laws.front_per_half:.2f} h, paper {fit.height_mm:+.2f}"
-            f" mm, sheet {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; a shift for each fitted stroke"
-        )
-        for line in [*residual_words(seen, fit), *fit.remarks]:
+        for what, one in (("edges", fit), ("overlap", best)):
+            print(f"    {what}: {laws_in_words(one)}")
+        for line in [*residual_words(unseen, best, options), *fit.remarks]:
             print(f"    {line}")
         if args.pictures:
             picture(unseen, predicted, shifts, moved, args.pictures / f"{name}.png")

@@ -17,6 +17,8 @@ void bind_region(py::module_& m) {
         py::arg("outlines"), py::arg("rule") = "nonzero", unlocked,
         "Rings of the shape that closed outlines fill; they may cross and turn either way.");
     m.def("convex_hull", &convex_hull, py::arg("points"), "Convex hull of points (n, 2), counter-clockwise.");
+    m.def("clearance", &clearance, py::arg("rings"), py::arg("points"), unlocked,
+          "Distance [mm] of points (n, 2) from the outline, on whichever side of it.");
     m.def("area", &area, py::arg("rings"), "Area [mm^2], holes (clockwise) taken off.");
     m.def("overlap", &overlap, py::arg("rings_a"), py::arg("rings_b"), unlocked,
           "Area of the intersection over area of the union.");

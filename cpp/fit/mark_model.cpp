@@ -1,39 +1,16 @@
 #include "mark_model.hpp"
 
-#include <ceres/jet.h>
-
 #include <cmath>
 
 #include "bernstein.hpp"
-#include "drop.hpp"
-#include "trace.hpp"
 
 namespace brushsvg::fit {
 namespace {
 
-constexpr int kMostTerms = 4;
-using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
-
 // Footprints so close that the union of discs 0.5 mm wide scallops by 0.01 mm, wider ones by less.
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
 constexpr double kAboveMm = 2.0;       // whence the brush comes: above any error of the paper's height
-constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its derivatives
-constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
 constexpr double kLeastRingMm2 = 0.2;  // specks
-constexpr double kGapMm = 0.3;         // between footprints that count as side by side: more than they are apart
-constexpr double kNearMm = 0.5;        // a way out that is shorter than a brush's hairs are wide is not improved on
-constexpr double kGrazing = 0.3;       // cosine below which an edge that is met aslant says nothing more exact
-
-double at(const std::vector<double>& c, double d) {
-    double y = 0.0;
-    for (std::size_t i = c.size(); i-- > 0;) y = y * d + c[i];
-    return y;
-}
-double slope_at(const std::vector<double>& c, double d) {
-    double y = 0.0;
-    for (std::size_t i = c.size(); i-- > 1;) y = y * d + double(i) * c[i];
-    return y;
-}
 
 /// From above the paper down to the first pose and from the last one up again, as a robot moves.
 Poses from_above(const Poses& poses) {
@@ -72,8 +49,6 @@ void add_points(const Ring& ring, double spacing, std::vector<double>& xy) {
     }
 }
 
-}  // namespace
-
 /// Unit normals to the right of a closed row of points, from the neighbours of each.
 void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
     const Index n = end - begin;
@@ -84,16 +59,7 @@ void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
     }
 }
 
-/// The footprint at one instant.
-struct MarkModel::Instant {
-    Eigen::Vector2d contact, heading, middle;  ///< of a circle round the footprint
-    double radius, depth, gap, half, half_slope, gap_slope;
-    double gone;  ///< no point of the footprint has moved farther than this since the first instant
-    Drop drop;
-    Eigen::Matrix<double, 2, kMostTerms + 1> contact_by, heading_by;
-    double depth_by;  ///< by the height
-    bool heading_known;
-};
+}  // namespace
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options)
     : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms},
@@ -174,215 +140,6 @@ MarkLaws MarkModel::laws(const VectorXd& shared) const {
     out.front_per_half = shared[layout_.front()];
     out.round_tail = round_tail_;
     return out;
-}
-
-bool MarkModel::instants(const Painted& mark, const VectorXd& shared, std::vector<Instant>& out) const {
-    std::vector<Jet> c(std::size_t(layout_.lag), Jet(0.0));
-    std::vector<double> values;
-    for (int i = 0; i < layout_.lag; ++i) {
-        for (int j = 0; j < layout_.lag; ++j) c[std::size_t(i)] += lag_powers_(i, j) * Jet(shared[j], j);
-        values.push_back(c[std::size_t(i)].a);
-    }
-    const double height = shared[layout_.height()], reach = deepest_ + std::max(0.0, height);
-    if (height > kAboveMm || !(values[0] > 0.0) || !real_roots(values, 0.0, reach).empty()) return false;
-    const LagLaw<Jet> law = law_of(c, 0.0, reach);
-    const MarkLaws laws = this->laws(shared);
-    out.clear();
-    trace<Jet>(law, mark.poses_mm, Jet(height, kMostTerms), mark.at, nullptr, [&](std::size_t, const Trace<Jet>& row) {
-        if (!row.down) return;
-        Instant now;
-        const double d = std::max(0.0, row.depth.a);
-        now.depth = d;
-        now.depth_by = row.depth.v[kMostTerms];
-        for (int i = 0; i < 2; ++i) {
-            now.contact[i] = row.state.contact[i].a;
-            now.heading[i] = row.state.heading[i].a;
-            now.contact_by.row(i) = row.state.contact[i].v.transpose();
-            now.heading_by.row(i) = row.state.heading[i].v.transpose();
-        }
-        now.heading_known = row.state.heading_known || row.state.taut;
-        now.gap = at(laws.tip_gap, d);
-        now.gap_slope = slope_at(laws.tip_gap, d);
-        now.half = at(laws.half_width, d) + kLeastHalfMm;
-        now.half_slope = slope_at(laws.half_width, d);
-        out.push_back(now);
-    });
-    // before the first motion there is no heading: the first one that follows
-    for (std::size_t i = 0, first = 0; i < out.size(); ++i) {
-        if (!out[i].heading_known) continue;
-        for (; first < i; ++first)
-            if (!out[first].heading_known) {
-                out[first].heading = out[i].heading;
-                out[first].heading_by = out[i].heading_by;
-            }
-        first = i + 1;
-    }
-    Eigen::Matrix<double, 2, 6> before;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        Instant& now = out[i];
-        now.drop = {laws.widest_per_half * now.half, now.half, laws.front_per_half * now.half, round_tail_};
-        // every point of the drop is a mean of these corners, with the same weights at all instants
-        const Eigen::Vector2d left(-now.heading.y(), now.heading.x()), tip = now.contact - now.gap * now.heading;
-        const Eigen::Vector2d widest = tip + now.drop.widest * now.heading, side = now.half * left;
-        const Eigen::Vector2d front = widest + now.drop.front * now.heading;
-        Eigen::Matrix<double, 2, 6> corners;
-        corners << tip + side, tip - side, widest + side, widest - side, front + side, front - side;
-        now.gone = i ? out[i - 1].gone + (corners - before).colwise().norm().maxCoeff() : 0.0;
-        before = corners;
-        const double to_middle = 0.5 * (now.drop.widest + now.drop.front);
-        now.middle = tip + to_middle * now.heading;
-        now.radius = std::hypot(to_middle, now.half);
-    }
-    return !out.empty();
-}
-
-Ring MarkModel::placed(Index mark, const double* shared, const double* displacement) const {
-    const Eigen::Vector2d shift(shared[layout_.shift()], shared[layout_.shift() + 1]);
-    const double turn = shared[layout_.turn()];
-    Eigen::Matrix2d back;
-    back << std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn);
-    Ring out = painted_[std::size_t(mark)].point_mm;
-    for (Index k = 0; k < out.rows(); ++k) {
-        const Eigen::Vector2d seen = out.row(k).transpose() - shift - centre_;
-        out.row(k) = (centre_ + back * seen - Eigen::Vector2d(displacement[0], displacement[1])).transpose();
-    }
-    return out;
-}
-
-Eigen::Vector2d MarkModel::in_frame_of(const Instant& now, const Eigen::Vector2d& x) {
-    const Eigen::Vector2d from_tip = x - now.contact + now.gap * now.heading;
-    return {from_tip.dot(now.heading), now.heading.x() * from_tip.y() - now.heading.y() * from_tip.x()};
-}
-
-double MarkModel::way_out(const std::vector<Instant>& rows, const Eigen::Vector2d& x, const Eigen::Vector2d& out,
-                          std::size_t& last) {
-    struct Part {
-        Span span;
-        std::size_t row;
-    };
-    thread_local std::vector<Part> parts;
-    parts.clear();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Eigen::Vector2d to = rows[i].middle - x;
-        if (std::abs(out.x() * to.y() - out.y() * to.x()) >= rows[i].radius || out.dot(to) <= -rows[i].radius) continue;
-        const Eigen::Vector2d at = in_frame_of(rows[i], x), u = rows[i].heading;
-        const Span span = span_inside(rows[i].drop, at.x(), at.y(), out.dot(u), u.x() * out.y() - u.y() * out.x());
-        if (span.to >= span.from && span.to >= 0.0) parts.push_back({span, i});
-    }
-    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.span.from < b.span.from; });
-    double far = 0.0;
-    for (const Part& part : parts) {
-        if (part.span.from > far + kGapMm) break;
-        if (part.span.to <= far) continue;
-        far = part.span.to;
-        last = part.row;
-    }
-    return far;
-}
-
-bool MarkModel::distances(Index mark, const double* shared_data, const double* displacement, VectorXd& distance_mm,
-                          RowMajor* by_shared, RowMajor* by_displacement) const {
-    const Painted& painted = painted_[std::size_t(mark)];
-    const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
-    thread_local std::vector<Instant> rows;
-    if (!instants(painted, shared, rows)) return false;
-    const Ring points = placed(mark, shared_data, displacement);
-    const double turn = shared[layout_.turn()], ct = std::cos(turn), st = std::sin(turn);
-    Eigen::Matrix2d back, back_by_turn;
-    back << ct, st, -st, ct;
-    back_by_turn << -st, ct, -ct, -st;
-    const double widest = shared[layout_.widest()], front = shared[layout_.front()];
-    distance_mm.resize(points.rows());
-    std::size_t nearest = 0;
-    for (Index k = 0; k < points.rows(); ++k) {
-        const Eigen::Vector2d x = points.row(k).transpose();
-        // From the footprint that was nearest to the point before. Between instants a distance changes by no more than
-        // the footprint moves: where it is so much too long, so many instants are passed over.
-        const std::size_t begin = nearest;
-        const Eigen::Vector2d first = in_frame_of(rows[begin], x);
-        NearestEdge best = nearest_edge(rows[begin].drop, first.x(), first.y());
-        const auto look = [&](std::size_t i, double& spare) {
-            const Eigen::Vector2d here = in_frame_of(rows[i], x);
-            const double least = least_distance(rows[i].drop, here.x(), here.y());
-            if (least < best.distance) {
-                const NearestEdge edge = nearest_edge(rows[i].drop, here.x(), here.y());
-                if (edge.distance < best.distance) {
-                    best = edge;
-                    nearest = i;
-                }
-            }
-            spare = least - best.distance;
-        };
-        double spare = 0.0;
-        for (std::size_t i = begin + 1, from = begin; i < rows.size(); ++i) {
-            if (rows[i].gone - rows[from].gone < spare) continue;
-            look(i, spare);
-            from = i;
-        }
-        spare = 0.0;
-        for (std::size_t i = begin, from = begin; i-- > 0;) {
-            if (rows[from].gone - rows[i].gone < spare) continue;
-            look(i, spare);
-            from = i;
-        }
-        distance_mm[k] = best.distance;
-        double aslant = 1.0;  // cosine between the painted edge's normal and the predicted one's
-        if (best.distance < 0.0) {
-            Eigen::Vector2d out = back * painted.outward.row(k).transpose();
-            double far = way_out(rows, x, out, nearest);
-            if (far > kNearMm) {  // another way may be shorter: outside it is the shortest that counts, too
-                const Eigen::Vector2d normal = out, across(-out.y(), out.x());
-                for (const auto& way : {Eigen::Vector2d(-normal), Eigen::Vector2d(0.5 * normal + 0.866 * across),
-                                        Eigen::Vector2d(0.5 * normal - 0.866 * across)}) {
-                    std::size_t other = nearest;
-                    const double length = way_out(rows, x, way.normalized(), other);
-                    if (length >= far) continue;
-                    far = length;
-                    out = way.normalized();
-                    nearest = other;
-                }
-            }
-            const Instant& last = rows[nearest];
-            const Eigen::Vector2d edge = in_frame_of(last, x + far * out);
-            best = nearest_edge(last.drop, edge.x(), edge.y());
-            distance_mm[k] = -far;
-            aslant = std::max(kGrazing, best.nx * out.dot(last.heading) +
-                                            best.ny * (last.heading.x() * out.y() - last.heading.y() * out.x()));
-        }
-        if (!by_shared) continue;
-        const Instant& now = rows[nearest];
-        const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
-        const Eigen::RowVector2d n = (best.nx * u + best.ny * left).transpose();
-        const double nu = best.nx, nl = best.ny, ahead = best.x - now.gap;
-        Eigen::Matrix<double, 2, kMostTerms + 1> left_by;
-        left_by << -now.heading_by.row(1), now.heading_by.row(0);
-        // the edge moves outwards by n dy: the distance falls by it
-        const Eigen::Matrix<double, 1, kMostTerms + 1> moved =
-            n * (now.contact_by + ahead * now.heading_by + best.y * left_by);
-        auto out = by_shared->row(k);
-        out.head(layout_.lag) = -moved.head(layout_.lag);
-        const double along = best.by_widest * widest + best.by_front * front;  // x and y of the edge per half width
-        const double per_half = along * nu + best.by_half * nl;
-        double power = 1.0;
-        for (int j = 0; j < layout_.gap; ++j) {
-            power *= now.depth / deepest_;
-            out[layout_.gap_at() + j] = power * nu;
-        }
-        for (int j = 0; j < layout_.half; ++j) {
-            double step = 0.0;
-            for (Index i = half_powers_.rows(); i-- > 0;) step = step * now.depth + half_powers_(i, j);
-            out[layout_.half_at() + j] = -step * per_half;
-        }
-        out[layout_.widest()] = -best.by_widest * now.half * nu;
-        out[layout_.front()] = -best.by_front * now.half * nu;
-        out[layout_.height()] = -moved[kMostTerms] - now.depth_by * (now.half_slope * per_half - now.gap_slope * nu);
-        out.segment<2>(layout_.shift()) = -n * back;
-        const Eigen::Vector2d seen = painted.point_mm.row(k).transpose() - shared.segment<2>(layout_.shift()) - centre_;
-        out[layout_.turn()] = n * back_by_turn * seen;
-        if (by_displacement) by_displacement->row(k) = -n / aslant;
-        out /= aslant;
-    }
-    return true;
 }
 
 }  // namespace brushsvg::fit

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mark_fit.hpp"
+#include "mark_instants.hpp"
 
 // Distances of painted edges from predicted ones, with their derivatives. Inside fit_marks.
 namespace brushsvg::fit {
@@ -62,12 +63,9 @@ class MarkModel {
         Ring point_mm, outward;    ///< of the paint, unit vectors
         std::vector<Index> rings;  ///< where each begins, and the end
     };
-    struct Instant;
-    static Eigen::Vector2d in_frame_of(const Instant& now, const Eigen::Vector2d& x);
-    /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
-    static double way_out(const std::vector<Instant>& rows, const Eigen::Vector2d& x, const Eigen::Vector2d& out,
-                          std::size_t& last);
-    bool instants(const Painted& mark, const VectorXd& shared, std::vector<Instant>& out) const;
+    /// Derivatives of a distance by the laws' unknowns and the height.
+    void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal, const VectorXd& shared,
+                 Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     std::vector<Painted> painted_;
     Layout layout_;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace brushsvg {
@@ -34,16 +35,18 @@ class Nearest {
             blocks_.push_back({0.5 * (lo + hi), 0.5 * (hi - lo).norm()});
         }
     }
-    double distance(const Eigen::Vector2d& p) {
-        double best = in_block(last_, p);
-        for (std::size_t k = 0; k < blocks_.size(); ++k) {
-            if ((p - blocks_[k].centre).norm() - blocks_[k].radius >= best) continue;
+    /// Or `at_most`, where that is less.
+    double distance(const Eigen::Vector2d& p, double at_most = std::numeric_limits<double>::infinity()) {
+        double best = at_most;
+        const auto look = [&](std::size_t k) {
+            if ((p - blocks_[k].centre).norm() - blocks_[k].radius >= best) return;
             const double d = in_block(k, p);
-            if (d < best) {
-                best = d;
-                last_ = k;
-            }
-        }
+            if (d >= best) return;
+            best = d;
+            last_ = k;
+        };
+        look(last_);
+        for (std::size_t k = 0; k < blocks_.size(); ++k) look(k);
         return best;
     }
 

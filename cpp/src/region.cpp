@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/polygon/polygon.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "brushsvg/error.hpp"
+#include "nearest.hpp"
 
 namespace brushsvg {
 namespace {
@@ -254,6 +256,20 @@ double overlap(const Rings& a, const Rings& b) {
 }
 
 Ring convex_hull(const Ring& points) { return rows_of(points, hull_order(points)); }
+
+std::vector<double> clearance(const Rings& rings, const Ring& points) {
+    Rings closed;
+    for (const Ring& ring : rings)
+        if (ring.rows() > 0) closed.push_back(both(ring, ring.row(0)));
+    std::vector<Nearest<Ring>> outlines(closed.begin(), closed.end());
+    std::vector<double> distances;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        double least = std::numeric_limits<double>::infinity();
+        for (auto& outline : outlines) least = std::min(least, outline.distance(points.row(i).transpose(), least));
+        distances.push_back(least);
+    }
+    return distances;
+}
 
 Rings pieces_between(const Rings& chain) {
     if (chain.size() < 2) return chain;

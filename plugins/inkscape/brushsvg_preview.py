@@ -18,13 +18,15 @@ PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both ca
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
+SKIPPED = "data-brushsvg-skip"
+OUTLINE = "outline"  # label of what holds a converted letter as it was
 LAYER_ID = "brushsvg-preview"
 PX_PER_MM = 96 / 25.4
 
 
 def main() -> None:
     args = arguments(brush="document", brush_file="", compensation="document")
-    words = [*choices(args), *selection(args, LAYER_ID)]
+    words = [*choices(args), *selection(own_ids(args.input_file, args.ids))]
     with Run(args.executable, args.input_file, "predict", "marks.svg", *words) as run:
         from lxml import etree  # while brushsvg runs
 
@@ -37,21 +39,42 @@ def main() -> None:
     document.write(sys.stdout.buffer)
 
 
+def own_ids(drawing: str, ids: list[str]) -> list[str]:
+    """Of what is selected: a letter that was converted stands for its strokes, a layer of ours for nothing."""
+    with open(drawing, "rb") as file:
+        if not ids or SKIPPED.encode() not in file.read():
+            return ids
+    root, wanted = ElementTree.parse(drawing).getroot(), set(ids)
+    parents = {child: parent for parent in root.iter() for child in parent}
+    found = []
+    for node in (node for node in root.iter() if node.get("id") in wanted):
+        above = [node]
+        while above[-1] in parents:
+            above.append(parents[above[-1]])
+        skipped = next((each for each in above if each.get(SKIPPED)), None)
+        if skipped is not None and skipped.get(f"{INKSCAPE}label") == OUTLINE:
+            found.append(parents[skipped].get("id"))
+        elif skipped is None or not skipped.get("id", "").startswith("brushsvg-"):
+            found.append(node.get("id"))
+    return found
+
+
 def remove_layer(root, name: str) -> None:
-    for old in [node for node in root.iter() if node.get("id") == name]:
-        old.getparent().remove(old)
+    """A layer or a page of ours. What else has its name is somebody's own and stays."""
+    for node in [node for node in root.iter() if node.get("id") == name]:
+        if node.get(SKIPPED) or node.tag == f"{INKSCAPE}page":
+            node.getparent().remove(node)
 
 
 def _layer(etree, marks, root, warnings: list[str]):
     paths = marks.findall(f"{SVG}path")
-    missed = sum(path.get("data-missed") == "yes" for path in paths)
-    layer = locked_layer(etree, LAYER_ID, _label(paths, missed, marks, len(warnings)))
+    missed = {path for path in paths if _is_missed(path, marks)}
+    layer = locked_layer(etree, LAYER_ID, _label(paths, len(missed), marks, len(warnings)))
     layer.set("transform", user_from_mm(root, _mm(marks.get("width")), _mm(marks.get("height"))))
     if warnings:
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(warnings)
     for path in paths:
-        is_missed = path.get("data-missed") == "yes"
-        colour = MISSED if is_missed else PAINTED
+        colour = MISSED if path in missed else PAINTED
         mark = etree.SubElement(layer, f"{SVG}path")
         mark.set("d", path.get("d").strip())
         mark.set("style", f"fill:{colour};fill-opacity:0.6;fill-rule:nonzero;stroke:none")
@@ -66,8 +89,13 @@ def locked_layer(etree, name: str, label: str):
     layer.set(f"{INKSCAPE}groupmode", "layer")
     layer.set(f"{INKSCAPE}label", label)
     layer.set(f"{SODIPODI}insensitive", "true")
-    layer.set("data-brushsvg-skip", "yes")
+    layer.set(SKIPPED, "yes")
     return layer
+
+
+def _is_missed(path, marks) -> bool:
+    """A refined mark leaves its line on purpose, where its outline lies better so: that is no miss."""
+    return path.get("data-missed") == "yes" and not marks.get("data-made", "").endswith(", refined")
 
 
 def _label(paths, missed: int, marks, warnings: int) -> str:
@@ -95,7 +123,7 @@ def user_from_mm(root, width_mm: float, height_mm: float) -> str:
         return f"scale({PX_PER_MM:.9g})"
     x, y, width, height = numbers
     across, down = width_mm / width, height_mm / height  # mm per unit
-    wish = (root.get("preserveAspectRatio") or "xMidYMid").replace("defer", "").split()
+    wish = (root.get("preserveAspectRatio") or "").replace("defer", "").split() or ["xMidYMid"]
     if wish[0] != "none":
         across = down = (max if wish[1:] == ["slice"] else min)(across, down)
         place = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}

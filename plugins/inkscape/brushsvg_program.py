@@ -17,6 +17,12 @@ NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
 BESIDE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inkscape`
+LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
+USUAL = (
+    "~/.local/bin",
+    "/usr/local/bin",
+    "/opt/homebrew/bin",
+)  # pipx, pip, Homebrew: a desktop's PATH may lack them
 
 
 class StopError(Exception):
@@ -39,6 +45,8 @@ def guarded(main) -> None:
         main()
     except StopError as stop:
         told = str(stop)
+    except OSError as problem:  # a full disk, no folder for temporary files
+        told = f"{problem.filename or 'Temporary files'} cannot be written or read: {problem.strerror}."
     except Exception as mistake:
         told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
     else:
@@ -49,23 +57,28 @@ def guarded(main) -> None:
 
 
 def executable(chosen: str) -> str:
-    """Where brushsvg is: as chosen in the dialog, on PATH, or as told when the extension was installed."""
+    """Where brushsvg is: as chosen in the dialog, on PATH, as told when the extension was installed, or in the usual
+    places."""
     if chosen and not os.path.isdir(chosen):  # Inkscape makes a folder of an empty choice of a file
         if shutil.which(chosen):
             return chosen
         raise StopError(f"{chosen} is not a program that can be run: choose another one under Program.")
-    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), BESIDE)
-    noted = ""
-    if os.path.exists(beside):
-        with open(beside, encoding="utf-8") as file:
-            noted = file.read().strip()
-    found = shutil.which("brushsvg") or shutil.which(noted or "brushsvg")
+    usual = os.pathsep.join(map(os.path.expanduser, USUAL))
+    found = shutil.which("brushsvg") or shutil.which(_noted()) or shutil.which("brushsvg", path=usual)
     if found is None:
         raise StopError(
             f"The program brushsvg was not found. Install it with:  {INSTALL}\n"
             "If it is installed already, choose its file under Program."
         )
     return found
+
+
+def _noted() -> str:
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), BESIDE)
+    if not os.path.exists(beside):
+        return ""
+    with open(beside, "rb") as file:
+        return os.fsdecode(file.read()).strip()
 
 
 class Run:
@@ -110,9 +123,11 @@ class Run:
             return out, told
         if status != 1:
             self._stop_if_too_old()
-        raise StopError(
-            "\n".join(["brushsvg refuses:", *told] if told else [f"{self.program} failed ({status})."])
-        )
+        ours = [line for line in err.splitlines() if line.startswith("brushsvg: ")]
+        if not ours:  # its Python broke down before it could say anything
+            reason = f": {told[-1]}" if told else f" ({status})"
+            raise StopError(f"{self.program} does not run{reason}\nInstall it anew:  {INSTALL} --force")
+        raise StopError("\n".join(["brushsvg refuses:", *told]))
 
     def made(self, name: str) -> bytes:
         path = os.path.join(self.folder.name, name)
@@ -175,10 +190,16 @@ def choices(args: argparse.Namespace) -> list[str]:
     return words
 
 
-def selection(args: argparse.Namespace, *but: str) -> list[str]:
-    """Flags for what is selected, if anything is; but: ids that do not count."""
-    chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in args.ids if each not in but]
-    return ["--select", ", ".join(f'[id="{each}"]' for each in chosen)] if chosen else []
+def selection(ids: list[str]) -> list[str]:
+    """Flags for what is selected, if anything is."""
+    chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in ids]
+    words = ", ".join(f'[id="{each}"]' for each in chosen)
+    if len(words.encode()) > LONGEST:
+        raise StopError(
+            f"{len(ids)} objects are selected, more than can be told to brushsvg: select their layer or group "
+            "instead, or nothing for the page."
+        )
+    return ["--select", words] if chosen else []
 
 
 def element_of(by_id: dict, where: str):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Convert to strokes: filled letters become single lines with a width, PowerStrokes where it varies.
+"""Convert to strokes: filled letters and text become single lines with a width, PowerStrokes where it varies.
 
 Each shape gives way to a group of its strokes, in which it stays, hidden, as it was.
 """
@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 import re
 import sys
+import tempfile
 from xml.etree import ElementTree
 
-from brushsvg_preview import INKSCAPE, SVG, user_from_mm
+from brushsvg_preview import INKSCAPE, OUTLINE, SKIPPED, SVG, own_ids, user_from_mm
 from brushsvg_program import Run, StopError, arguments, element_of, guarded, selection
+from brushsvg_text import name_of, with_letters
 
 STROKES = "strokes.svg"
 EFFECT, ORIGINAL = f"{INKSCAPE}path-effect", f"{INKSCAPE}original-d"
@@ -27,16 +29,22 @@ HIDDEN = "display:none"
 
 def main() -> None:
     args = arguments(shapes="filled")
-    words = ["--editable", *selection(args), *(["--as", "outline"] if args.shapes == "all" else [])]
-    with Run(args.executable, args.input_file, "import", STROKES, *words) as run:
-        import inkex  # while brushsvg runs
-        from lxml import etree
+    words = [
+        "--editable",
+        *selection(own_ids(args.input_file, args.ids)),
+        *(["--as", "outline"] if args.shapes == "all" else []),
+    ]
+    import inkex
+    from lxml import etree
 
-        document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
-        _, warnings = run.finish()
-        drawn = ElementTree.fromstring(run.made(STROKES))
+    document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
     svg = document.getroot()
-    per_shape = _of_shapes(svg, drawn)
+    with tempfile.TemporaryDirectory(prefix="brushsvg") as folder:
+        drawing, by_id = with_letters(etree, svg, args.input_file, folder)
+        with Run(args.executable, drawing, "import", STROKES, *words) as run:
+            _, warnings = run.finish()
+            drawn = ElementTree.fromstring(run.made(STROKES))
+    per_shape = _of_shapes(by_id, drawn)
     if not per_shape:
         told = "There is no filled shape: lines with a width are strokes already."
         raise StopError("\n".join([told, *warnings]))
@@ -54,9 +62,8 @@ def _mm(length: str) -> float:
     return float(length[: -len("mm")])
 
 
-def _of_shapes(svg, drawn) -> list:
+def _of_shapes(by_id: dict, drawn) -> list:
     """Shapes of the document, each with the paths that are its strokes; lines that were drawn as such are none."""
-    by_id = {node.get("id"): node for node in svg.iter() if node.get("id")}
     found: dict = {}
     for path in drawn.iter(f"{SVG}path"):
         shape = element_of(by_id, path.get("data-stroke")) if path.get("data-outline") == "yes" else None
@@ -79,12 +86,12 @@ class _Writer:
         """A group of the strokes where the shape was; in it the shape, hidden and never painted."""
         parent = shape.getparent()
         group = self.etree.Element(f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
-        group.set(f"{INKSCAPE}label", f"{shape.get(f'{INKSCAPE}label') or shape.get('id')}, strokes")
+        group.set(f"{INKSCAPE}label", f"{name_of(shape)}, strokes")
         parent.replace(shape, group)  # what follows it in the file goes with it, which is white space
         kept = self.etree.SubElement(group, f"{SVG}g", style=HIDDEN)
         kept.set("id", self._free(f"{shape.get('id')}-outline"))
-        kept.set(f"{INKSCAPE}label", "outline")
-        kept.set("data-brushsvg-skip", "yes")
+        kept.set(f"{INKSCAPE}label", OUTLINE)
+        kept.set(SKIPPED, "yes")
         kept.append(shape)
         place = self.user_from_mm
         if self._is_plain(parent):

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import _core
-from .blends import blend_radii, blended
+from .blends import blend_radii
 from .cell import Blending, Cell, robot_from_paper, value_mm
 from .errors import Error
 from .frame import moved
 from .limits import broken_limits, workspace_problems
-from .machine import off_sheet
+from .machine import as_run, off_sheet
 from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
@@ -48,13 +48,11 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
     problems: Problems = []
     meant, cut, begun, numbers = [], [], [], []
-    frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
-    here, slack = None, slack_mm(cell)
-    for section in read.sections:
-        track, name = _track(section, frame, here), _name(section)
-        problems += [(name, said) for said in _careless(section, track, brush, cell, here)]
-        problems += [(name, said) for said in _astray(track, cell, sheet_mm, z_offset_mm)]
-        stroke = re.match(r"stroke (\d{1,6}) of ", section.title)
+    slack = slack_mm(cell)
+    for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
+        name = _name(section)
+        problems += [(name, sentence) for sentence in said]
+        stroke = _stroke(section)
         found = list(_touches(track, slack))
         if stroke and len(found) != 1:
             times = f"{len(found)} times, not once" if found else "never"
@@ -63,19 +61,34 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             line = section.steps[track.step[found[0].start]].line
             problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
         for on in found if stroke else ():
-            poses, radii, speed, arcs = _pass(section, track, on)
-            joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm))
+            poses, radii, speed, arcs = _pass(section, track, on, cell)
+            joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
-            cut.append(_core.Pass(name, blended(poses, joint)[0], speed))
+            cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
             lines = np.array([section.steps[number].line for number in track.step[on]])
             begun.append(np.r_[lines[1:] == lines[:-1], False])
             numbers.append(int(stroke[1]))
-        here = track.points[-1] if len(track.points) else here
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
     problems += broken_limits(plan, brush, _rounded(cell), z_offset_mm) + off_sheet(marks, brush, sheet_mm)
     visits, first = _visits(read, cell), numbers[0] if numbers else 1
     return Ran(plan, marks, list(dict.fromkeys(problems)), visits, tuple(begun), first)
+
+
+def walked(
+    read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, paper_mm: float = 0.0
+) -> Iterator[tuple[ReadSection, Track, list[str]]]:
+    """Each section with its way in the paper's frame and a sentence for whatever on it is careless or astray.
+
+    paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
+    """
+    frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
+    here = None
+    for section in read.sections:
+        track = _track(section, frame, here)
+        said = [*_careless(section, track, brush, cell, here, paper_mm)]
+        yield section, track, said + _astray(track, cell, sheet_mm, z_offset_mm)
+        here = track.points[-1] if len(track.points) else here
 
 
 def _rounded(cell: Cell) -> Cell:
@@ -89,7 +102,7 @@ def _rounded(cell: Cell) -> Cell:
     )
 
 
-def _astray(track: _Track, cell: Cell, sheet_mm, z_offset_mm: float) -> list[str]:
+def _astray(track: Track, cell: Cell, sheet_mm, z_offset_mm: float) -> list[str]:
     """Sentences for the workspace's sides that any move of a section is beyond, in the air as well."""
     if not len(track.points):
         return []
@@ -106,14 +119,14 @@ def _visits(read: Readback, cell: Cell) -> tuple:
             if name not in by_name:
                 raise Error(f"cell {cell.name} has no station {name!r}, which the program visits")
             waiting.append(by_name[name])
-        elif section.title.startswith("stroke "):
+        elif _stroke(section):
             found.append(tuple(waiting))
             waiting = []
     return tuple(found)
 
 
 @dataclass(frozen=True)
-class _Track:
+class Track:
     """The steps of a section in the paper's frame; circles as chords. step: which step each point belongs to."""
 
     points: np.ndarray
@@ -121,11 +134,16 @@ class _Track:
     centres: list
 
 
+def _stroke(section: ReadSection) -> re.Match | None:
+    """Its number, if it is that of a stroke."""
+    return re.match(r"stroke (\d{1,6}) of ", section.title)
+
+
 def _name(section: ReadSection) -> str:
     return section.title.partition(": ")[2] or section.title
 
 
-def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> _Track:
+def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:
     steps, back = section.steps, np.linalg.inv(frame)
     ends = moved(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
     known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the others go straight up, wherever the tool is
@@ -143,7 +161,7 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
         points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
         owner += [known[done:at], np.full(len(between), number)]
         done = at
-    return _Track(np.vstack([*points, ends[known[done:]]]), np.concatenate([*owner, known[done:]]), centres)
+    return Track(np.vstack([*points, ends[known[done:]]]), np.concatenate([*owner, known[done:]]), centres)
 
 
 def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> list[np.ndarray]:
@@ -161,14 +179,14 @@ def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int])
     ]
 
 
-def _touches(track: _Track, slack: float) -> Iterator[slice]:
+def _touches(track: Track, slack: float) -> Iterator[slice]:
     """Of the points, those of each time that the brush is on the paper."""
     edges = np.flatnonzero(np.diff(np.r_[False, track.points[:, 2] <= slack, False]))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         yield slice(int(first), int(last))
 
 
-def _pass(section: ReadSection, track: _Track, on: slice) -> tuple:
+def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
     """Poses, blends, speed and arcs of one touch."""
     poses = track.points[on].copy()
     poses[:, 2] = np.minimum(poses[:, 2], 0.0)
@@ -178,6 +196,11 @@ def _pass(section: ReadSection, track: _Track, on: slice) -> tuple:
     radii = np.where(is_end, [step.blend_mm for step in steps], 0.0)
     speeds = [step.speed_mm_s for step in steps[1:] or steps]
     speed = max((speed for speed in speeds if np.isfinite(speed)), default=0.0)
+    # on paper that leans straight down is straight down only up to rounding: the slower feed tells what was meant
+    sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
+    slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
+    for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
+        poses[k + 1, :2] = poses[k, :2]
     return poses, radii, speed, _arcs(owner, track.centres)
 
 
@@ -193,7 +216,7 @@ def _arcs(owner: np.ndarray, centres: list) -> list:
 
 
 def _careless(
-    section: ReadSection, track: _Track, brush, cell: Cell, here: np.ndarray | None
+    section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
 ) -> Iterator[str]:
     """Sentences for what is fast while it touches, or goes sideways too low in the air."""
     if not len(track.points):
@@ -206,12 +229,12 @@ def _careless(
     before = np.vstack([track.points[:1] if here is None else here, track.points[:-1]])
     low = np.minimum(before[:, 2], track.points[:, 2])
     high = np.maximum(before[:, 2], track.points[:, 2])
-    sideways = np.abs(track.points[:, :2] - before[:, :2]).max(axis=1) > slack
+    sideways = np.abs(track.points[:, :2] - before[:, :2]).max(axis=1) > 2 * slack  # both ends were rounded
     sideways[0] |= here is None
-    touches, is_low = low <= slack, low < safe - slack
+    touches, is_low = low <= paper_mm + slack, low < safe - slack
     careless = rapid & is_low & (touches | sideways)
     fast = touches & ~rapid & (speed > limit + 1e-6)
-    travels = sideways & is_low & (high > slack) & (not section.title.startswith("paint: "))
+    travels = sideways & is_low & (high > paper_mm + slack) & (not section.title.startswith("paint: "))
     for k in np.flatnonzero(careless | fast | travels):
         line = f"line {steps[k].line}"
         if careless[k]:

@@ -1,9 +1,8 @@
-"""A program that was read, held against the plan that it should paint and against what brushsvg would write."""
+"""A program that was read, held against the plan that it should paint."""
 
 from __future__ import annotations
 
-import re
-from types import SimpleNamespace
+import math
 
 import numpy as np
 
@@ -11,13 +10,9 @@ from . import _core
 from .cell import Cell
 from .checking import Problems, Ran, chords, slack_mm
 from .errors import Error
-from .machine import text_of
-from .moves import Program
 from .paint import visits
-from .posts import POSTS
 from .posts.gcode import AT_ONCE, BRACKETS
 from .posts.text import plain
-from .program import Job, unchecked_program
 
 STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a brush does not show it
 
@@ -82,9 +77,12 @@ def _written(name: str) -> str:
 
 def _strayed(a_pass, meant, cell: Cell) -> Problems:
     """Where a pass that was read does not run where it should, or not as fast."""
+    meant = _with_circles_of(a_pass, meant)
     limit_mm = max(STRAY_MM, slack_mm(cell)) + (cell.servo.step_mm if cell.servo else 0.0)
-    found, asked = _round(a_pass), _round(meant)
-    away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
+    away_mm = _pose_by_pose(a_pass, meant)
+    if away_mm > limit_mm:  # it may yet be the same path, with other poses on it
+        found, asked = _round(a_pass), _round(meant)
+        away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
     problems = []
     if away_mm > limit_mm:
         sentence = (
@@ -92,11 +90,56 @@ def _strayed(a_pass, meant, cell: Cell) -> Problems:
             "with other flags or of another drawing"
         )
         problems.append((a_pass.stroke, sentence))
-    is_dab = not np.ptp(asked[:, :2], axis=0).any()  # pressed on the spot alone, as slowly as a landing
+    is_dab = not np.ptp(
+        meant.poses_mm[:, :2], axis=0
+    ).any()  # pressed on the spot alone, as slowly as a landing
     if abs(a_pass.speed_mm_s - meant.speed_mm_s) > 0.1 and not is_dab:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
         problems.append((a_pass.stroke, f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"))
     return problems
+
+
+def _with_circles_of(a_pass, meant):
+    """A plan's pass with only those circles that the pass has, too: others are run straight from pose to pose, as on
+    paper that leans."""
+    known = [(*arc.centre_mm, arc.direction) for arc in a_pass.arcs]
+    arcs = [
+        arc
+        for arc in meant.arcs
+        if any(math.dist(each, (*arc.centre_mm, arc.direction)) < CIRCLE_MM for each in known)
+    ]
+    return _core.Pass(meant.stroke, meant.poses_mm, meant.speed_mm_s, arcs=arcs)
+
+
+CIRCLE_MM = (
+    0.5  # farther apart, two centres are those of two circles; less than the 2 between both directions
+)
+
+
+def _pose_by_pose(a_pass, meant) -> float:
+    """How far two passes are apart at most [mm], judged by their poses and circles one by one; inf where these do not
+    belong to each other."""
+    (ours, our_arcs), (theirs, their_arcs) = _corners(a_pass), _corners(meant)
+    if len(ours) != len(theirs) or our_arcs.keys() != their_arcs.keys():
+        return np.inf
+    ends_mm = float(np.linalg.norm(ours - theirs, axis=1).max())
+    away_mm = ends_mm
+    for k, arc in our_arcs.items():
+        if arc.direction != their_arcs[k].direction:
+            return np.inf
+        # a radius is off by no more than centre and ends together
+        away_mm = max(away_mm, ends_mm + 2 * math.dist(arc.centre_mm, their_arcs[k].centre_mm))
+    return away_mm
+
+
+def _corners(a_pass) -> tuple[np.ndarray, dict[int, object]]:
+    """The poses but those on the way along a circle, and each circle by the number of the one that it begins at."""
+    poses = np.asarray(a_pass.poses_mm)
+    inner = np.zeros(len(poses), dtype=bool)
+    for arc in a_pass.arcs:
+        inner[arc.first + 1 : arc.last] = True
+    numbers = np.cumsum(~inner) - 1
+    return poses[~inner], {int(numbers[arc.first]): arc for arc in a_pass.arcs}
 
 
 def _round(a_pass) -> np.ndarray:
@@ -118,18 +161,47 @@ def _along(poses: np.ndarray) -> np.ndarray:
 
 
 def _farthest(points: np.ndarray, path: np.ndarray) -> float:
-    """Largest distance [mm] of points (n, 3) from a path (m, 3) of straight moves."""
-    starts, steps = path[:-1], np.diff(path, axis=0)
-    if not len(steps):
-        return float(np.linalg.norm(points - path[0], axis=1).max())
-    squares = np.maximum((steps**2).sum(axis=1), 1e-30)
-    farthest = 0.0
-    for first in range(0, len(points), 256):  # bounds the memory, nothing else
-        offset = points[first : first + 256, None] - starts
-        at = np.clip((offset * steps).sum(axis=2) / squares, 0, 1)
-        away = np.linalg.norm(offset - at[..., None] * steps, axis=2).min(axis=1)
-        farthest = max(farthest, float(away.max()))
+    """Largest distance [mm] of points (n, 3) from a path (m, 3) of straight moves. Quick where both go the same way:
+    a few points are held against the moves that come next, and against others only where these could be nearer."""
+    starts, ends = (path[:-1], path[1:]) if len(path) > 1 else (path, path)
+    boxes = range(0, len(starts), IN_A_BOX)
+    both = [np.vstack([starts[k : k + IN_A_BOX], ends[k : k + IN_A_BOX]]) for k in boxes]
+    lows, highs = np.array([box.min(axis=0) for box in both]), np.array([box.max(axis=0) for box in both])
+    box_of = np.arange(len(starts)) // IN_A_BOX
+    farthest, here = 0.0, 0
+    for first in range(0, len(points), IN_A_BOX):
+        some = points[first : first + IN_A_BOX]
+        next_ = slice(max(0, here - IN_A_BOX), here + 3 * IN_A_BOX)
+        away, at = _nearest(some, starts[next_], ends[next_])
+        here = next_.start + at
+        if away <= farthest:
+            continue
+        least = np.linalg.norm(
+            np.maximum(0, np.maximum(lows - some.max(axis=0), some.min(axis=0) - highs)), axis=1
+        )
+        others = np.flatnonzero((least <= away + 1e-9)[box_of])
+        away, at = _nearest(some, starts[others], ends[others])
+        here = int(others[at])
+        farthest = max(farthest, away)
     return farthest
+
+
+IN_A_BOX = 64  # points, and moves: fewer are more boxes to look at, more are more distances to take
+
+
+def _nearest(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[float, int]:
+    """The same with every point held against every move; and which move is nearest to the last point."""
+    nearest, at_last = np.full(len(points), np.inf), 0
+    for first in range(0, len(starts), 4096):  # bounds the memory, nothing else
+        steps = ends[first : first + 4096] - starts[first : first + 4096]
+        squares = np.maximum((steps**2).sum(axis=1), 1e-30)
+        offset = points[:, None] - starts[first : first + 4096]
+        along = np.clip((offset * steps).sum(axis=2) / squares, 0, 1)
+        away = np.linalg.norm(offset - along[..., None] * steps, axis=2)
+        if away[-1].min() < nearest[-1]:
+            at_last = first + int(away[-1].argmin())
+        nearest = np.minimum(nearest, away.min(axis=1))
+    return float(nearest.max()), at_last
 
 
 def _paint(ran: Ran, due, asked) -> Problems:
@@ -139,117 +211,3 @@ def _paint(ran: Ran, due, asked) -> Problems:
             told = [" and ".join(station.name for station in each) or "nothing" for each in (found, wanted)]
             return [(a_pass.stroke, f"before it the program visits {told[0]}, the cell asks for {told[1]}")]
     return []
-
-
-def again(ran: Ran, brush, cell: Cell, z_offset_mm: float) -> Program | None:
-    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch."""
-    if not ran.visits or len(ran.visits) != len(ran.plan.passes):
-        return None
-    before = ran.first_stroke - 1
-    passes = ran.plan.passes
-    if cell.servo:
-        passes = [_without(*each) for each in zip(passes, ran.begun, strict=True)]
-    plan = SimpleNamespace(sheet_mm=ran.plan.sheet_mm, passes=[None] * before + list(passes))
-    return unchecked_program(plan, brush, cell, (), Job(z_offset_mm, before + 1, ((),) * before + ran.visits))
-
-
-def _without(a_pass, begun: np.ndarray):
-    """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone."""
-    poses = np.asarray(a_pass.poses_mm)[~begun]
-    steps = np.diff(poses, axis=0)
-    still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
-    inner = np.zeros(len(poses), dtype=bool)
-    inner[1:-1] = still[:-1] & still[1:] & (rising[:-1] == rising[1:])
-    return _core.Pass(a_pass.stroke, poses[~inner], a_pass.speed_mm_s)
-
-
-def differing_line(text: str, program: Program, cell: Cell) -> str | None:
-    """A sentence on the first line that brushsvg would write otherwise for the same poses; None where there is none.
-
-    Numbers may differ by what rounding twice does to the last digit. The header is not looked at. Of a servo's ways,
-    whose heights were rounded to whole values, only the ends are.
-    """
-    ours, theirs = _body(text), _body("".join(text_of(POSTS[cell.language], program)))
-    if cell.servo:
-        ours, theirs = _folded(ours), _folded(theirs)
-    for k in range(max(len(ours), len(theirs))):
-        number, line = ours[k] if k < len(ours) else (0, "")
-        expected = theirs[k][1] if k < len(theirs) else ""
-        if line != expected and not _alike(line, expected, LIFTS_S if cell.servo else 0.0):
-            if not line:
-                return f"the line {expected.strip()[:60]!r} is missing at the end"
-            same = next(
-                (n for n, (a, b) in enumerate(zip(line, expected, strict=False)) if a != b), len(line)
-            )
-            found, wanted = _near(line, same), _near(expected, same)
-            instead = f"brushsvg would write {wanted!r}" if expected else "nothing should follow"
-            return f"line {number}: {found!r}: for these strokes and this cell {instead}"
-    return None
-
-
-def _near(line: str, place: int) -> str:
-    """60 letters of a line, from its beginning where that holds the place."""
-    first = max(0, place - 30) if place > 50 else 0
-    return ("..." if first else "") + line.strip()[first : first + 60]
-
-
-def _body(text: str) -> list[tuple[int, str]]:
-    lines = enumerate(text.splitlines(), 1)
-    titles = r"\(?(stroke \d|paint: |border |end: )"
-    return [
-        (number, line)
-        for number, line in lines
-        if line.strip() and (re.match(titles, line) or not re.match(r"\(|  # (?!stroke|paint)", line))
-    ]
-
-
-_WAY = re.compile(r"(G1 X\S+ Y\S+) S\d+")
-_LIFT = re.compile(r"M3 S(\d+)|G4 P(\d+\.\d+)")
-LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits
-
-
-def _folded(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """A servo's lines: ways that follow each other as the last one, lifts and waits as the last with the sum."""
-    out: list[tuple[int, str]] = []
-    last, value, waited_s = "", "", 0.0
-    for number, line in lines:
-        if way := _WAY.fullmatch(line):
-            kind, told = "way", way[1]
-        elif lift := _LIFT.fullmatch(line):
-            kind = "lift"
-            value, waited_s = (value, waited_s) if last == kind else ("", 0.0)
-            value, waited_s = lift[1] or value, waited_s + float(lift[2] or 0)
-            told = f"M3 S{value or 0} G4 P{waited_s:.3f}"
-        else:
-            kind, told = "", line
-        if kind and kind == last:
-            out[-1] = (out[-1][0], told)
-        else:
-            out.append((number, told))
-        last = kind
-    return out
-
-
-_NUMBER = re.compile(r"([A-Z]|\br=)?(-?\d+(?:\.\d+)?)")
-LEAST_BLEND_M, BLENDS = (
-    1e-5,
-    0.05,
-)  # what rounded poses make of a blend, which hangs on the angle between two moves
-
-
-def _alike(line: str, expected: str, waits_s: float) -> bool:
-    if _NUMBER.sub(r"\g<1>0", line) != _NUMBER.sub(r"\g<1>0", expected):
-        return False
-    for (letter, found), (_, wanted) in zip(_NUMBER.findall(line), _NUMBER.findall(expected), strict=True):
-        decimals = len(wanted.partition(".")[2])
-        if decimals:
-            slack = 3.1 * 10.0**-decimals
-            if letter == "P" and waits_s:
-                slack = max(slack, waits_s, waits_s * float(wanted))
-            elif letter == "r=":
-                slack = max(slack, LEAST_BLEND_M, BLENDS * float(wanted))
-        else:
-            slack = letter == "S"  # a servo's values; codes and numbers of strokes are what they are
-        if len(found.partition(".")[2]) != decimals or abs(float(found) - float(wanted)) > slack:
-            return False
-    return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -20,18 +21,25 @@ LONG_EVERY = 5  # every fifth stroke is half as long again, to count by
 LONGER = 1.5
 
 
-def border(bounds_mm, brush, cell: Cell, z_offset_mm: float = 0.0) -> Program:
+def around(bounds_mm) -> tuple[float, float, float, float]:
+    """(left, bottom, right, top) as a header can say it: outwards to whole hundredths of a millimetre."""
+    left, bottom, right, top = bounds_mm
+    out = [math.floor(side * 100 + 1e-6) / 100 for side in (left, bottom, -right, -top)]
+    return (out[0], out[1], -out[2], -out[3])
+
+
+def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
     """An air run: at safe height round (left, bottom, right, top) [mm] of what will be painted, corner by corner.
 
     Error when a corner is outside the workspace.
     """
-    left, bottom, right, top = bounds_mm
+    left, bottom, right, top = around_mm
     height = cell.heights.safe_mm
     corners = np.array(
         [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)], dtype=float
     )
     path = np.column_stack([corners, np.full(len(corners), height)])
-    _refuse_outside(path, cell, z_offset_mm)
+    _refuse_outside(path, cell, sheet_mm, z_offset_mm)
 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
@@ -44,9 +52,7 @@ def border(bounds_mm, brush, cell: Cell, z_offset_mm: float = 0.0) -> Program:
         yield Section("border of the job, at safe height", (start, *steps))
 
     frame = robot_from_paper(cell, z_offset_mm)
-    return Program(
-        (), cell, frame, sections, height, rise_over(cell, (max(right, 0.0), max(top, 0.0)), frame)
-    )
+    return Program((), cell, frame, sections, height, rise_over(cell, sheet_mm, frame))
 
 
 def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
@@ -84,7 +90,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
                 Move("retract", over(last[0], safe), speeds.travel_mm_s),
             )
         )
-    _refuse_outside(np.vstack([move.points_mm for each in steps for move in each]), cell, 0.0)
+    _refuse_outside(np.vstack([move.points_mm for each in steps for move in each]), cell, sheet_mm)
 
     def sections() -> Iterator[Section]:
         for number, (height, each) in enumerate(zip(heights, steps, strict=True), 1):
@@ -118,6 +124,6 @@ def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
     return [(LANE_MM + pitch * (k // rows), height - LANE_MM * (1 + k % rows)) for k in range(count)]
 
 
-def _refuse_outside(points: np.ndarray, cell: Cell, z_offset_mm: float) -> None:
-    for sentence in workspace_problems(points, cell, z_offset_mm):
+def _refuse_outside(points: np.ndarray, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> None:
+    for sentence in workspace_problems(points, cell, z_offset_mm, sheet_mm):
         raise Error(sentence)

@@ -65,11 +65,14 @@ def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
     """Bounds of the wanted marks, or of their middle lines and outlines alone: x0, y0, x1, y1 [mm]."""
     box = np.array([math.inf, math.inf, -math.inf, -math.inf])
     for element in design.elements:
-        for subpath in element.subpaths:
-            points = extremes(subpath.cubics)
-            half = _half_width_mm(element, subpath) if with_widths else 0.0
-            box[:2] = np.minimum(box[:2], points.min(axis=0) - half)
-            box[2:] = np.maximum(box[2:], points.max(axis=0) + half)
+        if not element.subpaths:
+            continue
+        halves = [_half_width_mm(element, subpath) if with_widths else 0.0 for subpath in element.subpaths]
+        half = np.repeat(halves, [len(subpath.cubics) for subpath in element.subpaths])[:, None]
+        points = extremes(np.concatenate([subpath.cubics for subpath in element.subpaths]))
+        half = np.tile(half, (len(points) // len(half), 1))
+        box[:2] = np.minimum(box[:2], (points - half).min(axis=0))
+        box[2:] = np.maximum(box[2:], (points + half).max(axis=0))
     return box
 
 

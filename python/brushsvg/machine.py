@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,7 +30,7 @@ def problems(
 ) -> list[tuple[str, str]]:
     """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
     found = broken_limits(plan, brush, cell, job.z_offset_mm) + off_sheet(marks, brush, plan.sheet_mm)
-    return found or shifted_by_blends(plan, brush, marks, cell, tolerance_mm)
+    return found or shifted_by_blends(plan, brush, cell, tolerance_mm)
 
 
 def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
@@ -63,33 +63,36 @@ def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
     return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
 
 
-def shifted_by_blends(plan, brush, marks, cell: Cell, tolerance_mm: float) -> list[tuple[str, str]]:
+def shifted_by_blends(plan, brush, cell: Cell, tolerance_mm: float) -> list[tuple[str, str]]:
     """(stroke, sentence) where cutting corners as the cell does moves the mark by more than the tolerance.
 
     The path as it is run is simulated, and where the brush is taut its widest section compared with the plan's.
     """
     if not cell.blending.tolerance_mm:
         return []
+    # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
+    rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
     for first, last in _groups(plan.passes):
-        passes, traces = plan.passes[first:last], marks.passes[first:last]
-        paths = _as_run([np.asarray(a_pass.poses_mm) for a_pass in passes], cell)
-        cut = [
-            _core.Pass(each.stroke, path, each.speed_mm_s)
-            for each, (path, _) in zip(passes, paths, strict=True)
-        ]
-        run_marks = _core.simulate(_core.Plan(sheet_mm=plan.sheet_mm, passes=cut), brush, for_outlines=False)
-        for meant, run, (_, at) in zip(traces, run_marks.passes, paths, strict=True):
+        runs = as_run(plan.passes[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
+        pairs = zip(plan.passes[first:last], runs, strict=True)
+        cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
+        both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
+        traces = _core.simulate(
+            _core.Plan(sheet_mm=plan.sheet_mm, passes=both), brush, rows_mm, for_outlines=False
+        ).passes
+        for (a_pass, _, at), meant, run in zip(cut, traces[: len(cut)], traces[len(cut) :], strict=True):
             shift_mm = _largest_shift_mm(meant, run, at, brush)
             if shift_mm > tolerance_mm:
                 sentence = (
                     f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
-                    f"mark by {shift_mm:.2f} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance"
+                    f"mark by {shift_mm:.3g} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance"
                 )
-                found.append((meant.stroke, sentence))
+                found.append((a_pass.stroke, sentence))
     return found
 
 
+ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
 POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
 
 
@@ -104,18 +107,32 @@ def _groups(passes) -> Iterator[tuple[int, int]]:
     yield first, len(passes)
 
 
-def _as_run(paths: list[np.ndarray], cell: Cell) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Each path with its corners cut, and the pose that each of its points belongs to: see blended()."""
-    starts = np.cumsum([0, *map(len, paths)])
-    poses = np.vstack(paths)
-    radii = blend_radii(poses, cell.blending)
-    radii[starts[:-1]] = radii[starts[1:] - 1] = 0.0  # no path goes on in the next
-    cut, at = blended(poses, radii)
-    bounds = np.searchsorted(at, starts)
-    return [
-        (cut[first:last], at[first:last] - start)
-        for first, last, start in zip(bounds[:-1], bounds[1:], starts[:-1], strict=True)
+def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[tuple]:
+    """Each pass with its corners cut, and the pose that each point of its path belongs to, as a fractional index.
+
+    radii_of: from poses (n, 3) and arcs to how far each corner is cut, see blend_radii.
+    """
+    starts = np.cumsum([0, *(len(a_pass.poses_mm) for a_pass in passes)]).tolist()
+    poses = np.vstack([a_pass.poses_mm for a_pass in passes])
+    arcs = [
+        _core.Arc(arc.first + start, arc.last + start, arc.centre_mm, arc.direction)
+        for a_pass, start in zip(passes, starts[:-1], strict=True)
+        for arc in a_pass.arcs
     ]
+    radii = radii_of(poses, arcs)
+    radii[starts[:-1]] = radii[[start - 1 for start in starts[1:]]] = 0.0  # no path goes on in the next
+    path, at, points = blended(poses, radii, arcs)
+    runs = []
+    for a_pass, start, end in zip(passes, starts[:-1], starts[1:], strict=True):
+        first, last = points[start, 0], points[end - 1, 1] + 1
+        rows = points[start:end] - first
+        arcs = [
+            _core.Arc(rows[arc.first, 1], rows[arc.last, 0], arc.centre_mm, arc.direction)
+            for arc in a_pass.arcs
+        ]
+        run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs)
+        runs.append((run, at[first:last] - start))
+    return runs
 
 
 def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
@@ -189,7 +206,7 @@ def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
         f"time: about {clock(duration_s(made))}",
     ]
     if job.z_offset_mm:
-        lines.append(f"paper: {job.z_offset_mm:+.4f} mm against the cell's")
+        lines.append(f"paper: {job.z_offset_mm:+.10g} mm against the cell's")
     if made.cell.paper.example:
         lines.append("caution: the paper's place is the example of the cell file; teach yours")
     return lines

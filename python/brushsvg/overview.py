@@ -240,9 +240,10 @@ def _fill(image: np.ndarray, rings, colour: str, opacity: float) -> None:
     mask = np.zeros((y1 - y0, x1 - x0), np.uint8)
     fixed = [np.round((ring - (x0 + 0.5, y0 + 0.5)) * 16).astype(np.int32) for ring in rings]
     cv2.fillPoly(mask, fixed, 255, cv2.LINE_AA, 4)
-    share = (mask / 255.0 * opacity)[..., None]
-    part = image[y0:y1, x0:x1]
-    part[:] = np.round(part * (1 - share) + np.array(_bgr(colour)) * share).astype(np.uint8)
+    rows, columns = np.divmod(np.flatnonzero(mask), mask.shape[1])
+    share = (mask[rows, columns] / 255.0 * opacity)[:, None]
+    here = image[y0 + rows, x0 + columns]
+    image[y0 + rows, x0 + columns] = np.round(here * (1 - share) + np.array(_bgr(colour)) * share)
 
 
 def _bgr(colour: str) -> tuple[int, int, int]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import sysconfig
 import zipfile
 from pathlib import Path
 
@@ -28,7 +29,7 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
     """
     files = _from_zip(zipped) if zipped else _from_tree(source)
     folder = extensions_folder() / FOLDER
-    note = shutil.which(sys.argv[0]) or ""
+    note = own_program()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for old in folder.iterdir():
@@ -36,12 +37,21 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
                 old.unlink()
         for name, data in files.items():
             (folder / name).write_bytes(data)
-        (folder / NOTE).write_text(os.path.abspath(note) + "\n" if note else "", encoding="utf-8")
+        (folder / NOTE).write_bytes(os.fsencode(f"{note}\n") if note else b"")
     except OSError as problem:
         raise Error(
             f"cannot be written: {(problem.strerror or str(problem)).lower()}", file=str(folder)
         ) from None
     return folder
+
+
+def own_program() -> str:
+    """The executable file brushsvg that runs, or that lies beside the Python that runs; empty where there is none."""
+    scripts = sysconfig.get_path("scripts")
+    for found in (shutil.which(sys.argv[0]), shutil.which("brushsvg", path=scripts)):
+        if found and Path(found).stem == "brushsvg":
+            return os.path.abspath(found)
+    return ""
 
 
 def extensions_folder() -> Path:

@@ -44,7 +44,7 @@ class Plugin:
     def save(self, drawing: Path, out: Path, entry: str = "") -> subprocess.CompletedProcess:
         """As a person who saves a copy; entry: which one, where several have the same extension."""
         chosen = [f"--export-extension=org.brushsvg.save.{entry}"] if entry else []
-        return self._run(["inkscape", *chosen, f"--export-filename={out}", str(drawing)])
+        return self._run(["/usr/bin/inkscape", *chosen, f"--export-filename={out}", str(drawing)])
 
     def effect(self, name: str, drawing: Path, out: Path, select: str = "") -> Path:
         """The drawing as Inkscape saves it after an effect; select: ids with commas between."""
@@ -54,12 +54,21 @@ class Plugin:
         assert out.exists()
         return out
 
-    def script(self, name: str, drawing: Path, *words: str) -> subprocess.CompletedProcess:
-        """The script as Inkscape starts it, to read what its dialog would say."""
+    def script(
+        self, name: str, drawing: Path, *words: str, before: tuple = ()
+    ) -> subprocess.CompletedProcess:
+        """The script as Inkscape starts it, to read what its dialog would say; before: words that start it."""
         script = str(self.installed / f"brushsvg_{name}.py")
-        return self._run(["env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3", script, *words, str(drawing)])
+        start = [*before, "/usr/bin/env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3"]
+        return self._run([*start, script, *words, str(drawing)])
 
     def _run(self, words) -> subprocess.CompletedProcess:
         return subprocess.run(
             words, env=self.env, cwd=self.folder, capture_output=True, timeout=40, check=False
         )
+
+
+def sentence(done: subprocess.CompletedProcess) -> str:
+    told = done.stderr.decode()
+    assert done.returncode == 1 and done.stdout == b"" and told and "Traceback" not in told
+    return told

@@ -11,7 +11,7 @@ from command import OPEN, SOUND, brush_file, brushsvg
 
 import brushsvg as package
 from brushsvg import convert
-from brushsvg.cell_file import find_cell
+from brushsvg.cell_file import SHIPPED, find_cell
 from brushsvg.machine import whole_program
 from brushsvg.timeline import timeline
 
@@ -221,3 +221,29 @@ def test_a_hostile_title_stays_a_title(tmp_path, browser):
     assert 'id="taken"' not in text
     assert f'<h1 id="title">{escaped.replace(">", "&gt;")}</h1>' in text
     assert json.dumps(title).replace("<", "\\u003c") in (tmp_path / "a.html").read_text()
+
+
+def test_a_job_of_hours_has_a_clock_with_hours(tmp_path, browser):
+    cell = (SHIPPED / "linuxcnc-3axis.toml").read_text()
+    slow = re.sub(r"(?m)^(travel|approach|press|paint)_mm_s = \S+", r"\1_mm_s = 0.01", cell)
+    (tmp_path / "slow.toml").write_text(slow)
+    (tmp_path / "a.svg").write_text(SOUND)
+    brushsvg("animate", "a.svg", "a.html", "--cell", "slow.toml", cwd=tmp_path, status=0)
+    text = browser.text(tmp_path / "a.html", "t=754.2")
+    assert re.search(r'<output id="clock">0:12:34\.2 / [1-9]:[0-5]\d:[0-5]\d\.\d<', text)
+
+
+def test_names_of_stations_stay_on_a_narrow_page(tmp_path, browser):
+    """They were cut at its edge, and hidden by the next vessel."""
+    cell = (SHIPPED / "linuxcnc-3axis.toml").read_text()
+    station = '[[stations]]\nname = "{}"\nplace_mm = [-15, {}]\nby_hand = true\n'
+    pictures = []
+    for name in ("W" * 12, ""):
+        stations = station.format(name or " ", 30)
+        (tmp_path / "pots.toml").write_text(f'{cell}\n[reload]\nwhen = "stroke"\n{stations}')
+        (tmp_path / "a.svg").write_text(SOUND)
+        brushsvg("animate", "a.svg", "a.html", "--cell", "pots.toml", cwd=tmp_path, status=0)
+        pictures.append(browser.shown(tmp_path / "a.html", "t=0", (500, 800))[0].astype(int))
+    columns = np.flatnonzero((np.abs(pictures[0] - pictures[1])[200:500] > 20).any(axis=(0, 2)))
+    assert 140 < np.ptp(columns) < 180, "all of the letters"
+    assert columns.min() >= 11

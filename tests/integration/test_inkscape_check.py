@@ -86,3 +86,12 @@ def test_odd_ids_and_texts_are_marked(plugin, tmp_path):
     assert done.returncode == 0, done.stderr
     (layer,) = (node for node in ET.fromstring(done.stdout).iter() if node.get("id") == "brushsvg-check")
     assert len(list(layer.iter(f"{SVG}text"))) == 2
+
+
+def test_what_the_copies_of_an_element_say_alike_is_said_once(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    copied = '<text id="word" x="10" y="10">a</text><use xlink:href="#word" y="20"/></svg>'
+    head = SOUND.replace("<svg ", '<svg xmlns:xlink="http://www.w3.org/1999/xlink" ')
+    source.write_text(head.replace("</svg>", copied))
+    done = plugin.script("check", source)
+    assert b"2 warned of" in done.stdout and done.stdout.count(b"text is not read") == 1

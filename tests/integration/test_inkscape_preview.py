@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from command import SOUND, brushsvg
-from plugin import Plugin
+from plugin import Plugin, sentence
 
 from brushsvg import read_drawing
 from brushsvg.importers import ReadOptions
@@ -132,6 +132,41 @@ def test_a_selection_alone_is_shown(plugin, tmp_path, select, css):
     assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--select", css))
 
 
+def test_a_letter_that_was_converted_stands_for_its_strokes(plugin, tmp_path):
+    """It stays selected, hidden, when its strokes are there."""
+    source, strokes = tmp_path / "drawing.svg", tmp_path / "strokes.svg"
+    source.write_text(SOUND.replace("</svg>", '<path id="i" d="M 95,10 h 3 v 40 h -3 z"/></svg>'))
+    done = plugin.script("strokes", source, "--id=i")
+    strokes.write_bytes(done.stdout)
+    shown = plugin.script("preview", strokes, "--id=i")
+    assert b": 1 stroke, " in shown.stdout and b'label="i' in shown.stdout, shown.stderr
+    again = plugin.script("strokes", strokes, "--id=i")
+    assert again.stderr.startswith(b"There is no filled shape")
+
+
+def test_our_own_layer_is_not_what_is_selected(plugin, tmp_path):
+    source, shown = tmp_path / "drawing.svg", tmp_path / "shown.svg"
+    source.write_text(SOUND)
+    shown.write_bytes(plugin.script("preview", source).stdout)
+    again = plugin.script("preview", shown, "--id=brushsvg-preview")
+    assert again.stdout == shown.read_bytes(), again.stderr
+
+
+def test_refined_marks_leave_their_lines_on_purpose(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing("mm"))
+    plugin.set(preview__compensation="refined")
+    try:
+        shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
+    finally:
+        plugin.set()
+    assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--compensation", "refined"))
+    layer = preview(shown.read_text())
+    assert "round-6, refined: 3 strokes, at most" in layer.get(f"{INKSCAPE}label")
+    assert "missed" not in layer.get(f"{INKSCAPE}label")
+    assert not [path for path in layer.iter(f"{SVG}path") if "#d4351c" in path.get("style")]
+
+
 def test_what_the_dialog_says_wins(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm"))
@@ -151,6 +186,32 @@ def test_odd_ids_can_be_selected(plugin, tmp_path):
     done = plugin.script("preview", source, '--id=a"b\\c,d]')
     assert done.returncode == 0, done.stderr
     assert b"1 stroke," in done.stdout
+
+
+def test_what_is_somebodys_own_stays_though_it_has_the_name_of_our_layer(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND.replace('id="line"', 'id="brushsvg-preview"'))
+    shown = ET.fromstring(plugin.script("preview", source).stdout)
+    assert [node.get("d") for node in shown if node.get("id") == "brushsvg-preview"] == [
+        "M20 40 C40 10 60 10 90 30",
+        None,
+    ]
+
+
+def test_a_page_whose_ratio_says_nothing(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND.replace("<svg ", '<svg preserveAspectRatio=" " '))
+    done = plugin.script("preview", source)
+    assert done.returncode == 0, done.stderr
+
+
+def test_too_many_to_be_told_are_refused_in_a_sentence(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND)
+    told = sentence(plugin.script("preview", source, *[f"--id=path{k}" for k in range(8000)]))
+    assert told.startswith("8000 objects are selected, more than can be told")
+    done = plugin.script("preview", source, "--id=line", *[f"--id=path{k}" for k in range(3000)])
+    assert b": 1 stroke, " in done.stdout, done.stderr
 
 
 def test_settings_stay_in_the_document_and_the_command_line_uses_them(plugin, tmp_path):

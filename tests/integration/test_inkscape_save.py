@@ -1,12 +1,11 @@
 """Save as robot program from the real Inkscape: the same bytes as the command line writes, or a sentence."""
 
-import stat
 import subprocess
 from xml.etree import ElementTree
 
 import pytest
-from command import COMMAND, SOUND, brushsvg, path
-from plugin import SOURCE, Plugin
+from command import SOUND, brushsvg, path
+from plugin import SOURCE, Plugin, sentence
 
 from brushsvg import brush_names, cell_names, find_cell
 from brushsvg.posts import POSTS
@@ -97,12 +96,6 @@ def test_warnings_are_shown_beside_the_program(plugin, tmp_path):
     assert b"Saved. brushsvg warns:\nword: text is not read" in done.stderr
 
 
-def sentence(done: subprocess.CompletedProcess) -> str:
-    told = done.stderr.decode()
-    assert done.returncode == 1 and done.stdout == b"" and told and "Traceback" not in told
-    return told
-
-
 def test_a_refusal_is_shown_and_nothing_written(plugin, tmp_path):
     drawing, saved = tmp_path / "drawing.svg", tmp_path / "saved.ngc"
     drawing.write_text(path("M20 30 H90", width="30"))
@@ -110,53 +103,6 @@ def test_a_refusal_is_shown_and_nothing_written(plugin, tmp_path):
     assert not saved.exists()
     told = sentence(plugin.script("save", drawing))
     assert told.startswith("brushsvg refuses:\np: width 30.000 mm is outside the range")
-
-
-@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes", "chart"])
-def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, script):
-    drawing = tmp_path / "drawing.svg"
-    drawing.write_text(SOUND)
-    told = sentence(Plugin(tmp_path, command=None).script(script, drawing))
-    assert told.startswith("The program brushsvg was not found. Install it with:  pipx install brushsvg\n")
-
-
-def programs(tmp_path, text):
-    file = tmp_path / "other"
-    file.write_text(f"#!/bin/sh\n{text}\n")
-    file.chmod(file.stat().st_mode | stat.S_IXUSR)
-    return file
-
-
-@pytest.mark.parametrize(
-    ("does", "told"),
-    [
-        ('test "$1" = --version && echo brushsvg 0.0.9 && exit; exit 2', "brushsvg 0.0.9 is too old"),
-        ("exit 0", "is not the program brushsvg"),
-        ("kill -9 $$", "is not the program brushsvg"),
-        ("echo something else; exit 3", "is not the program brushsvg"),
-    ],
-)
-@pytest.mark.parametrize("script", ["save", "preview", "check", "strokes", "chart"])
-def test_another_program_is_told(plugin, tmp_path, script, does, told):
-    drawing = tmp_path / "drawing.svg"
-    drawing.write_text(SOUND)
-    other = programs(tmp_path, does)
-    assert told in sentence(plugin.script(script, drawing, f"--executable={other}"))
-
-
-def test_one_that_is_chosen_but_is_not_there_is_told(plugin, tmp_path):
-    drawing = tmp_path / "drawing.svg"
-    drawing.write_text(SOUND)
-    told = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
-    assert "is not a program that can be run" in told
-
-
-def test_the_place_noted_when_it_was_installed_is_used(tmp_path):
-    drawing = tmp_path / "drawing.svg"
-    drawing.write_text(SOUND)
-    alone = Plugin(tmp_path, command=None)
-    (alone.installed / "brushsvg-executable.txt").write_text(f"{COMMAND}\n")
-    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
 
 
 CHECK = """

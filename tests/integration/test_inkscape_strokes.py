@@ -50,7 +50,6 @@ def plugin(tmp_path_factory):
 
 
 def converted(plugin, source: Path, select: str = "turned") -> Path:
-    """The text is not selected: a warning of it opens a dialog, which waits for somebody to read it."""
     return plugin.effect("strokes", source, source.with_name("strokes.svg"), select)
 
 
@@ -170,7 +169,7 @@ def test_widths_can_be_edited(plugin, inkscape, tmp_path):
     [
         (SOUND, "There is no filled shape"),
         (f"{OPEN}</svg>", "the drawing holds nothing to paint"),
-        (f'{OPEN}<text id="word" x="20" y="20">text</text></svg>', "text is not read"),
+        (f'{OPEN}<text id="word" x="20" y="20"> </text></svg>', "the drawing holds nothing to paint"),
     ],
 )
 def test_what_cannot_be_converted_is_told(plugin, tmp_path, body, told):

@@ -21,7 +21,7 @@ WAYS = {
     **{source: (source, ()) for source in SOURCES},
     "uncompensated": ("robot", ("--compensation", "none")),
     "constant lag": ("robot", ("--compensation", "constant", "--lag", "9")),
-    "fine": ("robot", ("--tolerance", "0.01")),
+    "fine": ("robot", ("--tolerance", "0.0005")),
     "rigid pen": ("vincent", ("--brush", "rigid")),
 }
 BRUSHES = {"rigid pen": "rigid"}

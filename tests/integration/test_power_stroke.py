@@ -1,6 +1,8 @@
 """PowerStroke as Inkscape itself draws it: the outline it leaves in d against our line and width."""
 
 import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +10,12 @@ import shapely
 
 from brushsvg import flatten, strokes
 from brushsvg.importers.svg import read_svg
+from brushsvg.lines_svg import lines_svg
+from brushsvg.text import text_svg
 
+FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 LINE = "M 10,30 C 30,10 40,50 60,30 S 90,20 110,40"
 SOURCE = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
  width="120mm" height="60mm" viewBox="0 0 120 60"><defs>
@@ -47,3 +54,23 @@ def test_as_inkscape_draws_it(kind, inkscape, tmp_path):
     ours, theirs = polygon_of_stroke(stroke), polygon_of_outline(outline.cubics)
     assert theirs.area > 300, "Inkscape has not drawn the effect"
     assert ours.hausdorff_distance(theirs) < 0.04
+
+
+@pytest.mark.parametrize("size_mm", [30.0, 37.3])
+def test_inkscape_draws_each_stroke_of_letters(size_mm, inkscape, tmp_path):
+    """Where its geometry library stumbles over a stroke, it leaves the line itself in d, which is not closed."""
+    svg, _ = text_svg(LETTERS, FONT.read_bytes(), size_mm=size_mm, width_mm=None, sheet_mm=None)
+    design = read_svg(svg.encode())
+    source, saved = tmp_path / "source.svg", tmp_path / "saved.svg"
+    source.write_text(lines_svg(strokes(design)[0], design.sheet_mm))
+    ids = [node.get("id") for node in _lines(source)]
+    moves = "transform-translate:1,0"
+    inkscape(f"--actions=select-by-id:{','.join(ids)};{moves};export-filename:{saved};export-do", source)
+    assert len(ids) > 90
+    assert [
+        node.get("id") for node in _lines(saved) if not node.get("d").rstrip().lower().endswith("z")
+    ] == []
+
+
+def _lines(file):
+    return [node for node in ET.parse(file).iter() if node.get(f"{INKSCAPE}original-d")]

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -74,6 +75,21 @@ def test_brush_shows_the_marks_that_predict_shows(vpype, desk):
     assert area_mm2 == pytest.approx(expected_mm2, rel=0.01)
     assert np.abs(corners.min(axis=0) - expected.min(axis=0)).max() < 0.1  # vpype reads curves to 0.1 mm
     assert np.abs(corners.max(axis=0) - expected.max(axis=0)).max() < 0.1
+
+
+def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
+    """Of straight lines, which vpype hands over as they are; curves it flattens."""
+    words = ("--compensation", "refined")
+    straight = re.sub('<path id="line".*?/>|<circle.*?/>', "", DRAWING)
+    (desk / "x.svg").write_text(straight)
+    vpype("read", "x.svg", "brushwrite", *words, "out.json", "brushwrite", "closed.json", cwd=desk)
+    brushsvg("convert", "x.svg", "typed.json", *words, cwd=desk, status=0)
+    plan, closed, typed = (
+        np.array(json.loads((desk / f"{name}.json").read_text())["passes"][0]["poses_mm"])
+        for name in ("out", "closed", "typed")
+    )
+    assert plan == pytest.approx(typed, abs=0.01)
+    assert plan.shape != closed.shape or np.abs(plan - closed).max() > 0.05
 
 
 def test_layers_keep_their_settings(vpype, desk):

@@ -494,12 +494,15 @@ def union_of(outlines):
 def swept(outlines, convex):
     """Shapely region swept by a moving outline given at close samples, (n, 2) each.
 
-    Hulls of neighbours where the outline is convex and hardly turns (turning about a point of its flank it
-    leaves a waist that a hull would fill), else the outlines and what each of their edges sweeps.
+    Hulls of neighbours where the outline is convex and hardly turns, or turns about a point outside (turning about
+    one of its flank it leaves a waist that a hull would fill), else the outlines and what each of their edges sweeps.
     """
     outlines = np.asarray(outlines)
     axis = (outlines.mean(axis=1) - outlines[:, 0]) @ [1, 1j]
-    by_hull = convex & (np.abs(np.angle(axis[1:] * np.conj(axis[:-1]))) < 1e-3)
+    turn = np.abs(np.angle(axis[1:] * np.conj(axis[:-1])))
+    middle = outlines.mean(axis=1)
+    reach = np.hypot(*(outlines - middle[:, None]).transpose(2, 0, 1)).max(axis=1)
+    by_hull = convex & ((turn < 1e-3) | (np.hypot(*np.diff(middle, axis=0).T) > 1.5 * reach[1:] * turn))
     pairs = np.concatenate([outlines[:-1], outlines[1:]], axis=1)[by_hull]
     first, second = outlines[:-1][~by_hull], outlines[1:][~by_hull]
     quads = [first, np.roll(first, -1, axis=1), np.roll(second, -1, axis=1), second]

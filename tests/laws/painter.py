@@ -13,6 +13,9 @@ import oracle
 import shapely
 
 POSES = 260  # per stroke once it is cut for the stepping: every 0.3 mm or so
+CLOSE = (
+    420  # once more where the footprint turns: no point of it goes farther than 0.5 mm from one to the next
+)
 
 
 @dataclass
@@ -113,6 +116,9 @@ def paint(rng, brush, strokes, faults, vertices=33):
     plans = np.array([_stepped(poses, height) for _, poses in strokes])
     laws = [brush.law("lag")] * len(strokes)
     contacts = oracle.step_all(plans, laws, 20, "rope")
+    longest = (brush.widest_per_half + brush.front_per_half) * brush.law("half_width")(brush.deepest)
+    plans = np.array([_closer(*both, longest) for both in zip(plans, contacts, strict=True)])
+    contacts = oracle.step_all(plans, laws, 20, "rope")
     shift, turn = rng.normal(0, faults.placement, 2), rng.normal(0, faults.turn)
     centre = np.mean(np.concatenate([poses[:, :2] for _, poses in strokes]), axis=0)
     sheet = Sheet(height=height)
@@ -143,6 +149,18 @@ def _stepped(poses, height):
         k = int(np.argmax(np.diff(places)))
         places = np.insert(places, k + 1, 0.5 * (places[k] + places[k + 1]))
     return np.column_stack([np.interp(places[:POSES], at, poses[:, i]) for i in range(3)])
+
+
+def _closer(plan, contact, longest):
+    """CLOSE poses: more are put in where the footprint turns, which a TCP that passes a loose one does at once."""
+    lever = np.nan_to_num(plan[:, :2] - contact) @ [1, 1j]
+    turn = np.abs(np.angle(lever[1:] * np.conj(lever[:-1]))) * (np.abs(lever[1:] * lever[:-1]) > 1e-12)
+    size = np.hypot(*np.diff(plan[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(plan[:, 2])) + longest * turn
+    parts = np.ones(len(size), int)
+    while parts.sum() < CLOSE - 1:
+        parts[np.argmax(size / parts)] += 1
+    at = np.concatenate([k + np.arange(n) / n for k, n in enumerate(parts)] + [[len(size)]])
+    return np.column_stack([np.interp(at, np.arange(len(plan)), plan[:, i]) for i in range(3)])
 
 
 def _painted(brush, plan, contact, vertices):

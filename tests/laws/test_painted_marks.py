@@ -40,13 +40,9 @@ def calibrated(seed, **faults):
     return brush, painted, calibrate_marks(read_painted(plan, marks, None), "b")
 
 
-OFF = pytest.mark.xfail(
-    strict=True, reason="open: the lag is found 5 standard deviations (5 %) off at 6 mm and deeper"
-)
-
-
-@pytest.mark.parametrize("seed", [3, pytest.param(4, marks=OFF)])
+@pytest.mark.parametrize("seed", [3, 4])
 def test_the_brush_comes_back_with_honest_intervals(seed):
+    # from 4 the fit once went to footprints without a front, with the lag 12 % off
     brush, painted, made = calibrated(seed)
     found, first, z = made.brush, 0, []
     covariance = np.array(found.covariance)

@@ -24,12 +24,48 @@ def test_turns_are_the_angles_between_moves():
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.01, 0.5])
 def test_a_corner_is_cut_by_the_tolerance(tolerance):
-    path, at = blended(CORNER, blend_radii(CORNER, Blending(tolerance)))
+    path, at, _ = blended(CORNER, blend_radii(CORNER, Blending(tolerance)))
     away = np.linalg.norm(path - CORNER[1], axis=1)
     assert away.min() == pytest.approx(tolerance, rel=1e-6)
     assert at == pytest.approx([0, 1 - away[1] / 20, 1, 1 + away[3] / 30, 2])
     centre = CORNER[1] + (-away[1], away[1], 0)  # of the circle that touches both moves
     assert np.linalg.norm(path[1:4] - centre, axis=1) == pytest.approx([away[1]] * 3)
+
+
+QUARTER = _core.Arc(1, 3, (20.0, 5.0), 1)  # the tool turns about a place, beginning and ending across its way
+TURN_IN_PLACE = np.array(
+    [(0, 0, -2), (20, 0, -2), (20 + 5 * np.sqrt(0.5), 5 - 5 * np.sqrt(0.5), -2), (25, 5, -2), (9, 5, -2)]
+)
+
+
+def test_where_a_circle_goes_on_straight_there_is_no_corner_and_where_it_does_not_there_is():
+    assert turns_rad(TURN_IN_PLACE, [QUARTER]) == pytest.approx([0, 0, 0, np.pi / 2, 0])
+
+
+@pytest.mark.parametrize("tolerance", [0.001, 0.02, 0.1])
+def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
+    radii = blend_radii(TURN_IN_PLACE, Blending(tolerance), [QUARTER])
+    path, at, points = blended(TURN_IN_PLACE, radii, [QUARTER])
+    assert len(path) == 7
+    away = np.linalg.norm(path[3:6] - TURN_IN_PLACE[3], axis=1)
+    assert away[1] == pytest.approx(tolerance)
+    assert away[[0, 2]] == pytest.approx([away[2]] * 2, rel=1e-3), "as far before as after"
+    assert points.tolist() == [[0, 0], [1, 1], [2, 2], [3, 5], [6, 6]]
+    assert np.hypot(*(path[1:4, :2] - QUARTER.centre_mm).T) == pytest.approx([5] * 3)
+    assert at == pytest.approx([0, 1, 2, 3 - radii[3] / (5 * np.pi / 4), 3, 3 + radii[3] / 16, 4])
+
+
+def test_a_circle_that_is_left_at_a_small_angle_is_not_left_far_before_its_end():
+    """The chord of what is left out would lie farther from it than the tolerance."""
+    path = TURN_IN_PLACE.copy()
+    path[4] = (24, 20, -2)
+    radii = blend_radii(path, Blending(0.01), [QUARTER])
+    assert radii[3] ** 2 / (2 * 5) <= 0.01 / 2 + 1e-12
+    assert 2 * radii[3] ** 2 / (2 * 5) > 0.005, "but no nearer than needed"
+
+
+def test_a_robot_stops_where_a_circle_begins_and_ends():
+    assert (blend_radii(TURN_IN_PLACE, Blending(0.1, 5.0), [QUARTER]) == 0).all()
 
 
 def test_blends_never_meet_nor_go_beyond_the_robots_radius():
@@ -67,19 +103,43 @@ def test_blends_that_move_the_mark_too_far_are_refused():
     assert problems(plan, brush, marks, as_exact_as(wide, 0.05), 0.05) == []
 
 
-def test_a_cut_moves_the_mark_by_no_more_than_itself():
+@pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05, 0.2, 0.5])
+def test_a_cut_moves_the_mark_by_no_more_than_itself(cut_mm):
     """Against positions of the widest section looked up on the plan's own mark."""
     brush = find_brush("round-6")
     plan, marks = marks_and_plan(brush)
-    for cut_mm in (0.05, 0.2, 0.5):
-        cell = replace(find_cell(), blending=Blending(cut_mm))
-        assert problems(plan, brush, marks, cell, 1.05 * cut_mm + 0.01) == []
+    cell = replace(find_cell(), blending=Blending(cut_mm))
+    assert problems(plan, brush, marks, cell, 1.15 * cut_mm) == []
+    assert problems(plan, brush, marks, cell, 0.5 * cut_mm) != []
 
 
-@pytest.mark.xfail(
-    strict=True, reason="open: rows between few poses are too far apart to judge blends by so finely"
-)
-def test_a_very_fine_tolerance_is_no_reason_to_refuse(tmp_path):
-    """Fails on the safe side: nothing is written."""
+def with_circle(brush):
+    poses = [
+        (10, 20, 0),
+        (16, 20, -3),
+        (40, 20, -3),
+        *((40 + 9 * np.sin(a), 29 - 9 * np.cos(a), -3) for a in (1, 2)),
+    ]
+    poses += [(60, 30, -3), (60, 29, 0)]
+    arc = _core.Arc(2, 4, (40.0, 29.0), 1)
+    return _core.Plan(
+        brush.name, "", (80.0, 80.0), [_core.Pass("round", np.array(poses, float), 20.0, arcs=[arc])]
+    )
+
+
+@pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05])
+def test_a_circle_is_no_row_of_corners(cut_mm):
+    """Its poses may lie far apart; only where it ends there is something to cut."""
+    brush = find_brush("round-6")
+    plan = with_circle(brush)
+    marks = _core.simulate(plan, brush)
+    cell = replace(find_cell(), blending=Blending(cut_mm))
+    assert problems(plan, brush, marks, cell, 1.15 * cut_mm) == []
+    assert problems(plan, brush, marks, cell, 0.3 * cut_mm) != []
+
+
+@pytest.mark.parametrize("tolerance", ["0.005", "0.002", "0.0005"])
+def test_a_very_fine_tolerance_is_no_reason_to_refuse(tolerance, tmp_path):
+    """Rows of marks that are straight in between were compared as if they were the mark."""
     robot = Path(__file__).parents[2] / "examples" / "robot.svg"
-    assert main(["convert", str(robot), str(tmp_path / "out.ngc"), "--tolerance", "0.0005"]) == 0
+    assert main(["convert", str(robot), str(tmp_path / "out.ngc"), "--tolerance", tolerance]) == 0

@@ -11,6 +11,7 @@ from brushsvg.cell_file import SHIPPED, find_cell
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.readback import read_program
+from brushsvg.rewriting import _alike
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>
@@ -216,12 +217,6 @@ def test_a_drawing_named_like_our_own_jobs_is_checked(desk, capsys):
     (desk / "two.svg").write_text(DRAWING.replace("<title>two", "<title>border of flowers"))
     assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
     assert call(capsys, "check", "two.ngc", "two.svg")[0] == 0
-    for words in (("border", "two.svg", "job.ngc"), ("height", "job.ngc")):
-        assert call(capsys, *words)[0] == 0
-        status, _, err = call(capsys, "check", "job.ngc")
-        assert status == 1 and err[0].endswith(
-            "this program paints no drawing: there are no marks to compare"
-        )
 
 
 PAINT = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\nplace_mm = [-10, 10]\ndepth_mm = 5\n'
@@ -338,6 +333,7 @@ CHANGED = {
             "mm/s while the brush touches, limit 25.0 mm/s",
         ),
         (edited(r"(?m)^G4 P0\.150\n", "", 0), "for these strokes and this cell brushsvg would write 'M3"),
+        (edited(r"(?m)^(M3 .*\n)((?:.*\n)*?)(\(stroke 2.*\n)", r"\2\1\3G4 P0.017\n"), "brushsvg would write"),
         (edited(r"S800", "S750", 0), "below the safe height 5 mm"),
         (edited(r"S800", "S950", 0), "S950 is outside the range \\[200, 800\\] of the cell's servo"),
         (edited(r"(?m)^(G1 .* S)48\d$", r"\g<1>220"), "at once while the brush touches"),
@@ -360,6 +356,10 @@ CHANGED = {
     ".ngc": [
         (edited("G1 (.*) Z1.0000", r"G0 \1 Z1.0000"), "would write 'G1 X"),
         (edited(r"(?m)^\(stroke 1 of 2", "(stroke 1 of 3"), "would write '.stroke 1 of 2"),
+        (
+            edited(r"(?m)^\(stroke 1 of 2", "(stroke 1e9 of 2"),
+            "the brush touches the paper outside of any stroke",
+        ),
         (
             edited(r"(?m)^M2$", "G0 X-29.0000 Y-29.0000 Z2.0000\nM2"),
             "travels at 2.00 mm|below the safe height",
@@ -431,3 +431,52 @@ def test_paint_fetched_otherwise_is_told(desk, capsys):
     status, _, err = call(capsys, "check", "two.ngc", "two.svg", "--cell", "painter.toml")
     assert status == 1
     assert any("before it the program visits nothing, the cell asks for ink" in line for line in err), err
+
+
+LEANING = """
+[paper]
+origin_mm = [-9.649, 5.5, -0.331]
+rotation_deg = [0.812, -1.334, 33.3]
+"""
+
+
+def leaning(name: str, decimals: int) -> str:
+    """A shipped cell whose paper leans."""
+    text = re.sub(r"(?ms)^\[paper\].*?(?=^\[)", LEANING + "\n", (SHIPPED / f"{name}.toml").read_text())
+    text = re.sub(r"(?m)^tilt_limit_deg = \S+", "tilt_limit_deg = 20", text)
+    return re.sub(r"(?m)^decimals = \d", f"decimals = {decimals}", text)
+
+
+@pytest.mark.parametrize("decimals", [2, 3, 5])
+@pytest.mark.parametrize(
+    "flags", [("--compensation", "none"), ("--compensation", "constant", "--tolerance", "0.2")]
+)
+def test_on_paper_that_leans_rounding_is_no_change(desk, capsys, decimals, flags):
+    """Straight down is not quite straight down there, and circles are lines from pose to pose."""
+    (desk / "leaning.toml").write_text(leaning("linuxcnc-3axis", decimals) + PAINT.replace("= 60", "= 40"))
+    for words in (
+        ("convert", "two.svg", "two.ngc", *flags),
+        ("height", "height.ngc", "--step", "0.07", "--from", "0.55"),
+    ):
+        assert call(capsys, *words, "--cell", "leaning.toml")[0] == 0
+    for words in (("two.ngc", "two.svg"), ("two.ngc",), ("height.ngc",)):
+        status, _, err = call(capsys, "check", *words, "--cell", "leaning.toml")
+        assert (status, err) == (0, [])
+
+
+@pytest.mark.parametrize("suffix", [".ngc", ".script"])
+def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
+    name = {".ngc": "linuxcnc-3axis", ".script": "ur5e"}[suffix]
+    text = re.sub(r"(?m)^decimals = \d", "decimals = 6", (SHIPPED / f"{name}.toml").read_text())
+    (desk / "fine.toml").write_text(text)
+    for words in (("convert", "two.svg", f"two{suffix}"), ("border", "two.svg", f"border{suffix}")):
+        assert call(capsys, *words, "--cell", "fine.toml", "--z-offset", "-0.123456")[0] == 0
+        assert call(capsys, "check", words[-1], "--cell", "fine.toml")[0] == 0
+
+
+def test_a_blend_may_differ_by_what_rounded_moves_turn():
+    """It hangs on the angle between two moves: a thousandth of a millimetre turns one of a millimetre much."""
+    line = "  movep(on_paper(0.01, 0.02, -0.003), a=0.5000, v=0.02000, r={})"
+    assert _alike(line.format("0.000573"), line.format("0.000540"), 0.0)
+    assert not _alike(line.format("0.000900"), line.format("0.000540"), 0.0)
+    assert not _alike(line.format("0.0005730"), line.format("0.0005400"), 0.0)

@@ -20,10 +20,10 @@ def points(program):
 
 
 def test_the_border_is_driven_round_in_the_air():
-    path = points(border((10, 20, 60, 45), BRUSH, CELL))
+    path = points(border((10, 20, 60, 45), BRUSH, CELL, (80, 60)))
     assert (path[:, 2] == CELL.heights.safe_mm).all()
     assert path[:, :2].tolist() == [[10, 20], [60, 20], [60, 45], [10, 45], [10, 20]]
-    (section,) = border((10, 20, 60, 45), BRUSH, CELL).sections()
+    (section,) = border((10, 20, 60, 45), BRUSH, CELL, (80, 60)).sections()
     assert max(move.speed_mm_s for move in section.moves[1:]) <= BRUSH.max_speed_mm_s
 
 
@@ -71,7 +71,7 @@ def test_what_does_not_fit_is_refused(sheet, heights, words):
 def test_both_stay_in_the_workspace():
     small = replace(CELL, workspace=replace(CELL.workspace, box_mm=((0.0, 0.0, -20.0), (50.0, 50.0, 60.0))))
     with pytest.raises(Error, match=r"the tool goes to x 60\.0 mm"):
-        border((10, 20, 60, 45), BRUSH, small)
+        border((10, 20, 60, 45), BRUSH, small, (80, 60))
     with pytest.raises(Error, match="the tool goes to"):
         paper_height(BRUSH, small, (200, 100), 1.0, -1.0, 0.1)
     with pytest.raises(Error, match=r"height -1 mm is outside the range"):

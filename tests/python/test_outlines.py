@@ -286,6 +286,64 @@ def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
         painted(path(scribble))
 
 
+def nested(count: int) -> str:
+    return "".join(f"M{k / 200} {k / 200}H{50 - k / 200}V{50 - k / 200}H{k / 200}Z" for k in range(count))
+
+
+def zigzag(count: int) -> np.ndarray:
+    k = np.arange(count)
+    return np.column_stack([100 * k / count, 30 * (k % 2)])
+
+
+def test_outlines_that_lie_too_densely_are_left_out_with_a_warning():
+    with pytest.raises(
+        Error, match=r"lies too densely: 4\.5e\+07 pairs of edges .* more than 3e\+07: left out"
+    ):
+        painted(path(nested(3000), 'fill-rule="evenodd"'))
+
+
+def test_shapes_of_more_lines_than_any_page_are_refused():
+    from brushsvg.outlines import outline_strokes
+
+    there = zigzag(10_100)
+    with pytest.raises(Error, match="branches into 20197 lines, more than 20000"):
+        outline_strokes([np.vstack([there, np.add(there[::-1], (0, 0.2))])])
+
+
+def test_edges_side_by_side_are_counted_in_bands():
+    from brushsvg.outlines.shape import _side_by_side
+
+    def pairs(ring):
+        ring = np.asarray(ring, float)
+        both = np.array([ring, np.roll(ring, -1, axis=0)])
+        low, high = both.min(axis=0), both.max(axis=0)
+        order = np.argsort(low[:, 0])
+        return _side_by_side(low[order], high[order])
+
+    teeth = zigzag(20_000)
+    tilted = np.column_stack([teeth[:, 0], teeth[:, 1] + teeth[:, 0] / 10])
+    assert pairs(tilted) < 1e5, "side by side, none above another"
+    # all reach up to a line beyond which but one edge lies: passed over one by one
+    assert pairs([*teeth, [100, 40], [0, 40]]) == pytest.approx(0.04 * 20_000**2 / 2, rel=0.02)
+    angle = np.linspace(0, 2 * np.pi, 20_000, endpoint=False)
+    assert pairs(np.column_stack([np.cos(angle), np.sin(angle)])) < 20_000 * 300
+    level = np.array([[0, 1], [100, 0]] * 1000) + [[0, k // 2] for k in range(2000)]
+    assert pairs(level) < 2000 * 300, "one above another, in bands"
+    assert pairs(level * [1, 1e-3] + [[0, 10 * (k % 2)] for k in range(2000)]) > 1e6, "no bands"
+
+
+def test_clearance_is_the_distance_from_the_outline_inside_and_out():
+    import shapely
+
+    random = np.random.default_rng(3)
+    angle = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    star = (10 + 4 * np.sin(7 * angle))[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    rings = [star, np.array([[0, 0], [0, 1], [1, 1.0]])]
+    points = random.uniform(-20, 20, (200, 2))
+    lines = shapely.union_all([shapely.LinearRing(ring) for ring in rings])
+    assert _core.clearance(rings, points) == pytest.approx(lines.distance(shapely.points(points)))
+
+
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])

@@ -78,7 +78,7 @@ def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, 
     with pytest.raises(Error, match=words):
         program(plan, brush, CELL, (), Job(z_offset))
     with pytest.raises(Error, match="of the servo of cell grbl-servo"):
-        border((10, 20, 60, 45), brush, CELL, z_offset * 10)
+        border((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
 
 
 def test_only_what_grbl_knows():

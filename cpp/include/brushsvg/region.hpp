@@ -28,4 +28,7 @@ Rings pieces_between(const Rings& chain);
 /// Convex hull of points, counter-clockwise.
 Ring convex_hull(const Ring& points);
 
+/// Distance [mm] of each point from the outline, on whichever side of it.
+std::vector<double> clearance(const Rings& rings, const Ring& points);
+
 }  // namespace brushsvg

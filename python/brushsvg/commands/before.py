@@ -14,16 +14,25 @@ from .work import look
 
 
 def border_file(args) -> None:
-    from ..jobs import border
+    from ..jobs import around, border
 
     check_places(args.output)
     settle(args)
     cell = cell_of(args)
     work, marks, _ = look(args, cell, outlines=False)
+    cell = machine.as_exact_as(cell, work.options.tolerance_mm)
     with about(args.input):
         post = machine.post_for(suffix_of(args.output), cell)
-        made = border(machine.bounds_mm(marks, work.brush), work.brush, cell, args.z_offset)
-        header = (f"title: border of {work.title or 'untitled'}", *machine.about(made, Job(args.z_offset)))
+        left, bottom, right, top = around_mm = around(machine.bounds_mm(marks, work.brush))
+        made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
+        header = (
+            f"title: border of {work.title or 'untitled'}",
+            f"brush: {work.brush.name}, {len(work.plan.passes)} strokes",
+            "sheet: {:g} x {:g} mm".format(*work.plan.sheet_mm),
+            *convert.notes(work),
+            f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
+            *machine.about(made, Job(args.z_offset)),
+        )
         text = machine.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
     write({args.output: text})
@@ -33,11 +42,18 @@ def height_file(args) -> None:
     from ..jobs import paper_height
 
     check_places(args.output)
-    cell, brush = cell_of(args), brush_of(args) or find_brush(convert.DEFAULT_BRUSH)
+    cell = machine.as_exact_as(cell_of(args), machine.DEFAULT_TOLERANCE_MM)
+    brush = brush_of(args) or find_brush(convert.DEFAULT_BRUSH)
     with about(cell.name):
         post = machine.post_for(suffix_of(args.output), cell)
         made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
-        header = ("title: how high the paper lies", f"brush: {brush.name}", *machine.about(made))
+        header = (
+            "title: how high the paper lies",
+            f"brush: {brush.name}, {sum(1 for _ in made.sections())} strokes",
+            "sheet: {:g} x {:g} mm".format(*args.sheet),
+            f"heights: {args.highest:.10g} to {args.lowest:.10g} mm, {args.step:.10g} mm apart",
+            *machine.about(made),
+        )
         text = machine.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
     write({args.output: text})

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from .. import convert, machine
+import json
+
+from .. import convert, machine, report
 from ..brushes import brush_names, find_brush
 from ..cell import Cell
 from ..cell_file import cell_names, find_cell
@@ -17,7 +19,7 @@ from .work import prepare
 
 
 def check_file(args) -> None:
-    from .. import checking, comparing
+    from .. import checking, comparing, rewriting
     from ..readback import read_program
     from ..readback.header import made as made_of
 
@@ -34,6 +36,8 @@ def check_file(args) -> None:
         brush = brush_of(args) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, suffix_of(args.program), cell)
+    if made.border_mm or made.heights_mm:
+        return _check_job(args, text, made, read, cell, brush, z_offset_mm)
     work = _as_made(args, made, cell, brush) if args.input else None
     cell = machine.as_exact_as(cell, made.tolerance_mm or machine.DEFAULT_TOLERANCE_MM)
     with about(args.program):
@@ -42,8 +46,8 @@ def check_file(args) -> None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
         problems = ran.problems
-        again = comparing.again(ran, brush, cell, z_offset_mm)
-        changed = again and comparing.differing_line(text, again, cell)
+        again = rewriting.again(ran, brush, cell, z_offset_mm)
+        changed = again and rewriting.differing_line(text, again, cell)
         problems = problems + ([("", changed)] if changed else [])
         strokes, drawn = None, None
         if work:
@@ -61,10 +65,68 @@ def check_file(args) -> None:
         seconds = duration_s(again) if again else 0.0
         suffix = ".json" if args.json else ".txt"
         tell(convert.report_text(suffix, shown, ran.marks, cell, drawn=drawn, seconds=seconds))
+    _refuse_or_allow(args, problems, work is None)
+
+
+def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: float) -> None:
+    """A program before the first stroke: it paints no drawing, and says in its header all that it does."""
+    from .. import job_check
+
+    with about(args.program):
+        if args.preview:
+            raise Error("it paints no drawing: there is no picture of it")
+        if made.heights_mm and args.input:
+            raise Error("it finds the paper's height and paints no drawing: check it alone")
+        if made.sheet_mm is None:
+            raise Error("its header does not say how large the sheet is")
+    work = _as_made(args, made, cell, brush) if args.input else None
+    cell = machine.as_exact_as(cell, made.tolerance_mm or machine.DEFAULT_TOLERANCE_MM)
+    with about(args.program):
+        if made.border_mm:
+            left, bottom, right, top = made.border_mm
+            looked = job_check.look_at_border(
+                text, read, made.border_mm, brush, cell, made.sheet_mm, z_offset_mm
+            )
+            problems = looked.problems + (_beside(made, work) if work else [])
+            does = f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
+        else:
+            looked = job_check.look_at_heights(text, read, made.heights_mm, brush, cell, made.sheet_mm)
+            problems = looked.problems
+            highest, lowest, step = made.heights_mm
+            does = f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
+    if args.json:
+        told = {"job": "border" if made.border_mm else "height", "time_s": round(looked.time_s, 3)}
+        told |= {"border_mm": made.border_mm} if made.border_mm else {"heights_mm": made.heights_mm}
+        tell(json.dumps(told) + "\n")
+    else:
+        tell(f"{args.program}: {does}; takes about {report.clock(looked.time_s)}\n")
+    _refuse_or_allow(args, problems, work is None and made.border_mm)
+
+
+def _beside(made, work: convert.Work) -> list[tuple[str, str]]:
+    """A sentence where an air run does not go round what a drawing's paint needs."""
+    from ..jobs import around
+
+    marks = convert.predict(work, outlines=False, stage=stage)
+    needed, found = around(machine.bounds_mm(marks, work.brush)), made.border_mm
+    if max(abs(ours - theirs) for ours, theirs in zip(found, needed, strict=True)) <= STRAY_MM:
+        return []
+    place = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
+    sentence = (
+        f"the program goes round {place.format(*found)}, the drawing is painted within {place.format(*needed)}: it was "
+        "changed, or made with other flags or of another drawing"
+    )
+    return [("", sentence)]
+
+
+STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
+
+
+def _refuse_or_allow(args, problems: list[tuple[str, str]], is_alone: bool) -> None:
     if problems:
         raise RefusedError([(args.program, *problem) for problem in folded(problems)])
     if not args.json:
-        known = "" if work else "; without its drawing nobody can say whether it is the right one"
+        known = "; without its drawing nobody can say whether it is the right one" if is_alone else ""
         tell(f"{args.program}: nothing forbids to run it{known}\n")
 
 

@@ -131,7 +131,8 @@ def _cubic(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.nda
     return np.interp(place, np.maximum.accumulate(curve[:, 0]), curve[:, 1])
 
 
-def _johan(points: np.ndarray, place: np.ndarray, beta: float) -> np.ndarray:
+def johan(points: np.ndarray, place: np.ndarray, beta: float) -> np.ndarray:
+    """Half widths at places between sorted points (k, 2): level at each point, the more suddenly the smaller beta."""
     along = np.diff(points, axis=0) * [beta, 0.0]
     return _cubic(points, place, np.stack([points[:-1] + along, points[1:] - along], axis=1))
 
@@ -158,4 +159,4 @@ def _centripetal(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndar
     return _cubic(points, place, np.array(handles))
 
 
-_INTERPOLATORS = {"Linear": _linear, "CubicBezierJohan": _johan, "CentripetalCatmullRom": _centripetal}
+_INTERPOLATORS = {"Linear": _linear, "CubicBezierJohan": johan, "CentripetalCatmullRom": _centripetal}

@@ -25,7 +25,7 @@ _DEFINITIONS = "defs symbol marker mask pattern clipPath filter linearGradient r
 _DESCRIPTIONS = "title desc metadata view font font-face color-profile style script"
 _SILENT = frozenset(f"{_DEFINITIONS} {_DESCRIPTIONS}".split())
 _TEXT = (
-    "text is not read: turn it into paths first, for example with "
+    "text is not read: turn it into paths first, in Inkscape with Path > Object to Path, or with "
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg"
 )
 _MOST_USED = 100_000  # elements that use may copy: a page of text has a hundredth

@@ -12,6 +12,9 @@ import numpy as np
 CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
 STRAIGHTEST_RAD = np.radians(60)
+# Nodes of one crossing, and its arms of which pairs are tried: more is an asterisk of hairs, no writing, and would take
+# the square of it.
+MOST_NODES, MOST_ARMS = 64, 64
 
 
 @dataclass
@@ -45,6 +48,9 @@ class Crossing:
     discs: np.ndarray  # (k, 3), of its nodes
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
+    corner: tuple[np.ndarray, float] | None = (
+        None  # where both arms begin, and the half width there; see joints
+    )
 
     @property
     def is_corner(self) -> bool:
@@ -98,6 +104,8 @@ def _merged(nodes, lines, ends, degree) -> tuple[dict[int, list[int]], set[int]]
             continue
         if home[a] is not home[b]:
             both = [*home[a], *home[b]]
+            if len(both) > MOST_NODES:
+                continue
             if len(both) > 2 and np.hypot(*np.ptp(nodes[both, :2], axis=0)) > reach:
                 continue  # or a thick line with many hairs would be but one crossing
             home |= dict.fromkeys(both, both)
@@ -126,7 +134,7 @@ def _share(a: Arm, b: Arm) -> None:
 def _join(crossing: Crossing) -> None:
     """Pairs of arms, the straightest first."""
     turns = []
-    for a, b in combinations(crossing.arms, 2):
+    for a, b in combinations(crossing.arms[:MOST_ARMS], 2):
         across = b.line[b.out, :2] - a.line[a.out, :2]
         turns.append((_turn(-a.direction, across) + _turn(across, b.direction), len(turns), a, b))
     for turn, _, a, b in sorted(turns, key=lambda each: each[:2]):

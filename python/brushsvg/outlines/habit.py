@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from heapq import heappop, heappush
 
 import numpy as np
 
@@ -55,34 +56,40 @@ def length_mm(line: np.ndarray) -> float:
 def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
     """Pieces in their directions, those that a corner joins in one list: where one ends and the next begins there, or
     where one is but a flick."""
-    chains = [[directed(piece)] for piece in pieces]
+    chains = {k: [directed(piece)] for k, piece in enumerate(pieces)}
+    lengths = [length_mm(piece.line) for piece in pieces]
+    at_crossing: dict[int | None, set[int]] = {}
+    for k, piece in enumerate(pieces):
+        for crossing in piece.ends:
+            at_crossing.setdefault(crossing, set()).add(k)
     for number, crossing in enumerate(skeleton.crossings):
         if not crossing.is_corner:
             continue
-        here = [(k, side) for k, chain in enumerate(chains) for side in (0, 1) if _end(chain, side) == number]
+        near = sorted(at_crossing.get(number, ()))
+        here = [(k, side) for k in near for side in (0, 1) if _end(chains[k], side) == number]
         if len(here) != 2 or here[0][0] == here[1][0]:
             continue
         (i, side_i), (j, side_j) = here
         if side_i == side_j:  # both begin or both end here
-            turned = _flick(chains, i, j)
+            turned = _flick(chains, lengths, i, j)
             if turned is None:
                 continue
             chains[turned] = [reversed_(piece) for piece in reversed(chains[turned])]
             side_i = side_i if turned == j else 1 - side_i
         first, second = (i, j) if side_i == 1 else (j, i)
-        chains[first] = [*chains[first], *chains[second]]
-        chains[second] = []
-        chains = [chain for chain in chains if chain]
-    return chains
+        at_crossing[_end(chains[second], 1)].add(first)
+        at_crossing[_end(chains[second], 1)].discard(second)
+        chains[first] += chains.pop(second)
+        lengths[first] += lengths[second]
+    return list(chains.values())
 
 
 def _end(chain: list[Piece], side: int) -> int | None:
     return chain[0].ends[0] if side == 0 else chain[-1].ends[1]
 
 
-def _flick(chains: list[list[Piece]], i: int, j: int) -> int | None:
+def _flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j: int) -> int | None:
     """Which of two that meet at a corner is but the flick of the other: short, with a free end."""
-    lengths = {k: sum(length_mm(piece.line) for piece in chains[k]) for k in (i, j)}
     short, long = sorted((i, j), key=lambda k: (lengths[k], k))
     if len(chains[short]) > 1 or None not in chains[short][0].ends:
         return None
@@ -94,19 +101,35 @@ def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
     """From the upper left to the lower right; before what begins on it, what it begins on."""
     starts = np.array([chain[0].line[0, :2] for chain in chains])
     left_first = (starts @ (1.0, -1.0)).argsort(kind="stable").tolist()
-    passed = [_passed(chain) for chain in chains]
-    result: list[int] = []
-    while left_first:
-        for k in left_first:
-            begins_on = chains[k][0].ends[0]
-            waits = begins_on is not None and any(j != k and begins_on in passed[j] for j in left_first)
-            if not waits:
-                break
-        else:
-            k = left_first[0]
-        left_first.remove(k)
-        result.append(k)
-    return [chains[k] for k in result]
+    begins_on = [chain[0].ends[0] for chain in chains]
+    unpainted: dict[int | None, set[int]] = {}  # of each crossing: what runs through it
+    for k, chain in enumerate(chains):
+        for crossing in _passed(chain):
+            unpainted.setdefault(crossing, set()).add(k)
+
+    def waits(k: int) -> bool:
+        runs_through = unpainted.get(begins_on[k], set())
+        return len(runs_through) > (k in runs_through)
+
+    place = {k: place for place, k in enumerate(left_first)}
+    ready = [place[k] for k in left_first if not waits(k)]
+    waiting: dict[int | None, list[int]] = {}
+    for k in left_first:
+        if waits(k):
+            waiting.setdefault(begins_on[k], []).append(k)
+    painted: dict[int, None] = {}
+    rest = iter(left_first)
+    while len(painted) < len(chains):
+        k = left_first[heappop(ready)] if ready else next(k for k in rest if k not in painted)
+        painted[k] = None
+        for crossing in _passed(chains[k]):
+            unpainted[crossing].discard(k)
+            held = waiting.pop(crossing, [])
+            waiting[crossing] = [other for other in held if waits(other)]
+            for other in held:
+                if other not in painted and not waits(other):
+                    heappush(ready, place[other])
+    return [chains[k] for k in painted]
 
 
 def _passed(chain: list[Piece]) -> set[int]:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import _core
 from .crossings import Arm, Crossing
+
+_PLACES = 9  # looked at on the way from a corner's disc to where the lines of its arms meet
 
 
 def bridge(a: Arm, b: Arm) -> np.ndarray:
@@ -18,12 +21,12 @@ def bridge(a: Arm, b: Arm) -> np.ndarray:
     return np.column_stack([xy, u * p[2] + t * q[2]])
 
 
-def stub(arm: Arm, crossing: Crossing, rings: list[np.ndarray]) -> np.ndarray:
+def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
     """From the crossing to where the arm leaves it: straight on, at the width it has there; at a corner from where the
     lines of both arms meet."""
     start = arm.line[arm.out]
     if crossing.is_corner:
-        end, half = _corner(crossing, rings)
+        end, half = crossing.corner
     else:
         back = -arm.direction
         centre = crossing.discs[:, :2].mean(axis=0)
@@ -34,32 +37,29 @@ def stub(arm: Arm, crossing: Crossing, rings: list[np.ndarray]) -> np.ndarray:
     return np.column_stack([end + t * (start[:2] - end), half + t[:, 0] * (start[2] - half)])
 
 
-def _corner(crossing: Crossing, rings: list[np.ndarray]) -> tuple[np.ndarray, float]:
-    """Where the lines of both arms of a corner meet, or as near to that as the shape has room for the brush, and the
-    half width there."""
+def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
+    """Where both arms of each corner begin: where their lines meet, or as near to that as the shape has room for the
+    brush; and the half width there."""
+    corners = [crossing for crossing in crossings if crossing.is_corner]
+    places = [
+        crossing.discs[0, :2] + np.linspace(0, 1, _PLACES)[:, None] * _ray(crossing) for crossing in corners
+    ]
+    rooms = _core.clearance(rings, np.reshape(places, (-1, 2)))
+    for crossing, along, room in zip(corners, places, np.reshape(rooms, (-1, _PLACES)), strict=True):
+        wide = max(arm.line[arm.out, 2] for arm in crossing.arms)
+        fits = np.flatnonzero(room >= 0.9 * min(wide, crossing.discs[0, 2]))
+        last = fits[-1] if len(fits) else 0
+        crossing.corner = (along[last], min(float(room[last]), 1.2 * wide))
+
+
+def _ray(crossing: Crossing) -> np.ndarray:
+    """From a corner's disc towards where the lines of its arms meet; nothing where they are one line."""
     one, two = crossing.arms
     p, q = one.line[one.out], two.line[two.out]
     back, d = -one.direction, -two.direction
-    centre, room = crossing.discs[0, :2], crossing.discs[0, 2]
     cross = back[0] * d[1] - back[1] * d[0]
     if abs(cross) < 0.2:
-        return centre, max(p[2], q[2])
+        return np.zeros(2)
     off = q[:2] - p[:2]
-    meet = p[:2] + (off[0] * d[1] - off[1] * d[0]) / cross * back
-    ray = meet - centre
-    ray *= min(1.0, 1.5 * room / max(np.hypot(*ray), 1e-9))
-    places = centre + np.linspace(0, 1, 9)[:, None] * ray
-    rooms = _clearance(places, rings)
-    wide = max(p[2], q[2])
-    fits = np.flatnonzero(rooms >= 0.9 * min(wide, room))
-    last = fits[-1] if len(fits) else 0
-    return places[last], min(float(rooms[last]), 1.2 * wide)
-
-
-def _clearance(points: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
-    """Distance [mm] of points (n, 2) from the outline; it does not say on which side."""
-    tails = np.vstack(rings)
-    along = np.vstack([np.roll(ring, -1, axis=0) for ring in rings]) - tails
-    off = points[:, None] - tails
-    t = np.clip((off * along).sum(axis=2) / np.maximum((along * along).sum(axis=1), 1e-18), 0.0, 1.0)
-    return np.hypot(*np.moveaxis(off - t[..., None] * along, 2, 0)).min(axis=1)
+    ray = p[:2] + (off[0] * d[1] - off[1] * d[0]) / cross * back - crossing.discs[0, :2]
+    return ray * min(1.0, 1.5 * crossing.discs[0, 2] / max(np.hypot(*ray), 1e-9))

@@ -10,13 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import _core
 from .crossings import Arm, Crossing, crossings_of
-from .joints import bridge, stub
-
-# What a branch must add to be painted, in squares of the half width where it leaves. A corner of 90 degrees adds 0.21,
-# of 60 degrees 0.69, of 45 degrees 1.24: those are ends of strokes, not strokes.
-LEAST_SHARE = 0.8
+from .joints import bridge, find_corners, stub
 
 
 @dataclass
@@ -41,61 +36,63 @@ class Skeleton:
     parts: list[list[np.ndarray]]  # of the shape, per branch
 
 
-def skeleton(rings: list[np.ndarray]) -> Skeleton:
-    nodes, branches = _core.medial_axis(rings, LEAST_SHARE)
+def skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -> Skeleton:
+    """Pieces of a shape; nodes and branches as _core.medial_axis(rings, ...) returns them."""
     lines = [branch.line for branch in branches]
     ends = [(branch.start, branch.end) for branch in branches]
-    degree = np.zeros(len(nodes), int)
-    for pair in ends:
-        np.add.at(degree, list(pair), 1)
+    degree = np.bincount(np.array(ends, int).ravel(), minlength=len(nodes))
     crossings, arms = crossings_of(nodes, lines, ends, degree)
+    find_corners(crossings, rings)
     used: set[int] = {b for crossing in crossings for b in crossing.inner}
     pieces = []
     for arm in arms:  # first those that begin somewhere, then rings
         if arm.branch not in used and arm.mate is None:
-            pieces.append(_follow(arm, used, crossings, rings))
+            pieces.append(_follow(arm, used, crossings))
+    meets = {arm.branch for arm in arms}
     for number, line in enumerate(lines):
-        if number not in used and not any(arm.branch == number for arm in arms):
+        if number not in used and number not in meets:
             used.add(number)
             is_ring = ends[number][0] == ends[number][1]
             pieces.append(Piece(line, (None, None), [number], closed=is_ring))
     for arm in arms:
         if arm.branch not in used and arm.other is None:
-            pieces.append(_follow(arm, used, crossings, rings, from_free_end=True))
+            pieces.append(_follow(arm, used, crossings, from_free_end=True))
     for arm in arms:
         if arm.branch not in used:
             pieces.append(_ring(arm, used, crossings))
-    for number, crossing in enumerate(crossings):
-        _give_away(number, crossing, pieces, lines)
+    _give_away(crossings, pieces, lines)
     return Skeleton(pieces, crossings, nodes[degree == 0, :3], [branch.part for branch in branches])
 
 
-def _give_away(number: int, crossing: Crossing, pieces: list[Piece], lines: list[np.ndarray]) -> None:
+def _give_away(crossings: list[Crossing], pieces: list[Piece], lines: list[np.ndarray]) -> None:
     """What lies inside of a crossing through which nothing runs goes to a line that ends there; if there is none, the
     longest branch inside is one."""
-    if not crossing.inner or any(number in piece.through for piece in pieces):
-        return
-    found = next((piece for piece in pieces if number in piece.ends), None)
-    if found is None:
-        longest = max(crossing.inner, key=lambda branch: len(lines[branch]))
-        found = Piece(lines[longest], (None, None), [])
-        pieces.append(found)
-    found.branches.extend(crossing.inner)
+    passed = {number for piece in pieces for number in piece.through}
+    ending = {number: piece for piece in reversed(pieces) for number in piece.ends if number is not None}
+    for number, crossing in enumerate(crossings):
+        if not crossing.inner or number in passed:
+            continue
+        found = ending.get(number)
+        if found is None:
+            longest = max(crossing.inner, key=lambda branch: len(lines[branch]))
+            found = Piece(lines[longest], (None, None), [])
+            pieces.append(found)
+        found.branches.extend(crossing.inner)
 
 
-def _follow(arm: Arm, used: set[int], crossings, rings, from_free_end: bool = False) -> Piece:
+def _follow(arm: Arm, used: set[int], crossings, from_free_end: bool = False) -> Piece:
     """From an unmated arm, or from the free end of a branch, through crossings to the other end."""
     used.add(arm.branch)
     if from_free_end:
         first, here, inside = None, arm, []
         rows = [arm.line[arm.out :][::-1]]
     else:
-        first, here, inside = arm.crossing, arm.other, [stub(arm, crossings[arm.crossing], rings)]
+        first, here, inside = arm.crossing, arm.other, [stub(arm, crossings[arm.crossing])]
         rows = [inside[0], _along(arm)]
     branches, through = [arm.branch], []
     while here is not None:
         if here.mate is None:
-            inside.append(stub(here, crossings[here.crossing], rings)[::-1])
+            inside.append(stub(here, crossings[here.crossing])[::-1])
             return Piece(np.vstack([*rows, inside[-1]]), (first, here.crossing), branches, inside, through)
         inside.append(bridge(here, here.mate))
         through.append(here.crossing)

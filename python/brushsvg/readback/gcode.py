@@ -47,6 +47,7 @@ class _Reader:
                 self.ended = True
             elif comment := _COMMENT.fullmatch(line):
                 self.out.comment(number, comment[1])
+                self.lift = None  # what is waited for belongs to another section
             elif line:
                 self._line(number, line)
         for mode, meaning in NEEDED.items():

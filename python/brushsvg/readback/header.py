@@ -10,7 +10,11 @@ from ..errors import Error
 
 @dataclass(frozen=True)
 class Made:
-    """What a program's header says of how it was made; tolerance_mm None: it does not say."""
+    """What a program's header says of how it was made; tolerance_mm None: it does not say.
+
+    border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
+    that find the paper; None for programs that paint.
+    """
 
     title: str
     brush: str
@@ -22,19 +26,20 @@ class Made:
     compensation: str
     tolerance_mm: float | None
     lag_mm: float | None
+    border_mm: tuple[float, ...] | None = None
+    heights_mm: tuple[float, ...] | None = None
 
 
 def made(text: str) -> Made:
     """Error when the header is not one of ours, or one of its numbers is damaged."""
     header = _header_of(text)
-    about_paper = header.get("title", "").startswith(("border of ", "how high the paper"))
-    if about_paper and "sheet" not in header:
-        raise Error("this program paints no drawing: there are no marks to compare")
     if not {"title", "brush", "cell"} <= set(header):
         raise Error("its header does not name title, brush and cell: brushsvg did not write this program")
     sheet = _said(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
     paper = _said(header, "paper", r"(\S+) mm against the cell's", (-20.0, 20.0))
     resumed = _said(header, "resumed", r"from stroke (\d+)", (1, 1e6))
+    border = _said(header, "border", r"(\S+) to (\S+) mm, (\S+) to (\S+) mm", (-1e5, 1e6))
+    heights = _said(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
     tolerance = _said(header, "compensation", r"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?", (1e-5, 10.0))
     has_lag = ", lag " in header.get("compensation", "")
@@ -52,6 +57,8 @@ def made(text: str) -> Made:
         compensation=how[1],
         tolerance_mm=tolerance[0] if tolerance else None,
         lag_mm=lag[0] if lag else None,
+        border_mm=(border[0], border[2], border[1], border[3]) if border else None,
+        heights_mm=tuple(heights) if heights else None,
     )
 
 

@@ -1,8 +1,10 @@
 // Slider, clock, words and keys.
 
 const clockText = (time) => {
-  const tenths = Math.floor(time * 10 + 1e-6), seconds = (tenths % 600) / 10;
-  return `${Math.floor(tenths / 600)}:${seconds < 10 ? "0" : ""}${seconds.toFixed(1)}`;
+  const tenths = Math.floor(time * 10 + 1e-6), minutes = Math.floor(tenths / 600) % 60, hours = Math.floor(tenths / 36000);
+  const two = (number) => String(number).padStart(2, "0");
+  const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  return end < 3600 ? `${minutes}:${seconds}` : `${hours}:${two(minutes)}:${seconds}`;
 };
 const heights = { up: Z.reduce((a, b) => Math.max(a, b), 1e-3), down: -Z.reduce((a, b) => Math.min(a, b), -1e-3) };
 

@@ -56,19 +56,24 @@ const layOut = () => {
   sheet.strokeStyle = EDGE;
   sheet.lineWidth = px(1);
   sheet.strokeRect(-px(0.5), -px(0.5), w + px(1), h + px(1));
-  for (const [name, x, y] of data.stations) {
+  const round = Math.min(px(13), 4); // of vessels, which are never so large on paper that they hide each other
+  sheet.fillStyle = "#ffffff";
+  for (const [, x, y] of data.stations) {
     sheet.beginPath();
-    sheet.arc(x, y, px(13), 0, 2 * Math.PI);
-    sheet.fillStyle = "#ffffff";
+    sheet.arc(x, y, round, 0, 2 * Math.PI);
     sheet.fill();
     sheet.stroke();
+  }
+  sheet.font = "13px system-ui, 'DejaVu Sans', sans-serif";
+  sheet.textAlign = "center";
+  sheet.fillStyle = QUIET;
+  const [left, right] = [-view.left, width - view.left].map((edge) => edge / view.ratio);
+  for (const [name, x, y] of data.stations) {
+    const half = sheet.measureText(name).width / 2;
     sheet.save();
-    sheet.translate(x, y - px(28));
+    sheet.translate(0, y - round - px(14));
     sheet.scale(px(1), -px(1));
-    sheet.font = "13px system-ui, 'DejaVu Sans', sans-serif";
-    sheet.textAlign = "center";
-    sheet.fillStyle = QUIET;
-    sheet.fillText(name, 0, 0);
+    sheet.fillText(name, Math.max(left + half, Math.min(right - half, x / px(1))), 0); // all of it on the page
     sheet.restore();
   }
   wanted.fillStyle = GREY;

@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mark_instants.hpp"
+#include "mark_model.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+constexpr double kNearMm = 0.5;   // a way out that is shorter than a brush's hairs are wide is not improved on
+constexpr double kGrazing = 0.3;  // cosine below which an edge that is met aslant says nothing more exact
+
+/// The predicted edge beside one point of a painted one.
+struct Beside {
+    NearestEdge edge;
+    std::size_t row;
+    double distance_mm;
+    Eigen::Vector2d normal;  ///< of what the footprints sweep
+    double aslant;           ///< cosine between the painted edge's normal and the predicted one's
+};
+
+/// Where a footprint's edge passes by, what it sweeps ends along its way: the normal lies across it. Instants are some
+/// tenths of a mm apart, and the nearest one's own normal would tell of when it passes, not where. How much of it is
+/// left is told by its length.
+Eigen::Vector2d swept_normal(const Footprints& footprints, std::size_t row, const NearestEdge& edge) {
+    const Eigen::Vector2d u = footprints[row].heading, left(-u.y(), u.x());
+    const Eigen::Vector2d own = edge.nx * u + edge.ny * left, along = footprints.passing(row, edge);
+    const Eigen::Vector2d across = own - own.dot(along) * along;
+    return across.squaredNorm() > kGrazing * kGrazing ? across : own;
+}
+
+/// From x, inside a footprint, along the painted edge's normal, or another way where that is far: outside it is the
+/// shortest way that counts, too.
+Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal, std::size_t row) {
+    Eigen::Vector2d out = normal;
+    double far = footprints.way_out(x, out, row);
+    if (far > kNearMm) {
+        const Eigen::Vector2d across(-normal.y(), normal.x());
+        for (const auto& way : {Eigen::Vector2d(-normal), Eigen::Vector2d(0.5 * normal + 0.866 * across),
+                                Eigen::Vector2d(0.5 * normal - 0.866 * across)}) {
+            std::size_t other = row;
+            const double length = footprints.way_out(x, way.normalized(), other);
+            if (length >= far) continue;
+            far = length;
+            out = way.normalized();
+            row = other;
+        }
+    }
+    const Instant& last = footprints[row];
+    const Eigen::Vector2d at = last.in_frame(x + far * out);
+    const NearestEdge edge = nearest_edge(last.drop, at.x(), at.y());
+    const Eigen::Vector2d swept = swept_normal(footprints, row, edge).normalized();
+    return {edge, row, -far, swept, std::max(kGrazing, swept.dot(out))};
+}
+
+}  // namespace
+
+bool MarkModel::distances(Index mark, const double* shared_data, const double* displacement, VectorXd& distance_mm,
+                          RowMajor* by_shared, RowMajor* by_displacement) const {
+    const Painted& painted = painted_[std::size_t(mark)];
+    const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
+    thread_local Footprints footprints;
+    if (!footprints.follow(painted.poses_mm, painted.at, laws(shared), by_shared ? &lag_powers_ : nullptr,
+                           shared[layout_.height()], deepest_))
+        return false;
+    const Ring points = placed(mark, shared_data, displacement);
+    const double turn = shared[layout_.turn()], ct = std::cos(turn), st = std::sin(turn);
+    Eigen::Matrix2d back, back_by_turn;
+    back << ct, st, -st, ct;
+    back_by_turn << -st, ct, -ct, -st;
+    distance_mm.resize(points.rows());
+    std::size_t row = 0;
+    for (Index k = 0; k < points.rows(); ++k) {
+        const Eigen::Vector2d x = points.row(k).transpose();
+        const NearestEdge nearest = footprints.nearest(x, row);
+        Beside beside{nearest, row, nearest.distance, Eigen::Vector2d::Zero(), 1.0};
+        if (nearest.distance < 0.0) {
+            beside = way_out(footprints, x, back * painted.outward.row(k).transpose(), row);
+        } else {
+            const Eigen::Vector2d swept = swept_normal(footprints, row, nearest);
+            beside.normal = swept.normalized();
+            beside.distance_mm *= swept.norm();
+        }
+        row = beside.row;
+        distance_mm[k] = beside.distance_mm;
+        if (!by_shared) continue;
+        const Eigen::RowVector2d normal = beside.normal.transpose();
+        by_laws(footprints[row], beside.edge, beside.normal, shared, by_shared->row(k));
+        by_shared->row(k).segment<2>(layout_.shift()) = -normal * back;
+        const Eigen::Vector2d seen = painted.point_mm.row(k).transpose() - shared.segment<2>(layout_.shift()) - centre_;
+        (*by_shared)(k, layout_.turn()) = normal * back_by_turn * seen;
+        by_shared->row(k) /= beside.aslant;
+        if (by_displacement) by_displacement->row(k) = -normal / beside.aslant;
+    }
+    return true;
+}
+
+void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,
+                        const VectorXd& shared, Eigen::Ref<Eigen::RowVectorXd> out) const {
+    const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
+    const double nu = normal.dot(u), nl = normal.dot(left);
+    ByLag left_by;
+    left_by << -now.heading_by.row(1), now.heading_by.row(0);
+    // the edge moves outwards by normal dy: the distance falls by it
+    const Eigen::Matrix<double, 1, kMostTerms + 1> moved =
+        normal.transpose() * (now.contact_by + (edge.x - now.gap) * now.heading_by + edge.y * left_by);
+    out.head(layout_.lag) = -moved.head(layout_.lag);
+    // x and y of the edge per half width
+    const double along = edge.by_widest * shared[layout_.widest()] + edge.by_front * shared[layout_.front()];
+    const double per_half = along * nu + edge.by_half * nl;
+    double power = 1.0;
+    for (int j = 0; j < layout_.gap; ++j) {
+        power *= now.depth / deepest_;
+        out[layout_.gap_at() + j] = power * nu;
+    }
+    for (int j = 0; j < layout_.half; ++j) {
+        double step = 0.0;
+        for (Index i = half_powers_.rows(); i-- > 0;) step = step * now.depth + half_powers_(i, j);
+        out[layout_.half_at() + j] = -step * per_half;
+    }
+    out[layout_.widest()] = -edge.by_widest * now.drop.half * nu;
+    out[layout_.front()] = -edge.by_front * now.drop.half * nu;
+    out[layout_.height()] = -moved[kMostTerms] - now.depth_by * (now.half_slope * per_half - now.gap_slope * nu);
+}
+
+Ring MarkModel::placed(Index mark, const double* shared, const double* displacement) const {
+    const Eigen::Vector2d shift(shared[layout_.shift()], shared[layout_.shift() + 1]);
+    const double turn = shared[layout_.turn()];
+    Eigen::Matrix2d back;
+    back << std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn);
+    Ring out = painted_[std::size_t(mark)].point_mm;
+    for (Index k = 0; k < out.rows(); ++k) {
+        const Eigen::Vector2d seen = out.row(k).transpose() - shift - centre_;
+        out.row(k) = (centre_ + back * seen - Eigen::Vector2d(displacement[0], displacement[1])).transpose();
+    }
+    return out;
+}
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "drop.hpp"
+#include "mark_fit.hpp"
+
+// The footprints of one pass at close instants, and what of their union is near. Inside fit_marks.
+namespace brushsvg::fit {
+
+constexpr int kMostTerms = 4;          // numbers of a law
+constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its derivatives
+constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
+
+/// Derivatives of a place by the lag's unknowns and the height of the paper.
+using ByLag = Eigen::Matrix<double, 2, kMostTerms + 1>;
+
+/// The footprint at one instant. Lengths in mm, slopes by depth.
+struct Instant {
+    Eigen::Vector2d contact, heading;
+    Drop drop;
+    double place;  ///< poses, fractional in between
+    double gap, depth, half_slope, gap_slope;
+    double depth_by;  ///< by the height
+    ByLag contact_by, heading_by;
+    bool heading_known;
+
+    /// x from the tip, its first coordinate along the heading.
+    Eigen::Vector2d in_frame(const Eigen::Vector2d& x) const {
+        const Eigen::Vector2d from_tip = x - contact + gap * heading;
+        return {from_tip.dot(heading), heading.x() * from_tip.y() - heading.y() * from_tip.x()};
+    }
+    /// The place on the paper of what is a place of the edge.
+    Eigen::Vector2d place_of(const NearestEdge& edge) const {
+        const double x = edge.by_widest * drop.widest + edge.by_front * drop.front, y = edge.by_half * drop.half;
+        return contact + (x - gap) * heading + y * Eigen::Vector2d(-heading.y(), heading.x());
+    }
+};
+
+class Footprints {
+ public:
+    /// Follows a pass, which begins and ends in the air; `at`: poses, fractional in between, and more are put in where
+    /// the footprint turns quickly. lag_by: derivatives of the lag's coefficients by its unknowns, or nullptr for
+    /// places alone. False where these laws paint nothing.
+    bool follow(const Poses& poses, const std::vector<double>& at, const MarkLaws& laws, const Eigen::MatrixXd* lag_by,
+                double height_mm, double deepest_mm);
+    const Instant& operator[](std::size_t i) const { return rows_[i]; }
+
+    /// Edge of the footprint that comes nearest to x, and which one; the search begins at `row`. Of a point inside
+    /// only that it is.
+    NearestEdge nearest(const Eigen::Vector2d& x, std::size_t& row) const;
+    /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
+    double way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const;
+    /// Direction in which a place of a footprint's edge passes by; none where it rests, turns back, begins or ends.
+    Eigen::Vector2d passing(std::size_t row, const NearestEdge& edge) const;
+
+ private:
+    template <class T>
+    void walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<double>& at,
+              const MarkLaws& laws, double reach);
+    void enclose();
+    /// Those places, and more between instants whose footprints lie too far apart; as many where there are none.
+    std::vector<double> closer(const std::vector<double>& at) const;
+
+    std::vector<Instant> rows_;
+    /// Round each footprint; gone: no point of the footprint has moved farther than this since the first instant.
+    std::vector<Eigen::Vector2d> middle_;
+    std::vector<double> radius_, gone_;
+};
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "mark_loss.hpp"
+#include "mark_model.hpp"
+
+namespace brushsvg::fit {
+
+/// The whole least-squares problem at one place: unknowns that all marks share, and a displacement for each mark.
+class MarkProblem {
+ public:
+    MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options);
+
+    /// To these laws; the footprint's shape and the height as known beforehand, no displacements.
+    void begin(const MarkLaws& laws);
+    /// The footprint's shape stays as it is.
+    void hold_shape(bool hold);
+    /// Half the loss of all marks; infinite where there is no prediction.
+    double loss() const;
+    /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
+    bool solve(int most_iterations, double tolerance);
+    /// Information that the priors add, for every shared unknown and then for both displacements of every mark.
+    VectorXd known() const;
+
+    MarkModel model;
+    Weighing weighing;
+    VectorXd shared;
+    std::vector<Eigen::Vector2d> own;
+    int iterations = 0;
+
+ private:
+    double displacement_mm_;
+    std::vector<Prior> priors_;
+    std::vector<bool> held_;
+};
+
+}  // namespace brushsvg::fit

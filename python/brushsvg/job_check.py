@@ -1,0 +1,60 @@
+"""Programs before the first stroke, looked at before a machine moves: air runs, and strokes that find the paper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .cell import Cell
+from .checking import Problems, slack_mm, walked
+from .jobs import border, paper_height
+from .moves import Program, duration_s
+from .readback import Readback
+from .rewriting import differing_line
+
+
+@dataclass(frozen=True)
+class Looked:
+    """problems: (section, sentence) for each thing that must not be; time_s: how long it takes."""
+
+    problems: Problems
+    time_s: float
+
+
+def look_at_border(
+    text: str, read: Readback, around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float
+) -> Looked:
+    """An air run round (left, bottom, right, top) [mm]. Error when a corner is outside the workspace."""
+    again = border(around_mm, brush, cell, sheet_mm, z_offset_mm)
+    sections = [*walked(read, brush, cell, sheet_mm, z_offset_mm)]
+    return _looked(text, again, sections, cell, cell.heights.safe_mm, "safe height")
+
+
+def look_at_heights(text: str, read: Readback, heights_mm, brush, cell: Cell, sheet_mm) -> Looked:
+    """Strokes from the highest to the lowest height [mm], a step apart, each of which may be the first on the paper.
+
+    Error when they do not fit on the sheet or go deeper than brush or cell allow.
+    """
+    highest_mm, lowest_mm, step_mm = heights_mm
+    again = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
+    return _looked(text, again, sections, cell, lowest_mm, "height of the lowest stroke")
+
+
+def _looked(text: str, again: Program, sections, cell: Cell, lowest_mm: float, what: str) -> Looked:
+    problems: Problems = []
+    for section, track, said in sections:
+        problems += [(section.title, sentence) for sentence in said]
+        at = int(np.argmin(track.points[:, 2])) if len(track.points) else None
+        if at is not None and track.points[at, 2] < lowest_mm - slack_mm(cell):
+            line, height_mm = section.steps[track.step[at]].line, track.points[at, 2]
+            problems.append(
+                (
+                    section.title,
+                    f"line {line}: height {height_mm:.2f} mm is below the {what}, {lowest_mm:g} mm",
+                )
+            )
+    if changed := differing_line(text, again, cell):
+        problems.append(("", changed))
+    return Looked(problems, duration_s(again))

@@ -1,0 +1,113 @@
+"""Which brushsvg the extension calls, and what it says where there is none or it is another one."""
+
+import os
+import stat
+import subprocess
+import sys
+
+import pytest
+from command import COMMAND, SOUND
+from plugin import Plugin, sentence
+
+SCRIPTS = ["save", "preview", "check", "strokes", "chart"]
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    file = tmp_path / "drawing.svg"
+    file.write_text(SOUND)
+    return file
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, drawing, script):
+    told = sentence(Plugin(tmp_path, command=None).script(script, drawing))
+    assert told.startswith("The program brushsvg was not found. Install it with:  pipx install brushsvg\n")
+
+
+def programs(tmp_path, text):
+    file = tmp_path / "other"
+    file.write_text(f"#!/bin/sh\n{text}\n")
+    file.chmod(file.stat().st_mode | stat.S_IXUSR)
+    return file
+
+
+@pytest.mark.parametrize(
+    ("does", "told"),
+    [
+        ('test "$1" = --version && echo brushsvg 0.0.9 && exit; exit 2', "brushsvg 0.0.9 is too old"),
+        ("echo ModuleNotFoundError: gone >&2; exit 1", "does not run: ModuleNotFoundError: gone\n"),
+        ("exit 1", "does not run (1)\n"),
+        ("exit 0", "is not the program brushsvg"),
+        ("kill -9 $$", "is not the program brushsvg"),
+        ("echo something else; exit 3", "is not the program brushsvg"),
+    ],
+)
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_another_program_is_told(plugin, tmp_path, drawing, script, does, told):
+    other = programs(tmp_path, does)
+    assert told in sentence(plugin.script(script, drawing, f"--executable={other}"))
+
+
+def test_one_that_is_chosen_but_is_not_there_is_told(plugin, tmp_path, drawing):
+    told = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
+    assert "is not a program that can be run" in told
+
+
+def test_the_place_noted_when_it_was_installed_is_used(tmp_path, drawing):
+    alone = Plugin(tmp_path, command=None)
+    (alone.installed / "brushsvg-executable.txt").write_text(f"{COMMAND}\n")
+    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
+
+
+@pytest.mark.parametrize("path", ["", None])
+def test_it_is_found_in_the_usual_places_without_a_path(tmp_path, drawing, path):
+    """As where a desktop starts Inkscape."""
+    alone = Plugin(tmp_path, command=None)
+    alone.env.pop("PATH")
+    alone.env |= {} if path is None else {"PATH": path}
+    assert "was not found" in sentence(alone.script("save", drawing))
+    (tmp_path / ".local" / "bin").mkdir(parents=True)
+    (tmp_path / ".local" / "bin" / "brushsvg").symlink_to(COMMAND)
+    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
+
+
+@pytest.mark.parametrize("typed", [[COMMAND], [sys.executable, "-m", "brushsvg"]])
+def test_inkscape_without_a_path_saves_with_the_one_that_installed_the_extension(tmp_path, drawing, typed):
+    alone = Plugin(tmp_path, command=None)
+    environment = {"HOME": str(tmp_path), "INKSCAPE_PROFILE_DIR": str(alone.profile), "PATH": ""}
+    words = [*typed, "install-plugin", "inkscape"]
+    subprocess.run(words, env=environment, cwd=os.sep, check=True, capture_output=True)
+    alone.env["PATH"] = ""
+    alone.save(drawing, tmp_path / "saved.ngc")
+    assert (tmp_path / "saved.ngc").read_bytes().endswith(b"M2\n")
+
+
+def test_a_place_whose_name_is_no_text_is_noted_too(tmp_path, drawing):
+    odd = tmp_path / os.fsdecode(b"p\xff") / "brushsvg"
+    odd.parent.mkdir()
+    odd.symlink_to(COMMAND)
+    alone = Plugin(tmp_path, command=None)
+    environment = {"HOME": str(tmp_path), "INKSCAPE_PROFILE_DIR": str(alone.profile), "PATH": ""}
+    subprocess.run([odd, "install-plugin", "inkscape"], env=environment, check=True, capture_output=True)
+    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
+
+
+def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
+    note = plugin.installed / "brushsvg-executable.txt"
+    note.write_text("/nowhere/brushsvg\n")
+    try:
+        assert plugin.script("save", drawing).stdout.endswith(b"M2\n")
+    finally:
+        note.unlink()
+
+
+@pytest.mark.parametrize("script", ["save", "preview", "strokes"])
+def test_a_disk_that_takes_nothing_is_told(plugin, drawing, script):
+    told = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=0")))
+    assert "cannot be written or read: " in told and "mistake" not in told

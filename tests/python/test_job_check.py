@@ -1,0 +1,153 @@
+"""The last look at programs before the first stroke: the air run round a job, and the strokes that find the paper."""
+
+import json
+import re
+
+import pytest
+
+from brushsvg.cell_file import SHIPPED
+from brushsvg.cli import main
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
+<title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>
+<path id="hook" d="M20 60 h30 v-20 h-12"/></g></svg>"""
+LANGUAGES = {
+    "linuxcnc-3axis": ".ngc",
+    "grbl-3axis": ".gcode",
+    "grbl-servo": ".nc",
+    "ur5e": ".script",
+}
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    (tmp_path / "two.svg").write_text(DRAWING)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def call(capsys, *words):
+    status = main([str(word) for word in words])
+    told = capsys.readouterr()
+    return status, told.out, told.err.splitlines()
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
+    program = f"border{LANGUAGES[name]}"
+    flags = ("--cell", name, "--z-offset", "0.4", "--compensation", "none", "--fit", "90x50")
+    if name == "grbl-servo":
+        flags = ("--cell", name, "--compensation", "none", "--fit", "90x50")  # it has no height to spare
+    assert call(capsys, "border", "two.svg", program, *flags)[0] == 0
+    status, out, err = call(capsys, "check", program)
+    assert (status, err) == (0, [])
+    assert re.fullmatch(
+        r"border\.\w+: goes round \d+\.\d\d to \d+\.\d\d mm, \d+\.\d\d to \d+\.\d\d mm of the sheet, in the air; "
+        r"takes about \d+ s\n.*: nothing forbids to run it; without its drawing nobody can say.*\n",
+        out,
+    )
+    status, out, err = call(capsys, "check", program, "two.svg", "--fit", "90x50")
+    assert (status, err) == (0, [])
+    assert out.endswith("nothing forbids to run it\n")
+    status, _, err = call(capsys, "check", program, "two.svg")
+    assert status == 1
+    assert any("the drawing is painted within" in line for line in err), "it was fitted into less"
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_strokes_that_find_the_paper_are_checked(desk, capsys, name):
+    program = f"height{LANGUAGES[name]}"
+    assert call(capsys, "height", program, "--cell", name, "--from", "0.7", "--step", "0.13")[0] == 0
+    status, out, err = call(capsys, "check", program)
+    assert (status, err) == (0, [])
+    assert "strokes at heights from 0.7 to -1 mm, 0.13 mm apart; takes about" in out
+    assert out.endswith("nothing forbids to run it\n"), "there is no drawing to compare with"
+
+
+def edited(old, new, count=1):
+    def edit(text):
+        assert re.search(old, text), old
+        return re.sub(old, new, text, count=count)
+
+    return edit
+
+
+CHANGED = {
+    ("border", ".ngc"): [
+        (edited(r"(?m)^(G1 .*) Z10\.0000", r"\1 Z2.0000"), "height 2.00 mm is below the safe height, 10 mm"),
+        (
+            edited(r"(?m)^(G1 X\S+ Y\S+) Z10\.0000", r"\1 Z-9.0000"),
+            "while the brush touches|below the safe height",
+        ),
+        (edited(r"(?m)^G1 X\S+", "G1 X500.0000"), "350.00 mm beyond the right edge of the workspace"),
+        (edited(r"(?m)^G1 X(\S+)", "G1 X90.0000"), "for these strokes and this cell brushsvg would write"),
+        (edited(r"G4 P0\.500", "M0"), "brushsvg would write 'G4 P0.500'"),
+        (edited(r"(border: )\S+", r"\g<1>10.0"), "brushsvg would write"),
+        (edited(r"(border: )\S+", r"\g<1>1.0.0"), "its header is damaged"),
+        (edited(r"(border: )\S+", r"\g<1>-90"), "beyond the left edge of the workspace"),
+        (edited(r"\(border: .*\n", ""), "there is nothing to paint"),
+        (edited(r"\(sheet: .*\n", ""), "does not say how large the sheet is"),
+    ],
+    ("height", ".ngc"): [
+        (
+            edited(r"Z-0\.5000", "Z-2.5000", 0),
+            "height -2.50 mm is below the height of the lowest stroke, -1 mm",
+        ),
+        (edited(r"Z-0\.5000", "Z-0.6000", 0), "for these strokes and this cell brushsvg would write"),
+        (edited(r"F900\.0", "F1600.0", 0), "speed 26.7 mm/s while the brush touches, limit 25.0 mm/s"),
+        (edited(r"(?m)^G1 (.* Z0\.9000)", r"G0 \1"), "a rapid move while the brush touches"),
+        (
+            edited(r"(?m)^(G0 X.*) Z10\.0000\n\n\(stroke 9 ", r"\1 Z3.0000\n\n(stroke 9 "),
+            "below the safe height",
+        ),
+        (edited(r"heights: 1 to -1 mm", "heights: 1 to -30 mm"), "are 311 strokes, not 2 to 100"),
+        (edited(r"heights: 1 to", "heights: nan to"), "heights in its header: nan is outside the range"),
+        (edited(r"--z-offset 0\.50", "--z-offset 0.80"), "brushsvg would write"),
+        (edited(r"\(heights: .*\n", ""), "the brush touches the paper never"),
+        (edited(r"(?s)\(stroke 21 .*?\n\n", ""), "brushsvg would write"),
+    ],
+    ("height", ".nc"): [
+        (edited(r"(?m)^G4 P0\.0\d\d\n", "", 0), "at once while the brush touches|brushsvg would write"),
+    ],
+}
+
+
+@pytest.mark.parametrize("kind", CHANGED)
+def test_whatever_was_changed_is_told(desk, capsys, kind):
+    job, suffix = kind
+    cell = ("--cell", "grbl-servo") if suffix == ".nc" else ()
+    operands = ("border", "two.svg", f"job{suffix}") if job == "border" else ("height", f"job{suffix}")
+    assert call(capsys, *operands, *cell)[0] == 0
+    text = (desk / f"job{suffix}").read_text()
+    assert call(capsys, "check", f"job{suffix}")[0] == 0
+    for edit, words in CHANGED[kind]:
+        (desk / f"job{suffix}").write_text(edit(text))
+        status, _, err = call(capsys, "check", f"job{suffix}")
+        assert (status, any(re.search(words, line) for line in err)) == (1, True), (words, err)
+
+
+def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
+    assert call(capsys, "height", "height.ngc")[0] == 0
+    status, _, err = call(capsys, "check", "height.ngc", "two.svg")
+    assert status == 1 and "paints no drawing: check it alone" in err[0]
+    status, _, err = call(capsys, "check", "height.ngc", "--preview", "x.png")
+    assert status == 1 and "there is no picture of it" in err[0]
+    status, out, _ = call(capsys, "check", "height.ngc", "--json")
+    assert status == 0 and json.loads(out)["heights_mm"] == [1, -1, 0.1]
+
+
+def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
+    """Round a job that could never be run itself."""
+    (desk / "two.svg").write_text(DRAWING.replace("C40 10 60 10 90 40", "L190 40"))
+    status, _, err = call(capsys, "border", "two.svg", "border.ngc")
+    assert status == 1 and "beyond the right edge of the workspace" in err[-1]
+    assert not (desk / "border.ngc").exists()
+
+
+def test_corners_of_strokes_that_find_the_paper_are_not_cut_by_half_a_millimetre(desk, capsys):
+    text = (SHIPPED / "linuxcnc-3axis.toml").read_text()
+    (desk / "mine.toml").write_text(edited(r"(?m)^tolerance_mm = \S+", "tolerance_mm = 0.5")(text))
+    for words in (("height", "job.ngc"), ("border", "two.svg", "job.ngc")):
+        assert call(capsys, *words, "--cell", "mine.toml")[0] == 0
+        assert "G64 P0.0100" in (desk / "job.ngc").read_text()
+        assert call(capsys, "check", "job.ngc", "--cell", "mine.toml")[0] == 0

@@ -1,0 +1,37 @@
+"""What the report on painted marks says of how well they are predicted."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from brushsvg import _core
+from brushsvg.mark_calibrate import brush_of
+from brushsvg.mark_report import overlaps
+from brushsvg.painted import Painted
+
+
+def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():
+    brush = brush_of(_core.MarkLaws([4.0], [0.0, 0.5], [0.0, 0.5]), "b", (0.0, 6.0))
+    ways = [np.array([[20, 20 + y, 0], [30, 20 + y, -4], [60, 25 + y, -4.0]]) for y in (0.0, 40.0)]
+    marks = _core.simulate(_core.Plan("b", "", (1.0, 1.0), [_core.Pass("", way) for way in ways]), brush)
+    _core.trace_outlines(marks, brush)
+    # the sheet lies elsewhere, and the second mark is 1.5 mm off on it
+    moved = [np.array([3.0, -2.0]), np.array([3.0, -0.5])]
+    painted = [
+        _core.PaintedMark(str(k), way, [np.array(ring) + by for ring in one.outline_mm])
+        for k, (way, one, by) in enumerate(zip(ways, marks.passes, moved, strict=True))
+    ]
+    fit = SimpleNamespace(
+        turn_rad=0.0,
+        centre_mm=[0.0, 0.0],
+        shift_mm=[3.0, -2.0],
+        height_mm=0.0,
+        marks=[SimpleNamespace(displacement_mm=d) for d in ([0.0, 0.0], [0.0, 1.5])],
+    )
+    lying, without = overlaps(SimpleNamespace(brush=brush, fit=fit, painted=Painted(painted, 4.0, 2)))
+    assert without == pytest.approx(1.0, abs=1e-3)
+    rings = marks.passes[1].outline_mm
+    second = _core.overlap([np.add(ring, [0.0, 1.5]) for ring in rings], rings)
+    assert second < 0.7
+    assert lying == pytest.approx((1.0 + second) / 2, abs=1e-3)
