@@ -9,6 +9,7 @@
 #include <string>
 
 #include "brushsvg/error.hpp"
+#include "parallel.hpp"
 #include "trace.hpp"
 
 namespace brushsvg::fit {
@@ -21,7 +22,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// The law at the point that is being tried, once for all strokes. Unknowns: coefficients in powers of depth / deepest.
 template <int N>
-class Law : public ceres::EvaluationCallback {
+class Law {
  public:
     using Jet = ceres::Jet<double, N + 1>;  // the law's N coefficients and the heading at the start
     Law(const std::vector<double>& start, const TrackOptions& options) : options_(options) {
@@ -33,7 +34,6 @@ class Law : public ceres::EvaluationCallback {
         }
         lay_down();
     }
-    void PrepareForEvaluation(bool, bool) override { lay_down(); }
     void lay_down() {
         std::vector<Jet> c;
         std::vector<double> values;
@@ -89,34 +89,38 @@ class Stroke : public ceres::CostFunction {
         return moves_.cols() ? Eigen::Vector2d(moves_ * own.tail(moves_.cols())) : Eigen::Vector2d::Zero();
     }
 
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-        if (!law_.positive) return false;
-        const VectorXd mine = own() ? VectorXd(Eigen::Map<const VectorXd>(parameters[1], own())) : VectorXd();
-        if (!jacobians) {
-            run(law_.plain, heading(mine), displacement(mine), residuals, [](std::size_t, const auto&) {});
-            return true;
-        }
-        const Index n = Index(law_.unknown.size()), rows = num_residuals();
-        run(law_.jets, turns_ ? Jet(mine[0], N) : Jet(track_.heading_rad), displacement(mine), residuals,
+    /// Residuals and, if asked for, derivatives at the law's point and these unknowns of its own.
+    void evaluate(const VectorXd& own, bool with_slopes) {
+        residual.resize(num_residuals());
+        if (!with_slopes) return run(law_.plain, heading(own), displacement(own), [](std::size_t, const auto&) {});
+        const Index n = Index(law_.unknown.size());
+        by_law.resize(num_residuals(), n);
+        by_own.resize(num_residuals(), this->own());
+        run(law_.jets, turns_ ? Jet(own[0], N) : Jet(track_.heading_rad), displacement(own),
             [&](std::size_t k, const Vec2<Jet>& seen) {
                 for (int c = 0; c < 2; ++c) {
                     const Index row = Index(2 * k) + c;
-                    if (jacobians[0])
-                        Eigen::Map<RowMajor>(jacobians[0], rows, n).row(row) = seen[c].v.head(n).transpose();
-                    if (own() && jacobians[1]) {
-                        Eigen::Map<RowMajor> mine_by(jacobians[1], rows, own());
-                        if (turns_) mine_by(row, 0) = seen[c].v[N];
-                        mine_by.row(row).tail(moves_.cols()) = moves_.row(c);
-                    }
+                    by_law.row(row) = seen[c].v.head(n).transpose();
+                    if (turns_) by_own(row, 0) = seen[c].v[N];
+                    by_own.row(row).tail(moves_.cols()) = moves_.row(c);
                 }
             });
+    }
+
+    bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+        if (!law_.positive) return false;
+        std::copy_n(residual.data(), residual.size(), residuals);
+        if (jacobians && jacobians[0]) std::copy_n(by_law.data(), by_law.size(), jacobians[0]);
+        if (jacobians && own() && jacobians[1]) std::copy_n(by_own.data(), by_own.size(), jacobians[1]);
         return true;
     }
 
+    VectorXd residual;
+    RowMajor by_law, by_own;
+
  private:
     template <class T, class Sink>
-    void run(const LagLaw<T>& law, const T& heading, const Eigen::Vector2d& moved, double* residuals,
-             Sink&& sink) const {
+    void run(const LagLaw<T>& law, const T& heading, const Eigen::Vector2d& moved, Sink&& sink) {
         using std::cos;
         using std::sin;
         LagState<T> begun;
@@ -131,7 +135,7 @@ class Stroke : public ceres::CostFunction {
                   Vec2<T> seen = at.state.contact;
                   if (!lever_.empty()) seen += lever_at(lever_, at.depth) * at.state.heading;
                   for (int c = 0; c < 2; ++c)
-                      residuals[2 * k + c] = value_of(seen[c]) + moved[c] - track_.seen_mm(Index(k), c);
+                      residual[Index(2 * k) + c] = value_of(seen[c]) + moved[c] - track_.seen_mm(Index(k), c);
                   sink(k, seen);
               });
     }
@@ -143,19 +147,37 @@ class Stroke : public ceres::CostFunction {
     MatrixXd moves_ = MatrixXd(2, 0);
 };
 
+/// All strokes at the point that is being tried, on all processors, before Ceres asks for them one by one.
+template <int N>
+class Strokes : public ceres::EvaluationCallback {
+ public:
+    Strokes(const std::vector<Track>& tracks, const std::vector<double>& start, const TrackOptions& options)
+        : law(start, options) {
+        for (const Track& track : tracks) {
+            all.push_back(std::make_unique<Stroke<N>>(track, law, options));
+            own.push_back(all.back()->own_start());
+        }
+    }
+    void PrepareForEvaluation(bool with_slopes, bool) override {
+        law.lay_down();
+        if (law.positive)
+            on_all_processors(0, all.size(), [&](std::size_t i) { all[i]->evaluate(own[i], with_slopes); });
+    }
+    Law<N> law;
+    std::vector<std::unique_ptr<Stroke<N>>> all;
+    std::vector<VectorXd> own;
+};
+
 template <int N>
 TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start, const TrackOptions& options) {
-    Law<N> law(start, options);
+    Strokes<N> at(tracks, start, options);
+    Law<N>& law = at.law;
+    const auto& strokes = at.all;
+    std::vector<VectorXd>& own = at.own;
     if (!law.positive) throw Error("the lag to start from is not above 0 on the whole range of depths", "start");
-    std::vector<std::unique_ptr<Stroke<N>>> strokes;
-    std::vector<VectorXd> own;
-    for (const Track& track : tracks) {
-        strokes.push_back(std::make_unique<Stroke<N>>(track, law, options));
-        own.push_back(strokes.back()->own_start());
-    }
     ceres::Problem::Options problem_options;
     problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    problem_options.evaluation_callback = &law;
+    problem_options.evaluation_callback = &at;
     problem_options.disable_all_safety_checks = true;
     ceres::Problem problem(problem_options);
     ceres::Solver::Options solver;
@@ -185,28 +207,25 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
     TrackFit out;
     out.iterations = int(summary.iterations.size());
     out.converged = summary.termination_type == ceres::CONVERGENCE;
-    law.PrepareForEvaluation(true, true);
+    at.PrepareForEvaluation(true, true);
     const Index n = Index(law.unknown.size());
     MatrixXd normal = MatrixXd::Zero(n, n);
     double sum = 0.0;
     Index rows_in_all = 0, unknowns = n;
     out.displacement_mm.resize(Index(strokes.size()), 2);
     for (std::size_t i = 0; i < strokes.size(); ++i) {
-        const Index rows = strokes[i]->num_residuals(), m = own[i].size();
-        VectorXd residual(rows);
-        RowMajor by_law(rows, n), by_own(rows, m);
-        const double* at[2] = {law.unknown.data(), own[i].data()};
-        double* slopes[2] = {by_law.data(), by_own.data()};
-        strokes[i]->Evaluate(at, residual.data(), slopes);
+        const Index m = own[i].size();
+        const VectorXd& residual = strokes[i]->residual;
+        const RowMajor &by_law = strokes[i]->by_law, &by_own = strokes[i]->by_own;
         normal += by_law.transpose() * by_law;
         if (m) {  // what the stroke's own unknowns take away (Schur complement)
             const MatrixXd between = by_own.transpose() * by_law;
             normal -= between.transpose() * (by_own.transpose() * by_own).ldlt().solve(between);
         }
         sum += residual.squaredNorm();
-        rows_in_all += rows;
+        rows_in_all += residual.size();
         unknowns += m;
-        out.residual_mm.insert(out.residual_mm.end(), residual.data(), residual.data() + rows);
+        out.residual_mm.insert(out.residual_mm.end(), residual.data(), residual.data() + residual.size());
         out.heading_rad.push_back(strokes[i]->heading(own[i]));
         out.displacement_mm.row(Index(i)) = strokes[i]->displacement(own[i]).transpose();
     }
