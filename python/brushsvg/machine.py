@@ -39,6 +39,17 @@ def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
     return replace(cell, blending=replace(cell.blending, tolerance_mm=cut_mm))
 
 
+def check_rounding(cell: Cell, tolerance_mm: float) -> None:
+    """Error where the cell's decimals alone move places by more than a plan's tolerance."""
+    rounded_mm = 0.5 * 10.0**-cell.decimals
+    if rounded_mm > tolerance_mm:
+        raise Error(
+            f"{cell.decimals} decimals of cell {cell.name} round places by up to {rounded_mm:g} mm, outside the "
+            f"range [0, {tolerance_mm:g}] mm of the tolerance",
+            where="decimals",
+        )
+
+
 def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
     """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
     found = []

@@ -480,3 +480,15 @@ def test_a_blend_may_differ_by_what_rounded_moves_turn():
     assert _alike(line.format("0.000573"), line.format("0.000540"), 0.0)
     assert not _alike(line.format("0.000900"), line.format("0.000540"), 0.0)
     assert not _alike(line.format("0.0005730"), line.format("0.0005400"), 0.0)
+
+
+def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
+    text = re.sub(r"(?m)^decimals = \d", "decimals = 2", (SHIPPED / "ur5e.toml").read_text())
+    (desk / "coarse.toml").write_text(text)
+    words = ("convert", "two.svg", "two.script", "--cell", "coarse.toml", "--tolerance")
+    status, _, err = call(capsys, *words, "0.003")
+    assert status == 1 and not (desk / "two.script").exists()
+    assert "2 decimals of cell ur5e round places by up to 0.005 mm, outside the range [0, 0.003] mm" in err[0]
+    for tolerance in ("0.006", "0.03"):
+        assert call(capsys, *words, tolerance)[0] == 0
+        assert call(capsys, "check", "two.script", "two.svg", "--cell", "coarse.toml")[0] == 0

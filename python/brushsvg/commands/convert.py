@@ -26,6 +26,7 @@ def convert_file(args) -> None:
     with about(args.input):
         if suffix_of(args.output) != ".json":
             machine.post_for(suffix_of(args.output), cell)
+            machine.check_rounding(cell, work.options.tolerance_mm)
         marks = convert.predict(work, suffix_of(args.preview) == ".svg", stage)
         problems = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
         problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
