@@ -1,6 +1,6 @@
 """Random brushes paint a calibration sheet, and the fit is asked which brush it was.
 
-    truth_recovery.py [--brushes 300] [--seed 1] [--save FILE]
+    truth_recovery.py [--brushes 300] [--seed 1] [--processes 2]
 
 The sheet is painted by the slow stepping simulator of tests/laws, not by the library, with noise on its edges, marks
 and sheet displaced and turned, and paper at a wrong height. Printed: how often the 95 % intervals hold the truth, for
