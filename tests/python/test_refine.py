@@ -63,6 +63,7 @@ def test_the_first_stroke_that_cannot_be_painted_is_named():
 
 
 def test_ctrl_c_is_heard():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     try:
@@ -70,6 +71,7 @@ def test_ctrl_c_is_heard():
             _core.compensate(curves(40) * 100, BRUSH, SHEET, "refined")
     finally:
         timer.cancel()
+        signal.signal(signal.SIGINT, before)
 
 
 def test_an_unknown_way_is_refused():
