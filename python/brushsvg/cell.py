@@ -153,7 +153,7 @@ class Cell:
     name: str = _key("as --cell calls it", "text")
     description: str = _key("one line", "text")
     language: str = _key("the robot's", "text")
-    decimals: int = _key("of lengths in the program", "whole", 1, 6)
+    decimals: int = _key("of lengths in the program", "whole", 3, 6)
     paper: Paper
     heights: Heights
     speeds: Speeds

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -158,6 +159,9 @@ def _check_paint(cell: Cell) -> None:
         if names.index(station.name) != number - 1:
             raise Error(f"the name {station.name!r} is given twice", where=where)
         _check_heights_of(station, cell, where)
+        for colour in station.colours:
+            if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
+                raise Error(f"colour {colour[:24]!r} is not written as #rrggbb", where=where)
         if station.by_hand and (station.depth_mm or station.wipe_mm):
             raise Error("a person dips here: depth_mm and wipe_mm have no meaning", where=where)
         if (
@@ -235,13 +239,6 @@ def remarks(cell: Cell) -> list[tuple[str, str]]:
         value = getattr(getattr(cell, table), name, None)
         if value is not None and not least <= value <= greatest:
             found.append((key, f"{value:g} is outside the usual range [{least:g}, {greatest:g}]: {why}"))
-    if cell.decimals < 3:
-        found.append(
-            (
-                "decimals",
-                f"{cell.decimals} decimals round places to {0.5 * 10.0**-cell.decimals:g} mm: 3 are usual",
-            )
-        )
     if cell.servo and (value := value_mm(cell)) > 0.1:
         found.append(
             ("servo.table", f"one value changes the height by {value:.2g} mm: depths are off by half of it")

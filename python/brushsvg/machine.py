@@ -40,12 +40,12 @@ def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
 
 
 def check_rounding(cell: Cell, tolerance_mm: float) -> None:
-    """Error where the cell's decimals alone move places by more than a plan's tolerance."""
+    """Error where the cell's decimals alone move places by more than a fifth of a plan's tolerance."""
     rounded_mm = 0.5 * 10.0**-cell.decimals
-    if rounded_mm > tolerance_mm:
+    if rounded_mm > tolerance_mm / 5:
         raise Error(
             f"{cell.decimals} decimals of cell {cell.name} round places by up to {rounded_mm:g} mm, outside the "
-            f"range [0, {tolerance_mm:g}] mm of the tolerance",
+            f"range [0, {tolerance_mm / 5:g}] mm, a fifth of the tolerance",
             where="decimals",
         )
 

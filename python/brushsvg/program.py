@@ -14,9 +14,6 @@ from .limits import broken_limits
 from .moves import Arc, Move, Program, Section, Wait, rise_over
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
-CIRCLE_DECIMALS = (
-    3  # with fewer, start, end and centre as written are on no one circle: grbl stops with an error
-)
 
 
 @dataclass(frozen=True)
@@ -118,7 +115,7 @@ def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cel
     steps = np.diff(poses, axis=0)
     kinds = np.full(len(steps), PLAIN)
     kinds[on_the_spot(steps)] = ON_THE_SPOT
-    for number, arc in enumerate(arcs if cell.decimals >= CIRCLE_DECIMALS else ()):
+    for number, arc in enumerate(arcs):
         kinds[arc.first : arc.last] = number
     new_run = np.diff(kinds) != 0
     radii = None

@@ -1,12 +1,10 @@
 """What the robot does with a plan, and what it refuses."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from brushsvg import _core
 from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
 from brushsvg.limits import broken_limits
@@ -135,18 +133,3 @@ def test_the_workspace_ends_where_it_says():
 def test_a_pass_that_never_presses_is_refused():
     (found,) = broken_limits(plan_of([(10, 10, 0), (20, 10, 0)]), brush_of(25.0), find_cell())
     assert found[1] == "the brush is never pressed to the paper: nothing would be painted"
-
-
-@pytest.mark.parametrize("decimals", [2, 3])
-def test_circles_need_three_decimals(decimals):
-    """grbl stops (error 33) where start and end are not equally far from the centre, as two decimals cannot say it."""
-    a = np.linspace(0, 2, 5)
-    poses = np.column_stack([30 + 5 * np.cos(a), 30 + 5 * np.sin(a), np.full(5, -2.0)])
-    plan = _core.Plan(
-        "round-6", "", (60.0, 60.0), [_core.Pass("a", poses, 20.0, arcs=[_core.Arc(0, 4, (30.0, 30.0), 1)])]
-    )
-    made = program(plan, BRUSH, replace(find_cell(), decimals=decimals))
-    (section,) = made.sections()
-    painted = [move for move in section.moves if move.meaning == "paint"]
-    assert [move.arc is not None for move in painted] == [decimals > 2]
-    assert np.vstack([move.points_mm for move in painted]) == pytest.approx(poses[1:])

@@ -101,7 +101,7 @@ class Walk:
         if style.own["display"] == "none":
             self._leave_out("hidden")
             return
-        if self.chosen is not None and node in self.chosen:
+        if self.chosen is not None and node in self.chosen and not context.used:  # a copy is its use's
             context = context._replace(chosen=True)
         inner = self._inside(node, context, style, problems)
         if inner is None:
