@@ -40,7 +40,8 @@ def main() -> None:
 
 
 def _label(report: dict) -> str:
-    refused, warned = len(report["refused"]), len(report["warnings"])
+    forbidden = len(report["forbidden"])
+    refused, warned = len(report["refused"]) + forbidden, len(report["warnings"]) - forbidden
     if not refused and not warned:
         return f"Brush check: {report['brush']}: all can be painted"
     return f"Brush check: {report['brush']}: {refused} cannot be painted, {warned} warned of"
@@ -51,8 +52,9 @@ def _mark_all(etree, svg, layer, report: dict) -> list[str]:
     unplaced = []
     by_id = {node.get("id"): node for node in svg.iterdescendants() if node.get("id")}
     per_element: dict[str, list[tuple[str, str]]] = {}
-    for colour, kind in ((REFUSED, "refused"), (WARNED, "warnings")):
-        for each in report[kind]:
+    warned = [each for each in report["warnings"] if each not in report["forbidden"]]
+    for colour, kind in ((REFUSED, report["refused"] + report["forbidden"]), (WARNED, warned)):
+        for each in kind:
             per_element.setdefault(each["where"], []).append((colour, each["sentence"]))
     for where, said in per_element.items():
         element = element_of(by_id, where)

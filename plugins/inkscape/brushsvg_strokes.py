@@ -66,10 +66,19 @@ def _of_shapes(by_id: dict, drawn) -> list:
     """Shapes of the document, each with the paths that are its strokes; lines that were drawn as such are none."""
     found: dict = {}
     for path in drawn.iter(f"{SVG}path"):
-        shape = element_of(by_id, path.get("data-stroke")) if path.get("data-outline") == "yes" else None
-        if shape is not None:
+        name = path.get("data-stroke")
+        shape = element_of(by_id, name) if path.get("data-outline") == "yes" else None
+        drawn_as = element_of(by_id, name.split("/")[-1])  # of copies, what they are copies of
+        if shape is not None and not _is_line(by_id, drawn_as):
             found.setdefault(shape.get("id"), (shape, []))[1].append(path)
     return list(found.values())
+
+
+def _is_line(by_id: dict, shape) -> bool:
+    """A PowerStroke: where Inkscape draws text as paths it draws these as outlines, too."""
+    names = shape.get(EFFECT, "").split(";") if shape is not None else []
+    effects = (by_id.get(name.strip()[1:]) for name in names)
+    return any(effect is not None and effect.get("effect") == "powerstroke" for effect in effects)
 
 
 class _Writer:

@@ -385,7 +385,15 @@ def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
 
 
 def report_text(
-    suffix: str, work: Work, marks, cell: Cell, warnings=None, drawn=None, seconds=None, advice=""
+    suffix: str,
+    work: Work,
+    marks,
+    cell: Cell,
+    warnings=None,
+    drawn=None,
+    seconds=None,
+    advice="",
+    forbidden=(),
 ) -> str:
     """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; drawn: see
     report.measure; seconds: how long it takes, where that is known better than from the plan; advice: on the size."""
@@ -410,6 +418,7 @@ def report_text(
         time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
         warnings=tuple(known),
         refused=tuple((notice.where, notice.sentence) for notice in work.refused),
+        forbidden=tuple(forbidden),
         sure=uncertainty(work.plan, work.brush, marks),
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,

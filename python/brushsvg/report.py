@@ -69,6 +69,9 @@ class Report:
     time_s: float
     warnings: tuple[tuple[str, str], ...] = ()
     refused: tuple[tuple[str, str], ...] = ()  # strokes that are not among those of the report
+    forbidden: tuple[
+        tuple[str, str], ...
+    ] = ()  # of the warnings, those for which no program would be written
     sure: Uncertainty | None = None  # None: nothing is known of how sure the brush is
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
@@ -203,6 +206,7 @@ def to_json(report: Report) -> str:
                 "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
                 "warnings": [{"where": where, "sentence": sentence} for where, sentence in report.warnings],
                 "refused": [{"where": where, "sentence": sentence} for where, sentence in report.refused],
+                "forbidden": [{"where": where, "sentence": sentence} for where, sentence in report.forbidden],
                 "groups": [
                     {"strokes": list(group.strokes), "overlap": round(group.overlap, 6)}
                     for group in report.groups

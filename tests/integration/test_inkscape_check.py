@@ -64,6 +64,15 @@ def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
         assert [node.attrib for node in originals] == [node.attrib for node in expected]
 
 
+def test_what_no_program_would_be_written_for_cannot_be_painted(plugin, tmp_path):
+    _, layer = checked(
+        plugin, tmp_path, '<path id="off" d="M 1,30 H 60" stroke="#000" fill="none" stroke-width="5"/>'
+    )
+    assert " cannot be painted, 0 warned of" in layer.get(f"{INKSCAPE}label")
+    assert "beyond the left edge of the sheet" in " ".join(layer.itertext())
+    assert [path.get("style").split("stroke:")[1][:7] for path in layer.iter(f"{SVG}path")] == ["#d4351c"]
+
+
 def test_nothing_to_say(plugin, tmp_path):
     _, layer = checked(plugin, tmp_path, SOUND)
     assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: all can be painted"

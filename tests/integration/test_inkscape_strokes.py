@@ -191,3 +191,32 @@ def test_copies_and_drawings_within_the_drawing(plugin, inkscape, tmp_path):
     out = tmp_path / "strokes.svg"
     out.write_bytes(done.stdout)
     assert overlap(ink(inkscape, source), ink(inkscape, out)) > 0.9
+
+
+def test_converted_again_beside_text_lines_stay_lines(plugin, tmp_path):
+    """Inkscape draws text as paths for us, and with it every PowerStroke as an outline."""
+    source = tmp_path / "letters.svg"
+    source.write_text(drawing("mm"))
+    once = converted(plugin, source)
+    later = tmp_path / "later.svg"
+    word = '<text id="later" x="20" y="120" style="font-size:20px;fill:#000">l</text></svg>'
+    later.write_text(once.read_text().replace("</svg>", word))
+    twice = plugin.effect("strokes", later, tmp_path / "twice.svg")
+    names = {node.get("id") for node in ET.parse(twice).iter()}
+    ours = [node.get("id") for node in lines_of(once.read_text())]
+    assert "later-strokes" in names and ours
+    assert not [name for name in ours if f"{name}-strokes" in names]
+
+
+def test_what_a_selected_letter_is_copied_to_stays(plugin, tmp_path):
+    source = tmp_path / "letters.svg"
+    copies = (
+        '<g id="both">'
+        + letters("o").replace('id="', 'id="copied-')
+        + '<path id="bar" d="M5 90h60v4h-60z"/></g>'
+    )
+    name = re.search('id="(copied-[^"]*)"', copies)[1]
+    source.write_text(drawing("mm").replace("</svg>", f'{copies}<use id="copy" href="#both" x="40"/></svg>'))
+    out = converted(plugin, source, name)
+    names = {node.get("id") for node in ET.parse(out).iter()}
+    assert f"{name}-strokes" in names and "copy-strokes" not in names

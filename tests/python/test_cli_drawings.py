@@ -285,3 +285,12 @@ def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     assert "Left out, since they cannot be painted: 6\n  b: width 30.000 mm" in capsys.readouterr().out
     assert main(["convert", "d.svg", "x.ngc"]) == 1
     assert not (desk / "x.ngc").exists()
+
+
+def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):
+    (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M-3 60 H90"))
+    assert main(["report", "d.svg", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert {each["where"] for each in report["forbidden"]} == {"b"}
+    assert all(each in report["warnings"] for each in report["forbidden"])
+    assert main(["convert", "d.svg", "d.ngc"]) == 1

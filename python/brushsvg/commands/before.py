@@ -19,7 +19,7 @@ def border_file(args) -> None:
     check_places(args.output)
     settle(args)
     cell = cell_of(args)
-    work, marks, _ = look(args, cell, outlines=False)
+    work, marks, *_ = look(args, cell, outlines=False)
     cell = machine.as_exact_as(cell, work.options.tolerance_mm)
     with about(args.input):
         post = machine.post_for(suffix_of(args.output), cell)

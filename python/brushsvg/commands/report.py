@@ -20,14 +20,16 @@ def report_file(args) -> None:
     args.brush = args.brush[0] if args.brush else None
     settle(args)
     cell = cell_of(args)
-    work, marks, warnings = look(args, cell, outlines=suffix_of(args.preview) == ".svg", partly=True)
+    work, marks, warnings, forbidden = look(
+        args, cell, outlines=suffix_of(args.preview) == ".svg", partly=True
+    )
     with about(args.input):
         stage("trying other sizes")
         advice = convert.advice(work)
         if args.preview:
             write({args.preview: convert.misses_picture(suffix_of(args.preview), work, marks)})
         suffix = ".json" if args.json else ".txt"
-        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice)
+        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice, forbidden=forbidden)
     if work.plan.passes or args.json:
         tell(text)
     elif advice:

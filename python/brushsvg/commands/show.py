@@ -19,7 +19,7 @@ def predict_file(args) -> None:
     settle(args)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
-    work, marks, _ = look(args, cell_of(args), outlines=outlines, whole=suffix == ".json")
+    work, marks, *_ = look(args, cell_of(args), outlines=outlines, whole=suffix == ".json")
     with about(args.input):
         band = None
         if args.band:
@@ -37,7 +37,7 @@ def animate_file(args) -> None:
     check_places(args.output)
     settle(args)
     cell = cell_of(args)
-    work, marks, _ = look(args, cell, outlines=True, in_loads=True)
+    work, marks, *_ = look(args, cell, outlines=True, in_loads=True)
     with about(args.input):
         page = convert.played(work, marks, cell, args.speed)
     write({args.output: page})

@@ -21,7 +21,7 @@ def prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
 
 
 def look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
-    """Work, marks and warnings: what would forbid to run a program is only a warning to someone who looks."""
+    """Work, marks, warnings, and which of these forbid to run a program: to someone who looks they only warn."""
     work = prepare(args, cell, partly=partly)
     with about(args.input):
         cell = machine.as_exact_as(cell, work.options.tolerance_mm)
@@ -29,9 +29,10 @@ def look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool 
             work = convert.in_loads(work, cell)
             too_long = paint.too_long(work.plan, work.brush, cell)
         marks = convert.predict(work, outlines, stage, whole)
-        warnings = [(n.where, n.sentence) for n in work.notices]
+        warnings, forbidden = [(n.where, n.sentence) for n in work.notices], []
         if work.plan.passes or not work.refused:
-            warnings += machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+            forbidden = machine.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+        warnings += forbidden
         warnings += too_long if in_loads else []
     warn(args.input, warnings)
-    return work, marks, warnings
+    return work, marks, warnings, forbidden
