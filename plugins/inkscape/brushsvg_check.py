@@ -66,10 +66,8 @@ def _mark_all(etree, svg, layer, report: dict) -> list[str]:
 
 
 def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
-    colour, sentence = (
-        said[0][0],
-        "; ".join(dict.fromkeys(sentence for _, sentence in said)),
-    )  # each copy says it
+    colour = said[0][0]
+    sentence = "; ".join(dict.fromkeys(sentence for _, sentence in said))  # each copy says it
     place = element.composed_transform()
     unit = svg.unittouu("1mm")
     if element.tag in SHAPES:

@@ -18,11 +18,8 @@ INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
 BESIDE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inkscape`
 LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
-USUAL = (
-    "~/.local/bin",
-    "/usr/local/bin",
-    "/opt/homebrew/bin",
-)  # pipx, pip, Homebrew: a desktop's PATH may lack them
+# of pipx, pip, Homebrew: a desktop's PATH may lack them
+USUAL = ("~/.local/bin", "/usr/local/bin", "/opt/homebrew/bin")
 
 
 class StopError(Exception):

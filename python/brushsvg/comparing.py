@@ -90,9 +90,7 @@ def _strayed(a_pass, meant, cell: Cell) -> Problems:
             "with other flags or of another drawing"
         )
         problems.append((a_pass.stroke, sentence))
-    is_dab = not np.ptp(
-        meant.poses_mm[:, :2], axis=0
-    ).any()  # pressed on the spot alone, as slowly as a landing
+    is_dab = not np.ptp(meant.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
     if abs(a_pass.speed_mm_s - meant.speed_mm_s) > 0.1 and not is_dab:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
         problems.append((a_pass.stroke, f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"))
@@ -111,9 +109,8 @@ def _with_circles_of(a_pass, meant):
     return _core.Pass(meant.stroke, meant.poses_mm, meant.speed_mm_s, arcs=arcs)
 
 
-CIRCLE_MM = (
-    0.5  # farther apart, two centres are those of two circles; less than the 2 between both directions
-)
+# farther apart, two centres are those of two circles; less than the 2 between both directions
+CIRCLE_MM = 0.5
 
 
 def _pose_by_pose(a_pass, meant) -> float:

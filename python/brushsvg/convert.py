@@ -390,13 +390,14 @@ def report_text(
     marks,
     cell: Cell,
     warnings=None,
+    forbidden=(),
     drawn=None,
     seconds=None,
     advice="",
-    forbidden=(),
 ) -> str:
-    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; drawn: see
-    report.measure; seconds: how long it takes, where that is known better than from the plan; advice: on the size."""
+    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; forbidden:
+    those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
+    that is known better than from the plan; advice: on the size."""
     known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
     is_drawing = work.strokes is not None
     rows, total = report.measure(

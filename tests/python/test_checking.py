@@ -5,10 +5,10 @@ import re
 
 import numpy as np
 import pytest
+from programs import LANGUAGES, call
 
 from brushsvg import _core, checking, convert, machine
 from brushsvg.cell_file import SHIPPED, find_cell
-from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.readback import read_program
 from brushsvg.rewriting import _alike
@@ -16,12 +16,6 @@ from brushsvg.rewriting import _alike
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>
 <path id="hook (1)" d="M20 60 h30 v-20 h-12"/></g></svg>"""
-LANGUAGES = {
-    "linuxcnc-3axis": ".ngc",
-    "grbl-3axis": ".gcode",
-    "grbl-servo": ".nc",
-    "ur5e": ".script",
-}
 
 
 @pytest.fixture
@@ -124,12 +118,6 @@ def test_what_is_not_ours_is_refused(desk, name):
     for edit, words in UNREADABLE[name]:
         with pytest.raises(Error, match=words):
             ran(edit(text), cell, work)
-
-
-def call(capsys, *words):
-    status = main(list(words))
-    told = capsys.readouterr()
-    return status, told.out, told.err.splitlines()
 
 
 def test_the_command_compares_with_the_drawing(desk, capsys):

@@ -4,19 +4,13 @@ import json
 import re
 
 import pytest
+from programs import LANGUAGES, call
 
 from brushsvg.cell_file import SHIPPED
-from brushsvg.cli import main
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>
 <path id="hook" d="M20 60 h30 v-20 h-12"/></g></svg>"""
-LANGUAGES = {
-    "linuxcnc-3axis": ".ngc",
-    "grbl-3axis": ".gcode",
-    "grbl-servo": ".nc",
-    "ur5e": ".script",
-}
 
 
 @pytest.fixture
@@ -24,12 +18,6 @@ def desk(tmp_path, monkeypatch):
     (tmp_path / "two.svg").write_text(DRAWING)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def call(capsys, *words):
-    status = main([str(word) for word in words])
-    told = capsys.readouterr()
-    return status, told.out, told.err.splitlines()
 
 
 @pytest.mark.parametrize("name", LANGUAGES)
