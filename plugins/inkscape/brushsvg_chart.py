@@ -12,6 +12,7 @@ import sys
 
 from brushsvg_preview import INKSCAPE, SODIPODI, SVG, locked_layer, remove_layer
 from brushsvg_program import Run, StopError, arguments, choices, guarded, root_of
+from brushsvg_tell import tell
 
 LAYER_ID, PAGE_ID = "brushsvg-chart", "brushsvg-chart-page"
 GAP_MM = 10
@@ -48,8 +49,7 @@ def main() -> None:
     if wished:
         beside = f"{os.path.splitext(wished)[0]}.chart.json"
         _save({wished: made, beside: read_by})
-        sys.stdout.flush()
-        sys.stderr.write("\n".join([f"Saved: {wished} and {beside}.", *warnings]) + "\n")
+        tell("\n".join([f"Saved: {wished} and {beside}.", *warnings]))
 
 
 def _save(files: dict[str, bytes]) -> None:

@@ -13,6 +13,8 @@ import sys
 import tempfile
 from xml.etree import ElementTree
 
+from brushsvg_tell import in_dialogs, tell
+
 NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
@@ -48,8 +50,7 @@ def guarded(main) -> None:
         told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
     else:
         return
-    sys.stderr.write(told + "\n")
-    sys.stderr.flush()
+    tell(told)
     sys.exit(1)
 
 
@@ -114,7 +115,10 @@ class Run:
     def finish(self, may_refuse: bool = False) -> tuple[str, list[str]]:
         """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine."""
         out, err = self.process.communicate()
-        told = [re.sub(f"^brushsvg: (?:{re.escape(DRAWING)}: )?", "", line) for line in err.splitlines()]
+        told = [
+            in_dialogs(re.sub(f"^brushsvg: (?:{re.escape(DRAWING)}: )?", "", line))
+            for line in err.splitlines()
+        ]
         status = self.process.returncode
         if status == 0 or (may_refuse and status == 1 and out):
             return out, told

@@ -7,6 +7,7 @@ from __future__ import annotations
 import sys
 
 from brushsvg_program import Run, arguments, choices, guarded, root_of
+from brushsvg_tell import tell
 
 
 def main() -> None:
@@ -29,9 +30,8 @@ def main() -> None:
     with Run(args.executable, args.input_file, args.command, out, *choices(args)) as run:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
-        sys.stdout.flush()
     if warnings:
-        sys.stderr.write("\n".join(["Saved. brushsvg warns:", *warnings]) + "\n")
+        tell("\n".join(["Saved. brushsvg warns:", *warnings]))
 
 
 if __name__ == "__main__":

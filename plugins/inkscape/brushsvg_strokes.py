@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 
 from brushsvg_preview import INKSCAPE, OUTLINE, SKIPPED, SVG, own_ids, user_from_mm
 from brushsvg_program import Run, StopError, arguments, element_of, guarded, selection
+from brushsvg_tell import tell
 from brushsvg_text import name_of, with_letters
 
 STROKES = "strokes.svg"
@@ -54,8 +55,7 @@ def main() -> None:
         writer.replace(shape, paths)
     document.write(sys.stdout.buffer)
     if warnings:
-        sys.stdout.flush()
-        sys.stderr.write("\n".join(["Converted. brushsvg warns:", *warnings]) + "\n")
+        tell("\n".join(["Converted. brushsvg warns:", *warnings]))
 
 
 def _mm(length: str) -> float:
