@@ -8,7 +8,7 @@ import sys
 import textwrap
 
 from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
-from brushsvg_program import Run, arguments, choices, element_of, guarded
+from brushsvg_program import DRAWING, Run, arguments, choices, element_of, guarded
 
 LAYER_ID = "brushsvg-check"
 REFUSED, WARNED = "#d4351c", "#e08700"
@@ -21,7 +21,7 @@ HALO = "paint-order:stroke;stroke:#ffffff"  # letters can be read on top of a dr
 
 def main() -> None:
     args = arguments(brush="document", brush_file="", cell="document", cell_file="", compensation="document")
-    with Run(args.executable, args.input_file, "report", "--json", *choices(args)) as run:
+    with Run(args.executable, args.input_file, "report", DRAWING, "--json", *choices(args)) as run:
         import inkex  # while brushsvg runs: it knows where things lie
         from lxml import etree
 

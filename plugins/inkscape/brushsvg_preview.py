@@ -12,7 +12,7 @@ import re
 import sys
 from xml.etree import ElementTree
 
-from brushsvg_program import Run, arguments, choices, guarded, selection
+from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
 PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both can be seen through each other
 SVG = "{http://www.w3.org/2000/svg}"
@@ -27,7 +27,7 @@ PX_PER_MM = 96 / 25.4
 def main() -> None:
     args = arguments(brush="document", brush_file="", compensation="document")
     words = [*choices(args), *selection(own_ids(args.input_file, args.ids))]
-    with Run(args.executable, args.input_file, "predict", "marks.svg", *words) as run:
+    with Run(args.executable, args.input_file, "predict", DRAWING, "marks.svg", *words) as run:
         from lxml import etree  # while brushsvg runs
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import sys
 
-from brushsvg_program import Run, arguments, choices, guarded, root_of
+from brushsvg_program import DRAWING, Run, arguments, choices, guarded, root_of
 from brushsvg_tell import tell
 
 
@@ -27,7 +27,7 @@ def main() -> None:
     ):
         args.cell = args.else_cell
     out = f"saved.{args.format}"
-    with Run(args.executable, args.input_file, args.command, out, *choices(args)) as run:
+    with Run(args.executable, args.input_file, args.command, DRAWING, out, *choices(args)) as run:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
     if warnings:

@@ -14,7 +14,7 @@ import tempfile
 from xml.etree import ElementTree
 
 from brushsvg_preview import INKSCAPE, OUTLINE, SKIPPED, SVG, own_ids, user_from_mm
-from brushsvg_program import Run, StopError, arguments, element_of, guarded, selection
+from brushsvg_program import DRAWING, Run, StopError, arguments, element_of, guarded, selection
 from brushsvg_tell import tell
 from brushsvg_text import name_of, with_letters
 
@@ -42,7 +42,7 @@ def main() -> None:
     svg = document.getroot()
     with tempfile.TemporaryDirectory(prefix="brushsvg") as folder:
         drawing, by_id = with_letters(etree, svg, args.input_file, folder)
-        with Run(args.executable, drawing, "import", STROKES, *words) as run:
+        with Run(args.executable, drawing, "import", DRAWING, STROKES, *words) as run:
             _, warnings = run.finish()
             drawn = ElementTree.fromstring(run.made(STROKES))
     per_shape = _of_shapes(by_id, drawn)

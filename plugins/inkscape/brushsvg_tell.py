@@ -13,13 +13,13 @@ IN_DIALOGS = {  # what brushsvg advises those who type: what is done in Inkscape
     "give --brush": "choose another one in Brush settings, or a brush file in this dialog",
     "give --cell": "choose another one in Brush settings",
     "--width MM gives all strokes one width": "Object > Fill and Stroke gives all strokes one width",
-    "--wide passes fills it": "a wider brush fills it",
+    "--wide passes fills it": "Brush settings fill it by several strokes",
     " (--lenient draws what is sound)": ": mend or delete it, or draw it anew",
     "(brushsvg cell new --taught ...)": "in a terminal (brushsvg cell new --taught ...) and choose its file",
     "--strokes few needs less": "fewer Strokes need less",
-    "turn it into paths first, in Inkscape with Path > Object to Path, or with "
+    "in Inkscape with Path > Object to Path, or with "
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg": (
-        "Extensions > Brush > Convert to strokes reads it, and Path > Object to Path makes outlines of it"
+        "with Path > Object to Path, or into strokes with Extensions > Brush > Convert to strokes"
     ),
 }
 

@@ -1,4 +1,4 @@
-"""Brush preview and settings in the real Inkscape: marks where `brushsvg predict` puts them, originals untouched."""
+"""Brush preview in the real Inkscape: marks where `brushsvg predict` puts them, originals untouched."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -212,25 +212,3 @@ def test_too_many_to_be_told_are_refused_in_a_sentence(plugin, tmp_path):
     assert told.startswith("8000 objects are selected, more than can be told")
     done = plugin.script("preview", source, "--id=line", *[f"--id=path{k}" for k in range(3000)])
     assert b": 1 stroke, " in done.stdout, done.stderr
-
-
-def test_settings_stay_in_the_document_and_the_command_line_uses_them(plugin, tmp_path):
-    source = tmp_path / "drawing.svg"
-    source.write_text(drawing("mm"))
-    plugin.set(
-        settings__brush="rigid",
-        settings__compensation="none",
-        settings__cell="ur5e",
-        settings__tolerance="0.2",
-    )
-    try:
-        said = plugin.effect("settings", source, tmp_path / "said.svg")
-    finally:
-        plugin.set()
-    assert elements(said.read_text()) == elements(source.read_text())
-    brushsvg("convert", "said.svg", "said.script", cwd=tmp_path, status=0)
-    flags = ("--brush", "rigid", "--compensation", "none", "--cell", "ur5e", "--tolerance", "0.2")
-    brushsvg("convert", "drawing.svg", "typed.script", *flags, cwd=tmp_path, status=0)
-    assert (tmp_path / "said.script").read_bytes() == (tmp_path / "typed.script").read_bytes()
-    plain = plugin.effect("settings", said, tmp_path / "plain.svg")
-    assert "data-brushsvg" not in plain.read_text()

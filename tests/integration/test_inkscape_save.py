@@ -124,7 +124,7 @@ def options(file, parameter):
     root = ElementTree.parse(file).getroot()
     own = "{http://www.inkscape.org/namespace/inkscape/extension}"
     found = [each for each in root.iter(f"{own}param") if each.get("name") == parameter]
-    return {option.get("value") for each in found for option in each} - {"document"}
+    return {option.get("value") for each in found for option in each} - {"document", "keep", "default"}
 
 
 def test_dialogs_offer_what_comes_along():
