@@ -7,7 +7,7 @@ from __future__ import annotations
 import sys
 import textwrap
 
-from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
+from brushsvg_preview import INKSCAPE, SVG, locked_layer, own_undone, remove_layer
 from brushsvg_program import DRAWING, Run, arguments, choices, element_of, guarded
 
 LAYER_ID = "brushsvg-check"
@@ -32,6 +32,8 @@ def main() -> None:
         report = run.report()
     remove_layer(document.getroot(), LAYER_ID)
     layer = locked_layer(etree, LAYER_ID, _label(report))
+    if undone := own_undone(document.getroot()):
+        layer.set("transform", undone)
     unplaced = _mark_all(etree, measured.getroot(), layer, report)
     if unplaced:
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(unplaced)

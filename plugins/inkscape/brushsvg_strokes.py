@@ -102,10 +102,9 @@ class _Writer:
         kept.set(f"{INKSCAPE}label", OUTLINE)
         kept.set(SKIPPED, "yes")
         kept.append(shape)
-        place = self.user_from_mm
-        if self._is_plain(parent):
-            place = -self._place(parent) @ place
-        else:  # in a drawing within the drawing: its strokes lie above all
+        is_plain = self._is_plain(parent)
+        place = -self._place(parent if is_plain else self.svg) @ self.user_from_mm
+        if not is_plain:  # in a drawing within the drawing: its strokes lie above all
             strokes = self.etree.SubElement(self.svg, f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
             strokes.set(f"{INKSCAPE}label", group.get(f"{INKSCAPE}label"))
             group = strokes

@@ -36,8 +36,9 @@ def ends_mm(path, select):
     return [np.vstack([each.subpaths[0].cubics[0, 0], each.subpaths[0].cubics[-1, 3]]) for each in elements]
 
 
-def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path):
-    out, layer = checked(plugin, tmp_path, BODY)
+@pytest.mark.parametrize("own", ["", 'transform="translate(4,3) rotate(3)"'])
+def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
+    out, layer = checked(plugin, tmp_path, f"{OPEN.replace('<svg', f'<svg {own}')}{BODY}</svg>")
     assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 1 warned of"
     texts = [" ".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
     assert "width 22.000 mm is outside the range [0.000, 8.400] mm" in texts[0]
