@@ -68,7 +68,8 @@ def _told(before: dict[str, str], after: dict[str, str]) -> Iterator[str]:
     for name in [*OWN, *(name for name in after if name not in OWN)]:
         own = f"nothing, and brushsvg takes {OWN.get(name)}"
         was = f" (before: {before.get(name, 'nothing')})" if before.get(name) != after.get(name) else ""
-        yield f"    {NAMES.get(name, name)}: {after.get(name, own)}{was}"
+        called = NAMES.get(name, name) if name in OWN else PREFIX + name
+        yield f"    {called}: {after.get(name, own)}{was}"
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         "    machine: grbl-servo",
         "    letters wider than the brush: nothing, and brushsvg takes clamp",
         "    tolerance: 0.1mm",
-        "    speed: 7",
+        "    data-brushsvg-speed: 7",
     ]
 
 
