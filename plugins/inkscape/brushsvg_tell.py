@@ -13,7 +13,7 @@ IN_DIALOGS = {  # what brushsvg advises those who type: what is done in Inkscape
     "give --brush": "choose another one in Brush settings, or a brush file in this dialog",
     "give --cell": "choose another one in Brush settings",
     "--width MM gives all strokes one width": "Object > Fill and Stroke gives all strokes one width",
-    "--wide passes fills it": "Brush settings fill it by several strokes",
+    "--wide passes fills it": "passes in Brush settings fills it",
     " (--lenient draws what is sound)": ": mend or delete it, or draw it anew",
     "(brushsvg cell new --taught ...)": "in a terminal (brushsvg cell new --taught ...) and choose its file",
     "--strokes few needs less": "fewer Strokes need less",

@@ -53,6 +53,16 @@ def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
         assert np.abs(marked - drawn).max() < 0.01
 
 
+def test_letters_that_the_document_has_refused_are_marked_in_place(plugin, tmp_path):
+    fat = (
+        OPEN.replace("<svg ", '<svg data-brushsvg-wide="refuse" ') + '<path id="fat" d="M20 20h60v14h-60z"/>'
+    )
+    _, layer = checked(plugin, tmp_path, f'{fat}<path id="thin" d="M20 45h60v4h-60z"/></svg>')
+    assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 0 warned of"
+    (text,) = (" ".join(text.itertext()) for text in layer.iter(f"{SVG}text"))
+    assert text.startswith("width 14 mm of its outline is outside the range")
+
+
 def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
     out, layer = checked(plugin, tmp_path, BODY)
     again, layer_again = checked(plugin, tmp_path, out.read_text().partition("?>")[2].strip(), "again")

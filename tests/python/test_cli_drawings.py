@@ -221,6 +221,20 @@ def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     assert not (desk / "x.ngc").exists()
 
 
+def test_a_report_names_outlines_that_are_too_wide_and_refused(desk, capsys):
+    fat = '<path id="fat" fill="#000" stroke="none" d="M30 60h60v14h-60z"/>'
+    too_wide = '<path id="line" stroke-width="30" d="M30 50h60"/>'
+    (desk / "d.svg").write_text(DRAWING.replace("</svg>", f"{fat}{too_wide}</svg>"))
+    assert main(["report", "d.svg", "--json", "--wide", "refuse"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    assert [each["where"] for each in report["refused"]] == ["fat", "line"]
+    assert report["refused"][0]["sentence"].startswith("width 14 mm of its outline is outside the range")
+    assert [each["stroke"] for each in report["strokes"]] == ["a", "b"]
+    assert main(["report", "d.svg", "--select", "#fat", "--wide", "refuse"]) == 1
+    assert main(["report", "d.svg", "--all-brushes", "--wide", "refuse"]) == 0
+    assert main(["convert", "d.svg", "x.ngc", "--wide", "refuse"]) == 1
+
+
 def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M-3 60 H90"))
     assert main(["report", "d.svg", "--json"]) == 0
