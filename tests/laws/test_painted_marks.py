@@ -89,10 +89,10 @@ def test_blots_and_gaps_have_no_say():
 
 
 def test_paper_that_lies_millimetres_higher_than_it_was_taught():
-    """The brush comes from farther above than any such error: at 2 mm the fit once stood before a wall."""
+    """The fit once stood before a wall at 2 mm."""
     brush, _, painted = sheet(3)
     marks = [
-        core.PaintedMark(name, poses + [0, 0, 2.8], rings)
+        core.PaintedMark(name, poses + np.array([0, 0, 2.8]), rings)
         for name, poses, rings in painted.marks
         if poses[:, 2].min() < -3.2
     ]
