@@ -33,7 +33,7 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     piece.roots = from.roots;
     piece.clear2 = from.clear2;
     piece.steepest = from.steepest;
-    piece.most_curved = from.most_curved;
+    piece.most_twisted = from.most_twisted;
     return {{piece}, plain.rigid};
 }
 

@@ -62,7 +62,7 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
         for (const auto& root : piece.roots)
             piece.clear2 = std::min(piece.clear2, std::norm(root - std::clamp(root.real(), from.lo, from.hi)));
         piece.steepest = bound_of_derivative(c, 1, from.lo, from.hi);
-        piece.most_curved = bound_of_derivative(c, 2, from.lo, from.hi);
+        piece.most_twisted = bound_of_derivative(c, 3, from.lo, from.hi);
         law.rigid = law.rigid && c.size() == 1 && c[0] == 0.0;
         law.pieces.push_back(std::move(piece));
     }

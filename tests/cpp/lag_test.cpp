@@ -180,7 +180,7 @@ TEST_CASE("dual numbers carry derivatives through drags and events") {
     const auto& from = plain.pieces[0];
     piece.lo = from.lo, piece.hi = from.hi, piece.degree = from.degree;
     for (int i = 0; i <= from.degree; ++i) piece.coefficients[i] = from.coefficients[i];
-    piece.roots = from.roots, piece.steepest = from.steepest, piece.most_curved = from.most_curved;
+    piece.roots = from.roots, piece.steepest = from.steepest, piece.most_twisted = from.most_twisted;
 
     // a run with a reversal: taut, loose, taut again; the derivative by the depth of the second half
     const auto path = [](auto scalar, auto depth, const auto& law_) {

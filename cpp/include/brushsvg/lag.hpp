@@ -34,7 +34,7 @@ struct LawPiece {
     std::vector<std::complex<double>> roots;  ///< of the polynomial, all of them
     double clear2 = 0.0;                      ///< squared distance of the nearest root from [lo, hi]
     double steepest = 0.0;                    ///< bound of |dr/dd| on [lo, hi]
-    double most_curved = 0.0;                 ///< bound of |d2r/dd2| on [lo, hi]
+    double most_twisted = 0.0;                ///< bound of |d3r/dd3| on [lo, hi]
 
     T at(const T& depth) const {
         T r = coefficients[degree];

@@ -113,17 +113,19 @@ double first_loosening(const LawPiece<T>& law, const Move<T>& move, const LagSta
     const double length = value_of(move.length), depth_by = value_of(move.depth_by);
     const double cosine0 = value_of(start.heading.dot(move.along));
     if (stays_taut(law, move, cosine0)) return 2.0;
-    const double noise = 1e-13 * (length + std::abs(depth_by) * law.steepest);
-    const auto g = [&](double t) {
-        return length * cosine_after(law, move, start, begin, t) - depth_by * value_of(law.slope(move.depth(T(t))));
-    };
+    // A dip of g that is shallower moves the patch by its square; to look for less would take no end where g only
+    // touches 0.
+    const double noise = 1e-10 * (length + std::abs(depth_by) * law.steepest);
+    const auto lengthening = [&](double t) { return depth_by * value_of(law.slope(move.depth(T(t)))); };
+    const auto g = [&](double t) { return length * cosine_after(law, move, start, begin, t) - lengthening(t); };
     if (g(begin) < -noise) return begin;
-    const double bend = 0.5 * depth_by * depth_by * law.most_curved;
+    const double bend = std::abs(depth_by * depth_by * depth_by) * law.most_twisted / 8.0;
     const double t = first_negative(
         begin, end,
         [&](double a, double b) {
-            const double slope = depth_by * value_of(law.slope(move.depth(T(0.5 * (a + b)))));
-            return length * cosine_after(law, move, start, begin, a) - slope - bend * (b - a) + noise;
+            // no farther above its chord than a parabola
+            const double most = std::max(lengthening(a), lengthening(b)) + bend * (b - a) * (b - a);
+            return length * cosine_after(law, move, start, begin, a) - most + noise;
         },
         [&](double t) { return g(t) + noise; });
     return t <= end ? t : 2.0;
