@@ -27,9 +27,10 @@ _WORTH = 0.1
 _SEEN = 0.02  # what a line's disc must show of the unpainted to be a part of it
 _EVEN = 0.25  # between places on a line, in half widths
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
-_QUARTER = 24  # edges of a quarter of a circle: off by 1e-3 of its radius
+_QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
+_SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
 # Beyond, a shape is no lettering; there, and with more rings, the middle lines have to do.
-_MOST_POINTS, _MOST_RINGS, _MOST_LINES = 20_000, 400, 2_000
+_MOST_PAIRS, _MOST_RINGS, _MOST_LINES = 10_000, 400, 2_000
 
 
 def region(rings: list[np.ndarray]):
@@ -73,7 +74,8 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     shape: a polygon of shapely; wide, narrow: strokes found for it, those that the brush cannot
     paint and those that are painted anyway; least, half: the brush's half widths [mm].
     """
-    if shapely.get_num_coordinates(shape) > _MOST_POINTS:
+    shape = shape.simplify(_SIMPLER_MM)
+    if _close_pairs(shape, half) > _MOST_PAIRS:
         return []
     lines = _rings(shape, half)
     if lines is None:
@@ -85,6 +87,14 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
         found, left = _fill(left, candidates, least, half)
         lines += found
     return lines
+
+
+def _close_pairs(shape, half: float) -> float:
+    """About how many points of an outline lie within a half width of each other: what GEOS takes to move it inward."""
+    points = shapely.get_coordinates(shape)
+    some = points[:: max(len(points) // 200, 1)]
+    near = [np.count_nonzero(np.hypot(*(points - point).T) < half) for point in some]
+    return float(np.mean(near)) * len(points)
 
 
 def _rings(shape, half: float) -> list[Line] | None:
@@ -104,8 +114,10 @@ def _rings(shape, half: float) -> list[Line] | None:
 
 def _inward(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
     """Rings of the shape moved inward, its hairs left out; outer ones counter-clockwise, from the upper left."""
-    without_hairs = shape.buffer(-by_mm - hair_mm).buffer(1.01 * hair_mm, join_style="mitre", mitre_limit=10)
-    moved = shape.buffer(-by_mm).intersection(without_hairs).simplify(0.003)
+    without_hairs = shape.buffer(-by_mm - hair_mm, quad_segs=_ROUND).buffer(
+        1.01 * hair_mm, join_style="mitre", mitre_limit=10
+    )
+    moved = shape.buffer(-by_mm, quad_segs=_ROUND).intersection(without_hairs).simplify(0.003)
     return [
         np.array(ring.coords)
         for polygon in shapely.get_parts(shapely.orient_polygons(moved))

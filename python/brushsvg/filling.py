@@ -15,6 +15,7 @@ from .contour import contour_passes, region, unpainted
 
 # More of the shape covered along its outline is worth the direction of writing, which middle lines have.
 _BETTER = 0.01
+_MOST_STROKES = 500
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
 
 
@@ -40,12 +41,15 @@ class Filling:
 
 
 def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[Filling]:
-    """How to fill the shapes that strokes wider than the brush, given by their numbers, are of."""
-    found = []
+    """How to fill the shapes that strokes wider than the brush, given by their numbers, are of; those that no lettering
+    has are left out."""
+    found, beyond = [], set(wider)
     for shape, members in _shapes(strokes, wider):
-        wide = [k for k in members if k in wider]
-        narrow = [strokes[k] for k in members if k not in wider]
-        found.append(_filling(shape, {k: strokes[k] for k in wide}, narrow, least, greatest))
+        if len(members) > _MOST_STROKES:
+            continue
+        wide = {k: strokes[k] for k in members if k in beyond}
+        narrow = [strokes[k] for k in members if k not in beyond]
+        found.append(_filling(shape, wide, narrow, least, greatest))
     return found
 
 
@@ -88,22 +92,18 @@ def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
     for k, stroke in enumerate(strokes):
         if stroke.wanted_mm:
             elements.setdefault(_element(stroke.id), []).append(k)
-    concerned = {_element(strokes[k].id) for k in wider}
     found = []
-    for element in (each for each in elements if each in concerned):
+    wide = set(wider)
+    for element in dict.fromkeys(_element(strokes[k].id) for k in wider):
         numbers = elements[element]
-        parts = [region(strokes[k].wanted_mm) for k in numbers]
-        for shape in shapely.get_parts(
-            region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm]))
-        ):
-            members = [k for k, part in zip(numbers, parts, strict=True) if _is_of(part, shape)]
-            if any(k in wider for k in members):
-                found.append((shape, members))
+        shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
+        starts = shapely.points([strokes[k].middle_mm[0, :2] for k in numbers])
+        homes = shapely.STRtree(shapes).nearest(starts) if len(shapes) > 1 else [0] * len(numbers)
+        members: list[list[int]] = [[] for _ in shapes]
+        for k, home in zip(numbers, homes, strict=True):
+            members[home].append(k)
+        found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
     return found
-
-
-def _is_of(part, shape) -> bool:
-    return part.intersection(shape).area > 0.5 * part.area
 
 
 def _element(name: str) -> tuple[str, str]:

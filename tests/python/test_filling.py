@@ -132,7 +132,9 @@ def test_what_stays_unpainted_is_told():
 
 
 def test_what_is_no_lettering_is_left_to_the_middle_lines():
-    rough = shapely.Point(50, 50).buffer(40, quad_segs=6000)
+    turns = np.linspace(0, 2 * np.pi, 9000, endpoint=False)
+    far = 30 + np.arange(9000) * 7919 % 1000 / 1000
+    rough = shapely.Polygon(np.column_stack([far * np.cos(turns), far * np.sin(turns)]))
     assert contour_passes(rough, [], [], 0.0, HALF_MM) == []
     assert contour_passes(shapely.box(0, 0, 4000, 4000), [], [], 0.0, 1.0) == []
     line = Line(np.array([[0.0, 0, 1, 0, 2, 0, 3, 0]]), [(0.0, 1.0)])
