@@ -26,6 +26,13 @@ _CORNER_RAD, _SHARP_RAD = np.radians(30), np.radians(100)
 _WORTH = 0.1
 _SEEN = 0.02  # what a line's disc must show of the unpainted to be a part of it
 _EVEN = 0.25  # between places on a line, in half widths
+# What a line is longer than what it has to paint at either end, in half widths: a mark begins pointed, and one shorter
+# than a footprint lies behind its line.
+_LANDING = 1.5
+# Half width won per length: longer, a line out of a blunter corner, 0.71 in a right-angled one, would press the brush so
+# fast that its tip runs back out of the corner.
+_BLUNT = 0.6
+_WIDE_END = 0.5  # in half widths; narrower ends lie in corners
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 _QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
@@ -84,7 +91,8 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     edge = shape.boundary
     shapely.prepare(edge)
     for candidates in ([_rows(stroke, edge, half) for stroke in wide], _axis(shape, half)):
-        found, left = _fill(left, candidates, least, half)
+        lengthened = [_lengthened(rows, shape, edge, half) for rows in candidates]
+        found, left = _fill(left, lengthened, least, half)
         lines += found
     return lines
 
@@ -200,6 +208,24 @@ def _rows(stroke, edge, half: float) -> np.ndarray:
     )
 
 
+def _lengthened(rows: np.ndarray, shape, edge, half: float) -> np.ndarray:
+    """Places along a line, and straight on behind its wide ends: a mark begins and ends inside of the shape."""
+    for _ in range(2):
+        rows = rows[::-1]
+        behind = rows[-1, :2] - rows[max(len(rows) - 4, 0), :2]
+        length = np.hypot(*behind)
+        if length < 1e-9 or rows[-1, 2] < _WIDE_END * half:
+            continue
+        steps = np.arange(_EVEN, _LANDING + _EVEN, _EVEN)[:, None] * half
+        places = rows[-1, :2] + steps * behind / length
+        points = shapely.points(places)
+        room = np.where(shapely.contains(shape, points), shapely.distance(points, edge), 0.0)
+        widths = np.minimum.accumulate(np.minimum(room, rows[-1, 2]))
+        fits = widths >= _WIDE_END * half
+        rows = np.vstack([rows, np.column_stack([places, widths])[fits]])
+    return rows
+
+
 def _axis(shape, half: float) -> list[np.ndarray]:
     """Branches of the medial axis, from where the shape is narrow to where it is wide: out of its corners."""
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
@@ -226,8 +252,13 @@ def _fill(
     for rows in candidates:
         rows = np.column_stack([rows[:, :2], np.clip(rows[:, 2], None, half)])
         shown = _shown(rows, left) > _SEEN * half**2
-        for first, last in _runs(shown & (rows[:, 2] >= least), int(2 / _EVEN)):
-            stretches.append(rows[first : last + 1])
+        more = int(_LANDING / _EVEN)
+        for first, last in _runs(shown & (rows[:, 2] >= least), more):
+            stretch = rows[first : last + 1]
+            if _slope(stretch) < _BLUNT:
+                behind, ahead = rows[last + 1 : last + 1 + more], rows[max(first - more, 0) : first][::-1]
+                stretch = np.vstack([_wide(ahead, half)[::-1], stretch, _wide(behind, half)])
+            stretches.append(stretch)
     made = []
     for rows in sorted(stretches, key=lambda rows: -_shown(rows, left).sum()):
         line = _fitted(rows, least)
@@ -236,6 +267,17 @@ def _fill(
             left = without
             made.append(line)
     return made, left
+
+
+def _slope(rows: np.ndarray) -> float:
+    length = np.hypot(*np.diff(rows[:, :2], axis=0).T).sum()
+    return abs(float(rows[-1, 2] - rows[0, 2])) / max(length, 1e-9)
+
+
+def _wide(rows: np.ndarray, half: float) -> np.ndarray:
+    """Places up to the first that is narrow: farther on a line leads into a corner, where its tip would stick out."""
+    narrow = np.flatnonzero(rows[:, 2] < _WIDE_END * half)
+    return rows[: narrow[0]] if len(narrow) else rows
 
 
 def _shown(rows: np.ndarray, left) -> np.ndarray:

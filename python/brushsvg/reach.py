@@ -75,13 +75,13 @@ def _filled(strokes: list, wider: list[int], least: float, greatest: float) -> d
                 line, rings = filling.meant[k]
                 meant = [_like(strokes[k], strokes[k].id, line), *passes[1:]]
                 meant[0].wanted_mm = rings
-            done[k] = (passes, meant, _how(passes, strokes[first].id) + left_over * (k == first))
+            done[k] = (passes, meant, _how(passes) + left_over * (k == first))
     return done
 
 
-def _how(passes: list, first: str) -> str:
+def _how(passes: list) -> str:
     if not passes:
-        return f"painted with {first}"
+        return "painted in the passes of its shape's first stroke"
     return f"painted in {len(passes)} passes" if len(passes) > 1 else "painted in one pass"
 
 

@@ -111,7 +111,7 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
     assert len(made) > 1
     _, _, notices = within_reach(made, brush, "passes")
     assert [notice.where for notice in notices] == [each.id for each in made]
-    assert "painted with p/1" in notices[1].sentence
+    assert notices[1].sentence.endswith("painted in the passes of its shape's first stroke")
     apart = of("M5 5H30V45H5ZM60 5H85V45H60Z")
     passes, _, _ = within_reach(apart, brush, "passes")
     assert {each.id.split("~")[0] for each in passes} == {"p/1", "p/2"}
@@ -129,6 +129,15 @@ def test_what_stays_unpainted_is_told():
     assert f"; {100 * left:.2g} % of the shape stay unpainted, with gaps up to 1.4 mm wide" in notice.sentence
     (stroke,) = of(SQUARE)
     assert share_left(region(stroke.wanted_mm), within_reach([stroke], blunt, "passes")[0]) < 0.02
+
+
+def test_a_line_of_changing_width_is_as_wide_as_its_knots_say():
+    """Between the ends of a straight line, too, which was flattened to two rows: a third of the mark was lost."""
+    knots = [(0.0, 0.1), (0.4, 4.2), (1.0, 4.2)]
+    stroke = _core.Stroke(middle_mm=np.array([[0, 0, 10 / 3, 0, 20 / 3, 0, 10, 0]]), half_width=knots)
+    wanted = _core.area(_core.wanted_outline(stroke, 0.005))
+    assert wanted == pytest.approx(painted([stroke]).area, rel=2e-3)
+    assert wanted == pytest.approx(105.8, abs=0.3)
 
 
 def test_what_is_no_lettering_is_left_to_the_middle_lines():
