@@ -29,8 +29,8 @@ _EVEN = 0.25  # between places on a line, in half widths
 # What a line is longer than what it has to paint at either end, in half widths: a mark begins pointed, and one shorter
 # than a footprint lies behind its line.
 _LANDING = 1.5
-# Half width won per length, 0.71 in a right-angled corner: where it is more, a longer line would press the brush so fast
-# that its tip runs back out of the corner.
+# Half width won per length, 0.71 in a right-angled corner: beyond, a longer line would press the brush so fast that its
+# tip runs back out of the corner.
 _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch

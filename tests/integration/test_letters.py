@@ -182,5 +182,5 @@ def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
         np.mean([painted(each, brush, wide=wide) for each in designs]) for wide in ("clamp", "passes")
     )
     print(f"script at 100 mm: nearest width {clamp:.3f}, passes {passes:.3f}")
-    assert passes >= 0.9  # 0.969
+    assert passes >= 0.9  # 0.972
     assert passes > clamp + 0.1
