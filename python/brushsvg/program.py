@@ -120,8 +120,8 @@ def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cel
     new_run = np.diff(kinds) != 0
     radii = None
     if cell.blending.radius_mm:
-        radii = blend_radii(poses, cell.blending)
-        new_run |= turns_rad(poses)[1:-1] > SHARP_RAD
+        radii = blend_radii(poses, cell.blending, arcs)
+        new_run |= turns_rad(poses, arcs)[1:-1] > SHARP_RAD
     for run in np.split(np.arange(len(steps)), np.flatnonzero(new_run) + 1):
         if not len(run):
             continue
