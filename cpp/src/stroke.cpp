@@ -86,6 +86,28 @@ void check(const Stroke& stroke) {
     }
 }
 
+namespace {
+
+/// Points x, y, arc length with those added where the width has a knot: it is linear between rows.
+std::vector<std::array<double, 3>> with_places_of_knots(const std::vector<std::array<double, 3>>& points,
+                                                        const Stroke& stroke, double length) {
+    std::vector<std::array<double, 3>> out{points.front()};
+    auto knot = stroke.half_width.begin();
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const auto &a = points[i - 1], &b = points[i];
+        for (; knot != stroke.half_width.end() && knot->at * length < b[2]; ++knot) {
+            const double at = knot->at * length;
+            if (at <= out.back()[2]) continue;
+            const double t = (at - a[2]) / (b[2] - a[2]);
+            out.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), at});
+        }
+        out.push_back(b);
+    }
+    return out;
+}
+
+}  // namespace
+
 MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
     const Cubics& c = stroke.middle_mm;
     std::vector<std::array<double, 3>> points;
@@ -104,6 +126,7 @@ MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
             points.push_back({p.x(), p.y(), s});
         }
     }
+    points = with_places_of_knots(points, stroke, s);
     MiddlePolyline out(Index(points.size()), 4);
     for (Index i = 0; i < out.rows(); ++i) {
         const auto& p = points[i];

@@ -63,6 +63,18 @@ TEST_CASE("flatten keeps to its tolerance and carries length and width") {
     }
 }
 
+TEST_CASE("the width is linear between the rows of a flattened line, also along a straight one") {
+    Stroke s;
+    s.middle_mm.resize(1, 8);
+    s.middle_mm << 0, 0, 2, 0, 4, 0, 6, 0;
+    s.half_width = {{0.0, 0.0}, {0.5, 2.0}, {1.0, 2.0}};
+    const MiddlePolyline line = flatten(s, 0.01);
+    REQUIRE(line.rows() == 3);
+    CHECK(line(1, 0) == doctest::Approx(3.0));
+    CHECK(line(1, 2) == doctest::Approx(3.0));
+    CHECK(line(1, 3) == doctest::Approx(2.0));
+}
+
 TEST_CASE("a stroke without line or width, or with a bad number, is refused") {
     Stroke s;
     s.id = "x";

@@ -182,3 +182,13 @@ def test_read_or_refused_within_bounds(name, tmp_path):
     )
     assert any(words in line for line in done.err) or not words
     assert (tmp_path / "seen.svg").exists() == (status == 0)
+
+
+@pytest.mark.parametrize("edges", [1500, 6000, 100_000])
+def test_rough_discs_are_filled_within_bounds(edges, tmp_path):
+    """A line moved inward of an outline full of teeth crosses itself without end."""
+    body = filled(ring(around(edges, lambda k: 24 + (k * 7919 % 1000) / 1000 * (edges < 1e5))))
+    (tmp_path / "rough.svg").write_text(f"{HEAD}{body}</svg>")
+    words = ("convert", "rough.svg", "rough.json", "--wide", "passes")
+    done = brushsvg(*words, cwd=tmp_path, preexec_fn=bounded, timeout_s=300)
+    assert any("passes" in line for line in done.err)

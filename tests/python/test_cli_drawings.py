@@ -155,7 +155,7 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     assert [each["stroke"] for each in passes] == ["bar", "wide"]
     assert "painted at the nearest" in err[0]
     passes, err = plan(desk, capsys, "--wide", "passes", drawing="bar.svg")
-    assert [each["stroke"] for each in passes] == ["bar", "wide", "wide~2", "wide~3"]
+    assert [each["stroke"] for each in passes] == ["bar", "wide", *(f"wide~{k}" for k in range(2, 6))]
     assert "wide: width 12 mm" in refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import replace
 from heapq import heappop, heappush
+from itertools import pairwise, permutations, product
 
 import numpy as np
 
@@ -16,6 +18,14 @@ TAPER = 0.27
 # A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
 # of its own: a flick.
 FLICK, FLICK_SHARE = 7.0, 0.6
+
+# Which comes first.
+UPPER_LEFT_FIRST = np.array([1.0, -1.0])
+# Of parts in a line of writing: with more a dot would come before the letter left of it, with less the roof of a
+# Chinese character after what stands below.
+HIGHER = 0.5
+# Lines of which one is so much flatter are a bar and what crosses it.
+FLATTER_RAD = np.radians(30)
 
 
 def directed(piece: Piece) -> Piece:
@@ -98,47 +108,69 @@ def _flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j: int)
 
 
 def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
-    """From the upper left to the lower right; before what begins on it, what it begins on."""
-    starts = np.array([chain[0].line[0, :2] for chain in chains])
-    left_first = (starts @ (1.0, -1.0)).argsort(kind="stable").tolist()
-    begins_on = [chain[0].ends[0] for chain in chains]
-    unpainted: dict[int | None, set[int]] = {}  # of each crossing: what runs through it
-    for k, chain in enumerate(chains):
-        for crossing in _passed(chain):
-            unpainted.setdefault(crossing, set()).add(k)
-
-    def waits(k: int) -> bool:
-        runs_through = unpainted.get(begins_on[k], set())
-        return len(runs_through) > (k in runs_through)
-
-    place = {k: place for place, k in enumerate(left_first)}
-    ready = [place[k] for k in left_first if not waits(k)]
-    waiting: dict[int | None, list[int]] = {}
-    for k in left_first:
-        if waits(k):
-            waiting.setdefault(begins_on[k], []).append(k)
+    """From the upper left to the lower right by their centres; but see _earlier."""
+    lines = [np.vstack([piece.line[:, :2] for piece in chain]) for chain in chains]
+    centres = np.array([_centre(line) for line in lines])
+    by_centre = (centres @ UPPER_LEFT_FIRST).argsort(kind="stable").tolist()
+    place = {k: place for place, k in enumerate(by_centre)}
+    earlier = _earlier(chains, lines, centres)
+    later: dict[int, list[int]] = {}
+    for k, before in enumerate(earlier):
+        for other in before:
+            later.setdefault(other, []).append(k)
+    ready = [place[k] for k in by_centre if not earlier[k]]
     painted: dict[int, None] = {}
-    rest = iter(left_first)
+    rest = iter(by_centre)
     while len(painted) < len(chains):
-        k = left_first[heappop(ready)] if ready else next(k for k in rest if k not in painted)
+        # where each waits for another, the first of them
+        k = by_centre[heappop(ready)] if ready else next(k for k in rest if k not in painted)
+        if k in painted:
+            continue
         painted[k] = None
-        for crossing in _passed(chains[k]):
-            unpainted[crossing].discard(k)
-            held = waiting.pop(crossing, [])
-            waiting[crossing] = [other for other in held if waits(other)]
-            for other in held:
-                if other not in painted and not waits(other):
-                    heappush(ready, place[other])
+        for other in later.get(k, ()):
+            earlier[other].discard(k)
+            if not earlier[other]:
+                heappush(ready, place[other])
     return [chains[k] for k in painted]
 
 
-def _passed(chain: list[Piece]) -> set[int]:
-    """Crossings that a chain runs through: what begins there hangs on it."""
-    return {crossing for piece in chain for crossing in piece.through}
+def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray) -> list[set[int]]:
+    """For each chain those that are painted before it: of two that begin at one place the one that leads farther to the
+    left, a stem before its bowl; of two that cross the flatter one; and what it begins on, unless that lies to its
+    right, a bowl before the stem behind it."""
+    begin, pass_ = defaultdict(list), defaultdict(list)
+    for k, chain in enumerate(chains):
+        begin[chain[0].ends[0]].append(k)
+        for crossing in {crossing for piece in chain for crossing in piece.through}:
+            pass_[crossing].append(k)
+    begin.pop(None, None)
+    steep = [float(np.arctan2(*np.abs(line[-1] - line[0])[::-1])) for line in lines]
+    to_right = [
+        float(np.arctan2(c[0] - line[0, 0], line[0, 1] - c[1]))
+        for c, line in zip(centres, lines, strict=True)
+    ]
+    earlier: list[set[int]] = [set() for _ in chains]
+    for crossing in begin.keys() | pass_.keys():
+        fanned = sorted(begin[crossing], key=to_right.__getitem__)
+        for one, two in pairwise(fanned):
+            earlier[two].add(one)
+        for one, two in permutations(pass_[crossing], 2):
+            if steep[one] < steep[two] - FLATTER_RAD:
+                earlier[two].add(one)
+        for host, guest in product(pass_[crossing], begin[crossing]):
+            if host != guest and centres[host, 0] <= centres[guest, 0]:
+                earlier[guest].add(host)
+    return earlier
+
+
+def _centre(line: np.ndarray) -> np.ndarray:
+    steps = np.hypot(*np.diff(line, axis=0).T)
+    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=steps) if steps.sum() > 0 else line[0]
 
 
 def in_rows(boxes: np.ndarray) -> list[int]:
-    """Order of things with bounds (n, 4) x0, y0, x1, y1: as lines of text are read."""
+    """Order of things with bounds (n, 4) x0, y0, x1, y1: as lines of text are read, in a line from the left, what lies
+    higher rather first."""
     rows: list[list[int]] = []
     floor = np.inf
     for k in (-boxes[:, 3]).argsort(kind="stable").tolist():
@@ -147,4 +179,5 @@ def in_rows(boxes: np.ndarray) -> list[int]:
             floor = boxes[k, 1]
         rows[-1].append(k)
         floor = min(floor, boxes[k, 1])
-    return [k for row in rows for k in sorted(row, key=lambda k: (boxes[k, 0], -boxes[k, 3]))]
+    across = (boxes[:, 0] + boxes[:, 2]) - HIGHER * (boxes[:, 1] + boxes[:, 3])
+    return [k for row in rows for k in sorted(row, key=lambda k: across[k])]

@@ -1,0 +1,112 @@
+"""Shapes wider than the brush filled in several passes: beside the middle lines where that covers them, else along
+their outlines."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from . import _core
+from .beside import Line, clamped, passes_beside
+from .contour import contour_passes, region, unpainted
+
+# More of the shape covered along its outline is worth the direction of writing, which middle lines have.
+_BETTER = 0.01
+_MOST_STROKES = 500
+_SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
+
+
+@dataclass(frozen=True)
+class Filling:
+    """What fills one shape. passes: for the number of each stroke that is wider than the brush, the lines to paint in
+    its place, none where those of another do; meant: of what they become, the first's line and rings; unpainted: share
+    of the shape; gap_mm: width of the widest gap."""
+
+    passes: dict[int, list[Line]]
+    meant: dict[int, tuple[Line, list[np.ndarray]]]
+    unpainted: float
+    gap_mm: float
+
+    @property
+    def shows(self) -> bool:
+        """Whether something is left that one sees."""
+        return self.unpainted > _SHOWN_SHARE or self.gap_mm > _SHOWN_GAP_MM
+
+    @property
+    def count(self) -> int:
+        return sum(map(len, self.passes.values()))
+
+
+def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[Filling]:
+    """How to fill the shapes that strokes wider than the brush, given by their numbers, are of; those that no lettering
+    has are left out."""
+    found, beyond = [], set(wider)
+    for shape, members in _shapes(strokes, wider):
+        if len(members) > _MOST_STROKES:
+            continue
+        wide = {k: strokes[k] for k in members if k in beyond}
+        narrow = [strokes[k] for k in members if k not in beyond]
+        found.append(_filling(shape, wide, narrow, least, greatest))
+    return found
+
+
+def _filling(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> Filling:
+    beside = {
+        k: [clamped(stroke, least, greatest), *passes_beside(stroke, greatest)] for k, stroke in wide.items()
+    }
+    meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
+    along_middles = _tried(shape, beside, meant, narrow)
+    if not (lines := contour_passes(shape, list(wide.values()), narrow, least, greatest)):
+        return along_middles
+    first, *others = wide
+    part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
+    passes = {first: lines, **{k: [] for k in others}}
+    along_outline = _tried(shape, passes, {first: (lines[0], part)}, narrow)
+    return along_outline if _is_better(along_outline, along_middles) else along_middles
+
+
+def _is_better(one: Filling, other: Filling) -> bool:
+    if one.unpainted >= other.unpainted:
+        return False
+    mends = other.gap_mm > _SHOWN_GAP_MM and one.gap_mm < other.gap_mm
+    return one.count <= other.count or mends or other.unpainted - one.unpainted > _BETTER
+
+
+def _tried(shape, passes, meant, narrow: list) -> Filling:
+    left = unpainted(shape, [*narrow, *(line for lines in passes.values() for line in lines)])
+    return Filling(passes, meant, left.area / shape.area, _gap_mm(left))
+
+
+def _gap_mm(left) -> float:
+    parts = [part for part in shapely.get_parts(left) if part.area > 0.1]
+    largest = sorted(parts, key=lambda part: -part.area)[:20]
+    return max((2 * shapely.maximum_inscribed_circle(part, 0.05).length for part in largest), default=0.0)
+
+
+def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
+    """Shapes with strokes that are wider than the brush, and the numbers of all of their strokes."""
+    elements: dict[tuple, list[int]] = {}
+    for k, stroke in enumerate(strokes):
+        if stroke.wanted_mm:
+            elements.setdefault(_element(stroke.id), []).append(k)
+    found = []
+    wide = set(wider)
+    for element in dict.fromkeys(_element(strokes[k].id) for k in wider):
+        numbers = elements[element]
+        shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
+        starts = shapely.points([strokes[k].middle_mm[0, :2] for k in numbers])
+        homes = shapely.STRtree(shapes).nearest(starts) if len(shapes) > 1 else [0] * len(numbers)
+        members: list[list[int]] = [[] for _ in shapes]
+        for k, home in zip(numbers, homes, strict=True):
+            members[home].append(k)
+        found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
+    return found
+
+
+def _element(name: str) -> tuple[str, str]:
+    """What strokes of one element have in common in their names: id/1, id/2 ..., and which repeat of it they are."""
+    found = re.fullmatch(r"(.*?)(?:/[0-9]+)?(#[0-9]+)?", name, re.DOTALL)
+    return found[1], found[2] or ""

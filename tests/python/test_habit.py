@@ -1,0 +1,62 @@
+"""In which order the lines of a letter are painted, told by where their centres lie."""
+
+import numpy as np
+import pytest
+from svg_text import read
+
+from brushsvg import _core
+from brushsvg.outlines.habit import in_rows
+from brushsvg.strokes import strokes
+
+# outline, and a place on each line in the order of writing; y down as in the drawing
+LETTERS = {
+    "P": ("M10 5H30A11 11 0 0 1 30 27H16V45H10ZM16 11V21H30A5 5 0 0 0 30 11Z", [(13, 35), (38, 16)]),
+    "R": (
+        "M10 5H30A11 11 0 0 1 33 26.6L42 45H35L26 27H16V45H10ZM16 11V21H30A5 5 0 0 0 30 11Z",
+        [(13, 35), (38, 16), (35, 40)],
+    ),
+    "D": ("M10 5H25A20 20 0 0 1 25 45H10ZM16 11V39H25A14 14 0 0 0 25 11Z", [(13, 25), (42, 25)]),
+    "B": (
+        "M10 5H28A10 10 0 0 1 34 23A11.5 11.5 0 0 1 30 45H10ZM16 11V20H28A4.5 4.5 0 0 0 28 11Z"
+        "M16 26V39H30A6.5 6.5 0 0 0 30 26Z",
+        [(13, 25), (35, 15), (38, 33)],
+    ),
+    "E": ("M10 5H40V11H16V22H36V28H16V39H40V45H10Z", [(13, 25), (35, 8), (30, 25)]),
+    "F": ("M10 5H40V11H16V22H36V28H16V45H10Z", [(13, 35), (35, 8), (30, 25)]),
+    "G": (
+        "M44 13A20 20 0 1 0 40 42L41 45H46V25H29V31H40V34A14 14 0 1 1 38.5 17Z",
+        [(12, 25), (32, 28)],
+    ),
+    "H": ("M10 5H16V22H34V5H40V45H34V28H16V45H10Z", [(13, 40), (25, 25), (37, 40)]),
+    "T": ("M5 5H45V11H28V45H22V11H5Z", [(10, 8), (25, 35)]),
+    "A": ("M22 5H28L44 45H37L33 34H17L13 45H6ZM25 12L19 28H31Z", [(12, 38), (25, 31), (38, 38)]),
+    "4": ("M30 5H36V30H42V36H36V45H30V36H8V30ZM30 14L16 30H30Z", [(20, 22), (33, 42)]),
+    "d": ("M34 3H40V45H34V42A14 14 0 1 1 34 20ZM34 31A8 8 0 1 0 18 31A8 8 0 1 0 34 31Z", [(12, 31), (37, 8)]),
+    "cross": ("M22 5H28V22H45V28H28V45H22V28H5V22H22Z", [(10, 25), (25, 10)]),
+    "N": ("M10 5H16L34 34V5H40V45H34L16 16V45H10Z", [(13, 35), (25, 25), (37, 15)]),
+}
+
+
+def lines_of(d: str) -> list[np.ndarray]:
+    made = strokes(read(f'<path d="{d}" fill="red" stroke="none"/>'))[0]
+    flat = [_core.flatten(stroke, 0.02) for stroke in made]
+    at = np.linspace(0, 1, 200)
+    return [np.column_stack([np.interp(at * f[-1, 2], f[:, 2], f[:, k]) for k in (0, 1)]) for f in flat]
+
+
+@pytest.mark.parametrize("d, places", LETTERS.values(), ids=LETTERS)
+def test_lines_are_painted_in_the_order_of_writing(d, places):
+    found = lines_of(d)
+    off = np.array([[np.hypot(*(line - (x, 50 - y)).T).min() for line in found] for x, y in places])
+    order = off.argmin(axis=1)
+    assert (off.min(axis=1) < 3).all(), "each place lies on a line"
+    assert order.tolist() == sorted(order.tolist())
+    assert len(set(order.tolist())) == len(places)
+
+
+def test_parts_in_a_row_are_read_from_the_left_and_what_stands_above_comes_before_what_is_below():
+    # a roof with two parts below it, and a part to the right; then a second line
+    roof, left, right, beside = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
+    assert in_rows(np.array([right, beside, left, roof])) == [3, 2, 0, 1]
+    letters = np.array([[30 * k, 0, 30 * k + 20, 20 + 10 * (k % 2)] for k in range(6)])
+    assert in_rows(np.vstack([letters - (0, 100, 0, 100), letters])) == [*range(6, 12), *range(6)]
