@@ -40,7 +40,7 @@ def found(design: Design, brush) -> tuple[list, list[score.Meant]]:
 
 
 def overlap(trace, wanted: score.Meant, brush) -> float:
-    return score.areas(score.view([trace], [wanted], brush)).overlap
+    return _core.common_area([trace], [wanted.stroke], brush).overlap
 
 
 @dataclass

@@ -39,7 +39,7 @@ def search(stroke, wanted: score.Meant, brush, tries: int, seed: int) -> dict[st
 
 def reported(a_pass, wanted: score.Meant, brush) -> float:
     (trace,) = _core.simulate(plan_of(a_pass, brush), brush).passes
-    return score.areas(score.view([trace], [wanted], brush)).overlap
+    return _core.common_area([trace], [wanted.stroke], brush).overlap
 
 
 def plan_of(a_pass, brush):

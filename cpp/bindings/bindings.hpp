@@ -22,6 +22,8 @@ void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);
 void bind_curve_fit(py::module_& m);
 void bind_coverage(py::module_& m);
+void bind_overlay(py::module_& m);
+void bind_verdict(py::module_& m);
 void bind_compensate(py::module_& m);
 void bind_interrupt(py::module_& m);
 void bind_thin_out(py::module_& m);

@@ -1,0 +1,19 @@
+#include "bindings.hpp"
+#include "brushsvg/overlay.hpp"
+
+void bind_overlay(py::module_& m) {
+    using namespace brushsvg;
+    py::class_<CommonArea>(m, "CommonArea", "Areas [mm^2] of paint and wanted mark.")
+        .def(py::init([](double common_mm2, double together_mm2) { return CommonArea{common_mm2, together_mm2}; }),
+             py::arg("common_mm2"), py::arg("together_mm2"))
+        .def_readonly("common_mm2", &CommonArea::common_mm2)
+        .def_readonly("together_mm2", &CommonArea::together_mm2)
+        .def_property_readonly("overlap", &CommonArea::overlap);
+    m.def(
+        "common_area",
+        [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
+            return common_area(overlay(painted, wanted, brush));
+        },
+        py::arg("painted"), py::arg("wanted"), py::arg("brush"), py::call_guard<py::gil_scoped_release>(),
+        "What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.");
+}
