@@ -1,7 +1,6 @@
 #include "bindings.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/verdict.hpp"
-#include "parallel.hpp"
 
 void bind_verdict(py::module_& m) {
     using namespace brushsvg;
@@ -22,11 +21,8 @@ be measured; worst: a WorstPlace.)")
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
             if (painted.size() != wanted.size()) throw Error("a stroke is needed for each pass of marks");
             std::vector<Verdict> found(painted.size());
-            constexpr std::size_t at_once = 64;  // or Ctrl-C waits too long
-            in_chunks((found.size() + at_once - 1) / at_once, 1, py::none(), [&](std::size_t chunk) {
-                on_all_processors(chunk * at_once, std::min(found.size(), (chunk + 1) * at_once),
-                                  [&](std::size_t i) { found[i] = verdict(painted[i], wanted[i], brush); });
-            });
+            in_parallel_chunks(found.size(), 64, py::none(),
+                               [&](std::size_t i) { found[i] = verdict(painted[i], wanted[i], brush); });
             return found;
         },
         py::arg("painted"), py::arg("wanted"), py::arg("brush"),

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from . import _core, score
+from . import _core
 from .reasons import reason
 from .uncertainty import Uncertainty
 
@@ -99,8 +99,8 @@ def measure(
         else _figures(a_pass, stroke, next(found), brush, tolerance_mm, compensation)
         for a_pass, stroke in zip(plan.passes, strokes, strict=True)
     )
-    meant = list(map(score.meant, [stroke for _, stroke in known] if drawn is None else drawn))
-    overlap = score.areas_of_sheet(marks.passes, meant, brush).overlap if rows else None
+    meant = [stroke for _, stroke in known] if drawn is None else list(drawn)
+    overlap = _core.common_area(marks.passes, meant, brush).overlap if rows else None
     return rows, _in_all(rows, overlap)
 
 
@@ -125,16 +125,12 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
 
 def groups(marks, brush, strokes) -> tuple[Group, ...]:
     """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
-    known = [
-        (trace, score.meant(stroke))
-        for trace, stroke in zip(marks.passes, strokes or (), strict=bool(strokes))
-        if stroke is not None
-    ]
+    known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
     found = []
-    for members in score.touching([wanted for _, wanted in known]):
-        traces, wanted = [known[k][0] for k in members], [known[k][1] for k in members]
-        overlap = score.areas_of_sheet(traces, wanted, brush).overlap
-        found.append(Group(tuple(each.stroke.id for each in wanted), overlap))
+    for members in _core.touching([stroke for _, stroke in known]):
+        traces, wanted = zip(*(known[k] for k in members), strict=True)
+        overlap = _core.common_area(traces, wanted, brush).overlap
+        found.append(Group(tuple(stroke.id for stroke in wanted), overlap))
     return tuple(found)
 
 

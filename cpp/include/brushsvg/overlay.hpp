@@ -29,4 +29,15 @@ Overlay overlay(const std::vector<PassMarks>& painted, const std::vector<Stroke>
 
 CommonArea common_area(const Overlay& seen);
 
+/// The same of a whole sheet: where 4 million pixels are too few for 8 a mm, tile by tile on all processors, up to 60
+/// million in all.
+CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush);
+
+/// What strokes should become, as shares of pixels.
+Coverage wanted_coverage(const std::vector<Stroke>& wanted, const Window& window, double px_per_mm);
+
+/// Numbers of strokes whose wanted marks touch, directly or through others: the parts of letters, in order. Those that
+/// stand alone are not named.
+std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted);
+
 }  // namespace brushsvg

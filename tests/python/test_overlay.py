@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, _core, compensate, find_brush, score, simulate, trace_outlines
-from brushsvg.score import meant, touching
+from brushsvg import Stroke, _core, compensate, find_brush, simulate, trace_outlines
 
 
 def box(x0, y0, x1, y1):
@@ -28,14 +27,14 @@ def test_who_touches_whom():
         straight("c", (10, 6), (30, 30), 1.0),
         straight("diagonal", (28, 8), (40, 20), 1.0),  # within the box of c
     ]
-    assert touching(list(map(meant, strokes))) == [[0, 1, 3]]
+    assert _core.touching(strokes) == [[0, 1, 3]]
     halves = [straight("left", (0, 40), (5, 40), 1), straight("right", (9, 40), (15, 40), 1)]
-    assert touching(list(map(meant, halves))) == []
+    assert _core.touching(halves) == []
     halves[0].wanted_mm, halves[1].wanted_mm = (
         [box(0, 38, 7, 42)],
         [box(7, 38, 15, 42)],
     )  # shares of one letter
-    assert touching(list(map(meant, halves))) == [[0, 1]]
+    assert _core.touching(halves) == [[0, 1]]
 
 
 def test_pixels_agree_with_rings():
@@ -51,6 +50,6 @@ def test_pixels_agree_with_rings():
     for some in (slice(0, 1), slice(0, 12)):
         painted = _core.unite([ring for trace in marks.passes[some] for ring in trace.outline_mm])
         wanted = _core.unite([ring for s in strokes[some] for ring in _core.wanted_outline(s, 0.01)])
-        found = score.areas_of_sheet(marks.passes[some], list(map(meant, strokes[some])), brush)
+        found = _core.common_area(marks.passes[some], strokes[some], brush)
         assert found.overlap == pytest.approx(_core.overlap(painted, wanted), abs=1e-3)
         assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *wanted])), rel=1e-3)
