@@ -13,9 +13,10 @@ namespace brushsvg {
 namespace {
 
 constexpr double kLeastPxPerMm = 8.0, kMostPxPerMm = 40.0;
-constexpr double kAcrossPx = 6.0;     // of the thinnest half width, where that many can be had
-constexpr double kMostPx = 4e6;       // of one picture: bounds the memory
-constexpr double kMostSheetPx = 6e7;  // of all the tiles of a sheet: bounds the time
+constexpr double kAcrossPx = 6.0;      // of the thinnest half width, where that many can be had
+constexpr double kMostPx = 4e6;        // of one picture: bounds the memory
+constexpr double kSheetPxPerMm = 5.0;  // of tiles: overlaps to 1e-3 still
+constexpr double kMostSheetPx = 6e7;   // of all of them: bounds the time
 constexpr double kTilePx = 1000.0;
 constexpr double kOutlineMm = 0.01;
 constexpr double kBesideMm = 0.3;  // round the box: what lies on its edge is seen whole
@@ -161,7 +162,7 @@ CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<
     const double mm2 = sheet.width_mm * sheet.height_mm;
     if (mm2 * kLeastPxPerMm * kLeastPxPerMm <= kMostPx) return common_area(overlay(painted, wanted, brush));
 
-    const double px_per_mm = std::min(kLeastPxPerMm, std::sqrt(kMostSheetPx / mm2)), side = kTilePx / px_per_mm;
+    const double px_per_mm = std::min(kSheetPxPerMm, std::sqrt(kMostSheetPx / mm2)), side = kTilePx / px_per_mm;
     const auto across = std::size_t(std::ceil(sheet.width_mm / side)),
                up = std::size_t(std::ceil(sheet.height_mm / side));
     std::vector<CommonArea> tiles(across * up);

@@ -109,7 +109,7 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
-        why = reason(stroke, line, brush, place.at_mm, miss, tolerance_mm, compensation)
+        why = reason(stroke, line, brush, place.at_mm, place.is_missing, miss, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why)
     return replace(
         _bare_figures(a_pass),

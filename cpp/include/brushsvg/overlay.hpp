@@ -29,8 +29,8 @@ Overlay overlay(const std::vector<PassMarks>& painted, const std::vector<Stroke>
 
 CommonArea common_area(const Overlay& seen);
 
-/// The same of a whole sheet: where 4 million pixels are too few for 8 a mm, tile by tile on all processors, up to 60
-/// million in all.
+/// The same of a whole sheet: where 4 million pixels are too few for 8 a mm, 5 a mm, tile by tile on all processors, 60
+/// million in all at most.
 CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush);
 
 /// What strokes should become, as shares of pixels.
