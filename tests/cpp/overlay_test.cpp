@@ -46,6 +46,26 @@ TEST_CASE("strokes that lie over each other count once") {
     CHECK(common_area(overlay({}, {a, b}, brush)).common_mm2 == 0.0);
 }
 
+TEST_CASE("a large sheet is counted tile by tile") {
+    const Brush brush = shipped("round-6");
+    std::vector<Stroke> strokes;
+    std::vector<PassMarks> marks;
+    double common = 0.0, together = 0.0;
+    for (const double y : {30.0, 200.0, 480.0}) {
+        strokes.push_back(stroke_of(polyline({V(30, y), V(470, y + 60)}), {{0.0, 1.0}, {1.0, 3.0}}));
+        marks.push_back(simulate(compensate(strokes.back(), brush).pass, brush));
+        const CommonArea one = common_area(overlay({marks.back()}, {strokes.back()}, brush));
+        common += one.common_mm2;
+        together += one.together_mm2;
+    }
+    const CommonArea all = common_area(marks, strokes, brush);
+    CHECK(all.common_mm2 == doctest::Approx(common).epsilon(1e-3));
+    CHECK(all.together_mm2 == doctest::Approx(together).epsilon(1e-3));
+    CHECK(touching(strokes).empty());
+    strokes.push_back(stroke_of(polyline({V(30, 10), V(30, 300)}), {{0.0, 1.0}}));
+    CHECK(touching(strokes) == std::vector<std::vector<std::size_t>>{{0, 1, 3}});
+}
+
 TEST_CASE("nothing wanted and nothing painted overlap; hairlines and huge sheets have pixels") {
     const Brush brush = shipped("round-6");
     CHECK(common_area(overlay({}, {}, brush)).overlap() == 1.0);
