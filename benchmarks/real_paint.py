@@ -5,11 +5,12 @@
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
 3 mm. Beside ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
-that is linear in depth, each fitted to the largest `fixed`; those with a lag once more to what ours is fitted to.
+that is linear in depth, each fitted to the largest `fixed`.
 
-Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` goes on from there to the largest mean of `fixed` and
-`shift` of the same laws. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the
-set's displacement 2 (at one depth lag 1, half width 1, no height); `edges` also has a shift for each fitted stroke.
+Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` goes on from there to the largest `fixed` of the same
+laws, with footprints held round as long as the strokes do not speak against it. Numbers: lag 2, tip gap 1, half width
+2, the footprint's shape 2, height of the paper 1, the set's displacement 2 (at one depth lag 1, half width 1, no
+height); `edges` also has a shift for each fitted stroke.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from __future__ import annotations
 import argparse
 import time
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -35,20 +37,17 @@ NEAR_MM = 8.0
 JOINED_MM = 1.5
 FEW = 30  # strokes on which the search begins
 MARGIN_MM = 8.0  # around way and paint, while searching
-DISCS = (
-    (0, False, "disc, no lag"),
-    (1, False, "disc, constant r"),
-    (2, False, "disc, r0 + r1 depth"),
-    (1, True, "constant r, for both"),
-    (2, True, "r0 + r1 d, for both"),
-)
+DISCS = ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth"))
+# While searching: how far overlaps of single strokes scatter, and beyond what a footprint is not called round, in half
+# widths: length behind the widest section, in front of it, from there to the centre of friction.
+SCATTER, ROUND = 0.1, (0.4, 0.3, 0.4)
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAWS = ("lag", "tip_gap", "half_width")
 SETS = ("round_v1", "small_16_20", "loops_constant_depth", "marker_control")
 
 
-@dataclass
+@dataclass(eq=False)
 class Stroke:
     poses: np.ndarray  # x y z, mm, z = -depth
     mask: np.ndarray
@@ -64,13 +63,14 @@ def load(folder: Path, name: str) -> list[Stroke]:
     count = 30 if name == "round_v1" else 10
     t = np.linspace(0, 1, count)
     weights = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
-    deep = 1e3 * float(data["z_range_m"]) or 1.0  # a marker has none: its fraction counts as millimetres
+    deep = 1e3 * float(data["z_range_m"])
     x0, x1 = -20.0, 70.0
     y0, y1 = -35.0, 35.0
     out = []
     for paint, ctrl in zip(data["intensity"], data["ctrl"], strict=True):
         xy = weights @ ctrl[:, :2] * 1e3
-        depth = np.interp(t, np.linspace(0, 1, 4), ctrl[:, 2]) * deep
+        # a marker is pressed to one depth, which is called 1 mm
+        depth = np.interp(t, np.linspace(0, 1, 4), ctrl[:, 2]) * deep if deep else np.ones(count)
         poses = np.column_stack([xy, -np.maximum(depth, 0)])
         out.append(_stroke(poses, paint, (x0, y0, x1 - x0, y1 - y0), 0.25))
     return out
@@ -171,20 +171,14 @@ def disc_marks(strokes, x, lag_terms) -> list[np.ndarray]:
     return out
 
 
-def fit_disc(strokes, lag_terms, both=False) -> np.ndarray:
-    """Largest mean overlap on the strokes, one displacement for all; both: largest mean of `fixed` and `shift`."""
-
-    def score(predicted, stroke):
-        fixed = overlap(predicted, stroke.mask)
-        if not both:
-            return fixed
-        return 0.5 * (fixed + best_shift(predicted[::2, ::2], stroke.mask[::2, ::2], 2 * stroke.px)[0])
+def fit_disc(strokes, lag_terms) -> np.ndarray:
+    """Largest mean overlap on the strokes, one displacement for all."""
 
     def loss(x):
         if np.any(x[4:] < -20) or x[0] < 0:
             return 1.0
         return 1 - np.mean(
-            [score(p, s) for p, s in zip(disc_marks(strokes, x, lag_terms), strokes, strict=True)]
+            [overlap(p, s.mask) for p, s in zip(disc_marks(strokes, x, lag_terms), strokes, strict=True)]
         )
 
     best = None
@@ -221,8 +215,11 @@ def fit_ours(strokes, name):
 
 
 def by_overlap(strokes, fit, options):
-    """The fitted brush, changed to the largest overlap on the same strokes, mean of `fixed` and `shift`, as scored.
-    Edges say what the usual mark is, overlap also what to predict where marks vary and lie off: a little more.
+    """The fitted brush, changed to the largest overlap on the same strokes where they lie, as the discs are. Edges say
+    what the usual mark is, overlap also what to predict where marks vary and lie off: a little more.
+
+    Lag and footprint tell little apart where the brush hardly turns, so that a footprint that is not round has its
+    price, as in `calibrate`: squares of what it is off, weighed against overlaps as if those scattered normally.
 
     Changed are lag and half width (as values at control depths), tip gap, the footprint's two lengths, the height of
     the paper and the set's displacement. A simplex search, from the edges' fit and from a disc; on a part of the
@@ -238,13 +235,15 @@ def by_overlap(strokes, fit, options):
         return dict(zip(begin, np.split(x, sizes), strict=True))
 
     def loss_on(chosen):
-        seen = [_coarse(stroke) for stroke in chosen]
+        masks = [_coarse(stroke)[0] for stroke in chosen]
 
         def loss(x):
             now = named(x)
             if _impossible(now, options):
                 return 1.0
-            return 1 - np.mean(_soft_overlaps(chosen, seen, _from_controls(now, fit, options), options))
+            pictures = _soft_pictures(chosen, _from_controls(now, fit, options), options)
+            missing = 1 - np.mean([_soft_overlap(m, p) for m, p in zip(masks, pictures, strict=True)])
+            return missing + SCATTER / (2 * len(strokes)) * _out_of_round(now)
 
         return loss
 
@@ -256,6 +255,12 @@ def by_overlap(strokes, fit, options):
     best = min(found, key=lambda one: one.fun)
     best = _simplex(loss_on(strokes), best.x, 0.4 * steps, 200)
     return _from_controls(named(best.x), fit, options), 1 - best.fun, len(best.x)
+
+
+def _out_of_round(x: dict) -> float:
+    behind, front = x["shape"]
+    friction = x["tip_gap"][0] / max(0.1, x["half_width"].sum()) - behind
+    return float(np.sum(np.square(np.array([behind - 1, front - 1, friction]) / ROUND)))
 
 
 def _simplex(loss, x, steps, most):
@@ -310,7 +315,7 @@ def _from_controls(x: dict, fit, options) -> SimpleNamespace:
 def _impossible(x: dict, options) -> bool:
     """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes."""
     height = float(x["height"][0]) if len(x["height"]) else 0.0
-    if abs(height) > 3.0 or x["shape"].min() < 0.1 or x["half_width"][0] <= 0:
+    if abs(height) > 6.0 or x["shape"].min() < 0.1 or x["half_width"][0] <= 0:
         return True
     new = _from_controls(x, SimpleNamespace(laws=SimpleNamespace(round_tail=True), height_mm=0.0), options)
     depths = np.linspace(0, options.deepest_mm + max(0.0, height), 12)
@@ -318,6 +323,7 @@ def _impossible(x: dict, options) -> bool:
     return np.polyval(new.laws.lag[::-1], depths).min() < 0.02 or np.diff(half).min() < 0 or half[-1] > 20
 
 
+@cache
 def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
     """The paint in pixels twice as large, and their window: no larger than way and paint need."""
     x, y, _, tall = stroke.window
@@ -332,20 +338,23 @@ def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
     return part, (x + left * stroke.px, y + tall - top * stroke.px - size[1], *size)
 
 
-def _soft_overlaps(strokes, seen, fit, options) -> list[tuple[float, float]]:
-    """`fixed` and `shift` of anti-aliased pictures, which change smoothly; footprints of half as many vertices."""
+def _soft_pictures(strokes, fit, options):
+    """Anti-aliased pictures of predicted marks on the windows of `_coarse`, which change smoothly; footprints of half
+    as many vertices."""
     brush = brush_for(strokes, fit, options)
     outlines = [(one.depth_mm, np.array(one.outline_mm)[::2]) for one in brush.footprints.dragged]
     brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
-    plan, out = _core.Plan("fitted", "", (1.0, 1.0), []), []
-    for stroke, (mask, window) in zip(strokes, seen, strict=True):
+    plan = _core.Plan("fitted", "", (1.0, 1.0), [])
+    for stroke in strokes:
         plan.passes = [_moved(stroke, fit)]
-        painted = _core.coverage(_core.simulate(plan, brush, ROUGHLY_MM), brush, window, 0.5 / stroke.px)
-        both = float(np.minimum(mask, painted).sum())
-        either = float(mask.sum() + painted.sum()) - both
-        fixed = both / either if either > 0 else 1.0
-        out.append((fixed, max(fixed, best_shift(painted, mask, 2 * stroke.px)[0])))
-    return out
+        marks = _core.simulate(plan, brush, ROUGHLY_MM)
+        yield _core.coverage(marks, brush, _coarse(stroke)[1], 0.5 / stroke.px)
+
+
+def _soft_overlap(mask, painted) -> float:
+    both = float(np.minimum(mask, painted).sum())
+    either = float(mask.sum() + painted.sum()) - both
+    return both / either if either > 0 else 1.0
 
 
 def brush_for(strokes, fit, options) -> _core.Brush:
@@ -422,7 +431,7 @@ def laws_in_words(fit) -> str:
 
 def residual_words(strokes, fit, options) -> list[str]:
     """What is missing to a whole overlap, by what wins it back when each stroke may have its own: place, width, lag."""
-    laws, seen = fit.laws, [_coarse(stroke) for stroke in strokes]
+    laws = fit.laws
 
     def places(width, lag):
         tried = SimpleNamespace(
@@ -437,7 +446,12 @@ def residual_words(strokes, fit, options) -> list[str]:
             shift_mm=fit.shift_mm,
             height_mm=fit.height_mm,
         )
-        return np.array(_soft_overlaps(strokes, seen, tried, options))
+        out = []
+        for stroke, picture in zip(strokes, _soft_pictures(strokes, tried, options), strict=True):
+            mask = _coarse(stroke)[0]
+            fixed = _soft_overlap(mask, picture)
+            out.append((fixed, max(fixed, best_shift(picture, mask, 2 * stroke.px)[0])))
+        return np.array(out)
 
     by = np.array([[places(width, lag) for lag in OWN_LAGS] for width in OWN_WIDTHS])
     usual = (OWN_WIDTHS.index(1.0), OWN_LAGS.index(1.0))
@@ -472,8 +486,8 @@ def main():
             f"{_paint_per_mm(unseen):.2f} mm^2 of paint per mm of way (median)"
         )
         if not args.no_peers:
-            for terms, both, what in DISCS:
-                x = fit_disc(seen, terms, both)
+            for terms, what in DISCS:
+                x = fit_disc(seen, terms)
                 fixed, moved, _ = scores(unseen, disc_marks(unseen, x, terms))
                 lag = ", ".join(f"{v:.2f}" for v in x[4:])
                 print(f"  {what:22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  r {lag}", flush=True)

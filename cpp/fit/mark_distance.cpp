@@ -50,7 +50,9 @@ Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
     const Eigen::Vector2d at = last.in_frame(x + far * out);
     const NearestEdge edge = nearest_edge(last.drop, at.x(), at.y());
     const Eigen::Vector2d swept = swept_normal(footprints, row, edge).normalized();
-    return {edge, row, -far, swept, std::max(kGrazing, swept.dot(out))};
+    const double aslant = std::max(kGrazing, swept.dot(out));
+    far += footprints.nearer_between(x + far * out, row, 0.0) / aslant;
+    return {edge, row, -far, swept, aslant};
 }
 
 }  // namespace
@@ -80,6 +82,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
             const Eigen::Vector2d swept = swept_normal(footprints, row, nearest);
             beside.normal = swept.normalized();
             beside.distance_mm *= swept.norm();
+            beside.distance_mm -= footprints.nearer_between(x, row, nearest.distance);
         }
         row = beside.row;
         distance_mm[k] = beside.distance_mm;

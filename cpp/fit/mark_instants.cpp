@@ -164,6 +164,22 @@ NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) cons
     return best;
 }
 
+double Footprints::nearer_between(const Eigen::Vector2d& x, std::size_t row, double distance_mm) const {
+    if (row == 0 || row + 1 >= rows_.size()) return 0.0;
+    const double come = gone_[row] - gone_[row - 1], go = gone_[row + 1] - gone_[row];
+    // farther apart only where the brush was in the air in between
+    if (!(std::min(come, go) > 1e-9) || std::max(come, go) > 4.0 * kApartMm) return 0.0;
+    const auto farther = [&](std::size_t i) {
+        const Eigen::Vector2d here = rows_[i].in_frame(x);
+        return nearest_edge(rows_[i].drop, here.x(), here.y()).distance - distance_mm;
+    };
+    const double before = farther(row - 1) / come, after = farther(row + 1) / go;
+    if (!(before >= 0.0 && after >= 0.0)) return 0.0;
+    // the least of the parabola through the three distances
+    const double bend = (before + after) / (come + go), slope = (after * come - before * go) / (come + go);
+    return bend > 0.0 ? slope * slope / (4.0 * bend) : 0.0;
+}
+
 Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) const {
     if (row == 0 || row + 1 >= rows_.size()) return Eigen::Vector2d::Zero();
     const Eigen::Vector2d here = rows_[row].place_of(edge), come = here - rows_[row - 1].place_of(edge),

@@ -52,6 +52,9 @@ class Footprints {
     NearestEdge nearest(const Eigen::Vector2d& x, std::size_t& row) const;
     /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
     double way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const;
+    /// How much nearer to x than footprint `row`, `distance_mm` off, comes what it sweeps on the way from and to its
+    /// neighbours: instants are so far apart that their union is scalloped, footprints of 0.3 mm by 0.01 mm.
+    double nearer_between(const Eigen::Vector2d& x, std::size_t row, double distance_mm) const;
     /// Direction in which a place of a footprint's edge passes by; none where it rests, turns back, begins or ends.
     Eigen::Vector2d passing(std::size_t row, const NearestEdge& edge) const;
 

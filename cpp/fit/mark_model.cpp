@@ -9,16 +9,16 @@ namespace {
 
 // Footprints so close that the union of discs 0.5 mm wide scallops by 0.01 mm, wider ones by less.
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
-constexpr double kAboveMm = 2.0;       // whence the brush comes: above any error of the paper's height
+constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush comes, above any error of the paper's height
 constexpr double kLeastRingMm2 = 0.2;  // specks
 
 /// From above the paper down to the first pose and from the last one up again, as a robot moves.
-Poses from_above(const Poses& poses) {
+Poses from_above(const Poses& poses, double above_mm) {
     Poses out(poses.rows() + 2, 3);
     out.middleRows(1, poses.rows()) = poses;
     out.row(0) = poses.row(0);
     out.row(out.rows() - 1) = poses.row(poses.rows() - 1);
-    out(0, 2) = out(out.rows() - 1, 2) = kAboveMm;
+    out(0, 2) = out(out.rows() - 1, 2) = above_mm;
     return out;
 }
 
@@ -72,7 +72,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     centre_.setZero();
     Index poses = 0;
     for (const PaintedMark& mark : marks) {
-        Painted painted{from_above(mark.poses_mm), {}, {}, {}, {0}};
+        Painted painted{from_above(mark.poses_mm, kAboveMm + deepest_), {}, {}, {}, {0}};
         painted.at = close_places(painted.poses_mm);
         std::vector<double> xy;
         for (const Ring& ring : mark.outline_mm) {

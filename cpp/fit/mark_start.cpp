@@ -55,7 +55,8 @@ void start(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOpt
     std::vector<std::pair<double, MarkLaws>> from;
     for (const MarkLaws& laws : starts(marks, options)) {
         tried.begin(laws);
-        from.emplace_back(tried.loss(), laws);
+        const double loss = tried.loss();
+        if (std::isfinite(loss)) from.emplace_back(loss, laws);
     }
     std::stable_sort(from.begin(), from.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     double best = INFINITY;
@@ -69,7 +70,9 @@ void start(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOpt
         at.own = tried.own;
     }
     if (!std::isfinite(best))
-        throw Error("no lag that was tried predicts these marks: are plan and marks those of one sheet?");
+        throw Error(
+            "no lag that was tried predicts these marks: are plan and marks those of one sheet, and is there no pose "
+            "above the paper as it was taught?");
     at.iterations += tried.iterations;
     at.hold_shape(true);
     at.solve(options.most_iterations, kTolerance);

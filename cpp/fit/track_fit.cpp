@@ -44,12 +44,10 @@ class Law {
         const auto [lo, hi] = options_.range_mm;
         positive = values[0] + lo > 0.0 && real_roots(values, lo, hi).empty();
         jets = law_of(c, lo, hi);
-        plain = law_of(values, lo, hi);
     }
     std::vector<double> unknown, scale;
     bool positive = false;
     LagLaw<Jet> jets;
-    LagLaw<double> plain;
 
  private:
     const TrackOptions& options_;
@@ -89,22 +87,35 @@ class Stroke : public ceres::CostFunction {
         return moves_.cols() ? Eigen::Vector2d(moves_ * own.tail(moves_.cols())) : Eigen::Vector2d::Zero();
     }
 
-    /// Residuals and, if asked for, derivatives at the law's point and these unknowns of its own.
-    void evaluate(const VectorXd& own, bool with_slopes) {
+    /// Residuals and derivatives at the law's point and these unknowns of its own.
+    void evaluate(const VectorXd& own) {
         residual.resize(num_residuals());
-        if (!with_slopes) return run(law_.plain, heading(own), displacement(own), [](std::size_t, const auto&) {});
         const Index n = Index(law_.unknown.size());
         by_law.resize(num_residuals(), n);
         by_own.resize(num_residuals(), this->own());
-        run(law_.jets, turns_ ? Jet(own[0], N) : Jet(track_.heading_rad), displacement(own),
-            [&](std::size_t k, const Vec2<Jet>& seen) {
-                for (int c = 0; c < 2; ++c) {
-                    const Index row = Index(2 * k) + c;
-                    by_law.row(row) = seen[c].v.head(n).transpose();
-                    if (turns_) by_own(row, 0) = seen[c].v[N];
-                    by_own.row(row).tail(moves_.cols()) = moves_.row(c);
-                }
-            });
+        using std::cos;
+        using std::sin;
+        const Jet heading = turns_ ? Jet(own[0], N) : Jet(track_.heading_rad);
+        const Eigen::Vector2d moved = displacement(own);
+        LagState<Jet> begun;
+        if (!is_set_down(track_)) {
+            begun.heading = Vec2<Jet>(cos(heading), sin(heading));
+            begun.contact = track_.poses_mm.row(0).head<2>().transpose().cast<Jet>() -
+                            law_.jets.at(Jet(-track_.poses_mm(0, 2))) * begun.heading;
+            begun.taut = begun.heading_known = true;
+        }
+        trace(law_.jets, track_.poses_mm, Jet(0.0), track_.pose, is_set_down(track_) ? nullptr : &begun,
+              [&](std::size_t k, const Trace<Jet>& at) {
+                  Vec2<Jet> seen = at.state.contact;
+                  if (!lever_.empty()) seen += lever_at(lever_, at.depth) * at.state.heading;
+                  for (int c = 0; c < 2; ++c) {
+                      const Index row = Index(2 * k) + c;
+                      residual[row] = seen[c].a + moved[c] - track_.seen_mm(Index(k), c);
+                      by_law.row(row) = seen[c].v.head(n).transpose();
+                      if (turns_) by_own(row, 0) = seen[c].v[N];
+                      by_own.row(row).tail(moves_.cols()) = moves_.row(c);
+                  }
+              });
     }
 
     bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
@@ -119,27 +130,6 @@ class Stroke : public ceres::CostFunction {
     RowMajor by_law, by_own;
 
  private:
-    template <class T, class Sink>
-    void run(const LagLaw<T>& law, const T& heading, const Eigen::Vector2d& moved, Sink&& sink) {
-        using std::cos;
-        using std::sin;
-        LagState<T> begun;
-        if (!is_set_down(track_)) {
-            begun.heading = Vec2<T>(cos(heading), sin(heading));
-            begun.contact = track_.poses_mm.row(0).template head<2>().transpose().template cast<T>() -
-                            law.at(T(-track_.poses_mm(0, 2))) * begun.heading;
-            begun.taut = begun.heading_known = true;
-        }
-        trace(law, track_.poses_mm, T(0.0), track_.pose, is_set_down(track_) ? nullptr : &begun,
-              [&](std::size_t k, const Trace<T>& at) {
-                  Vec2<T> seen = at.state.contact;
-                  if (!lever_.empty()) seen += lever_at(lever_, at.depth) * at.state.heading;
-                  for (int c = 0; c < 2; ++c)
-                      residual[Index(2 * k) + c] = value_of(seen[c]) + moved[c] - track_.seen_mm(Index(k), c);
-                  sink(k, seen);
-              });
-    }
-
     const Track& track_;
     const Law<N>& law_;
     const std::vector<double>& lever_;
@@ -158,14 +148,32 @@ class Strokes : public ceres::EvaluationCallback {
             own.push_back(all.back()->own_start());
         }
     }
-    void PrepareForEvaluation(bool with_slopes, bool) override {
+    /// With slopes at once: nearly all steps are taken, and then they are asked for.
+    void PrepareForEvaluation(bool = true, bool = true) override {
+        if (law.unknown == law_at_ && own == own_at_) return;
+        law_at_ = law.unknown;
+        own_at_ = own;
         law.lay_down();
-        if (law.positive)
-            on_all_processors(0, all.size(), [&](std::size_t i) { all[i]->evaluate(own[i], with_slopes); });
+        if (law.positive) on_all_processors(0, all.size(), [&](std::size_t i) { all[i]->evaluate(own[i]); });
     }
+    /// To the point that was tried last where that is no worse than the solution, which costs so much: with its slopes.
+    void settle(double cost) {
+        double squares = 0.0;
+        for (const auto& one : all) squares += one->residual.squaredNorm();
+        if (law.positive && 0.5 * squares <= cost) {
+            law.unknown = law_at_;
+            own = own_at_;
+        }
+        PrepareForEvaluation();
+    }
+
     Law<N> law;
     std::vector<std::unique_ptr<Stroke<N>>> all;
     std::vector<VectorXd> own;
+
+ private:
+    std::vector<double> law_at_;  ///< where all have been evaluated
+    std::vector<VectorXd> own_at_;
 };
 
 template <int N>
@@ -207,7 +215,7 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
     TrackFit out;
     out.iterations = int(summary.iterations.size());
     out.converged = summary.termination_type == ceres::CONVERGENCE;
-    at.PrepareForEvaluation(true, true);
+    at.settle(summary.final_cost);
     const Index n = Index(law.unknown.size());
     MatrixXd normal = MatrixXd::Zero(n, n);
     double sum = 0.0;

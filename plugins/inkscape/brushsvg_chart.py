@@ -11,7 +11,8 @@ import os
 import sys
 
 from brushsvg_preview import INKSCAPE, SODIPODI, SVG, locked_layer, remove_layer
-from brushsvg_program import Run, StopError, arguments, choices, guarded, root_of
+from brushsvg_program import DRAWING, Run, StopError, arguments, choices, guarded
+from brushsvg_tell import tell
 
 LAYER_ID, PAGE_ID = "brushsvg-chart", "brushsvg-chart-page"
 GAP_MM = 10
@@ -22,10 +23,6 @@ def main() -> None:
     args = arguments(
         brush="document", brush_file="", cell="document", cell_file="", sheet="a4", strokes="all", output=""
     )
-    said = root_of(args.input_file)
-    for name in ("brush", "cell"):  # the command has no drawing to read them in
-        if getattr(args, name) == "document":
-            setattr(args, name, said.get(f"data-brushsvg-{name}", "document"))
     wished = "" if os.path.isdir(args.output) else args.output  # Inkscape makes a folder of an empty choice
     suffix = os.path.splitext(wished)[1].lower() or ".json"
     if suffix not in PROGRAMS:
@@ -33,9 +30,10 @@ def main() -> None:
             f"{wished} ends in none of {' '.join(PROGRAMS)}: choose another name for the program."
         )
     program = f"chart{suffix}"
-    words = [program, "--page", "page.svg", "--chart", "read-by.json", "--sheet", args.sheet, *choices(args)]
+    words = [program, "--drawing", DRAWING, "--page", "page.svg", "--chart", "read-by.json"]
+    words += ["--sheet", args.sheet, *choices(args)]
     words += ["--strokes", args.strokes] if args.strokes != "all" else []
-    with Run(args.executable, None, "chart", *words) as run:
+    with Run(args.executable, args.input_file, "chart", *words) as run:
         import inkex  # while brushsvg runs
         from lxml import etree
 
@@ -48,8 +46,7 @@ def main() -> None:
     if wished:
         beside = f"{os.path.splitext(wished)[0]}.chart.json"
         _save({wished: made, beside: read_by})
-        sys.stdout.flush()
-        sys.stderr.write("\n".join([f"Saved: {wished} and {beside}.", *warnings]) + "\n")
+        tell("\n".join([f"Saved: {wished} and {beside}.", *warnings]))
 
 
 def _save(files: dict[str, bytes]) -> None:

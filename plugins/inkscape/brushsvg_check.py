@@ -7,8 +7,8 @@ from __future__ import annotations
 import sys
 import textwrap
 
-from brushsvg_preview import INKSCAPE, SVG, locked_layer, remove_layer
-from brushsvg_program import Run, arguments, choices, element_of, guarded
+from brushsvg_preview import INKSCAPE, SVG, locked_layer, own_undone, remove_layer
+from brushsvg_program import DRAWING, Run, arguments, choices, element_of, guarded
 
 LAYER_ID = "brushsvg-check"
 REFUSED, WARNED = "#d4351c", "#e08700"
@@ -21,7 +21,7 @@ HALO = "paint-order:stroke;stroke:#ffffff"  # letters can be read on top of a dr
 
 def main() -> None:
     args = arguments(brush="document", brush_file="", cell="document", cell_file="", compensation="document")
-    with Run(args.executable, args.input_file, "report", "--json", *choices(args)) as run:
+    with Run(args.executable, args.input_file, "report", DRAWING, "--json", *choices(args)) as run:
         import inkex  # while brushsvg runs: it knows where things lie
         from lxml import etree
 
@@ -32,6 +32,8 @@ def main() -> None:
         report = run.report()
     remove_layer(document.getroot(), LAYER_ID)
     layer = locked_layer(etree, LAYER_ID, _label(report))
+    if undone := own_undone(document.getroot()):
+        layer.set("transform", undone)
     unplaced = _mark_all(etree, measured.getroot(), layer, report)
     if unplaced:
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(unplaced)

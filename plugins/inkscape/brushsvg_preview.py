@@ -12,13 +12,14 @@ import re
 import sys
 from xml.etree import ElementTree
 
-from brushsvg_program import Run, arguments, choices, guarded, selection
+from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
 PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both can be seen through each other
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
 SKIPPED = "data-brushsvg-skip"
+MOVED = "svg: the whole drawing has a transform, which Inkscape 1.2 does not show; it is painted with it"
 OUTLINE = "outline"  # label of what holds a converted letter as it was
 LAYER_ID = "brushsvg-preview"
 PX_PER_MM = 96 / 25.4
@@ -27,7 +28,7 @@ PX_PER_MM = 96 / 25.4
 def main() -> None:
     args = arguments(brush="document", brush_file="", compensation="document")
     words = [*choices(args), *selection(own_ids(args.input_file, args.ids))]
-    with Run(args.executable, args.input_file, "predict", "marks.svg", *words) as run:
+    with Run(args.executable, args.input_file, "predict", DRAWING, "marks.svg", *words) as run:
         from lxml import etree  # while brushsvg runs
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
@@ -69,8 +70,11 @@ def remove_layer(root, name: str) -> None:
 def _layer(etree, marks, root, warnings: list[str]):
     paths = marks.findall(f"{SVG}path")
     missed = {path for path in paths if _is_missed(path, marks)}
+    if root.get("transform"):
+        warnings = [*warnings, MOVED]
     layer = locked_layer(etree, LAYER_ID, _label(paths, len(missed), marks, len(warnings)))
-    layer.set("transform", user_from_mm(root, _mm(marks.get("width")), _mm(marks.get("height"))))
+    in_user = user_from_mm(root, _mm(marks.get("width")), _mm(marks.get("height")))
+    layer.set("transform", f"{own_undone(root)} {in_user}".strip())
     if warnings:
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(warnings)
     for path in paths:
@@ -109,6 +113,16 @@ def _label(paths, missed: int, marks, warnings: int) -> str:
     if warnings:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}")
     return f"Brush preview: {marks.get('data-made')}: " + ", ".join(parts)
+
+
+def own_undone(root) -> str:
+    """The inverse of the root's own transform, for layers of ours: they lie on what they are about where it is applied,
+    as SVG and brushsvg do, and where it is not, as in Inkscape 1.2."""
+    if not root.get("transform"):
+        return ""
+    from inkex import Transform  # takes too long for every preview
+
+    return str(-Transform(root.get("transform")))
 
 
 def _mm(length: str) -> float:

@@ -13,6 +13,8 @@ import sys
 import tempfile
 from xml.etree import ElementTree
 
+from brushsvg_tell import in_dialogs, tell
+
 NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
@@ -48,8 +50,7 @@ def guarded(main) -> None:
         told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
     else:
         return
-    sys.stderr.write(told + "\n")
-    sys.stderr.flush()
+    tell(told)
     sys.exit(1)
 
 
@@ -79,17 +80,16 @@ def _noted() -> str:
 
 
 class Run:
-    """One brushsvg command on a copy of the drawing, if it needs one, started at once. In a `with`, so that its folder
-    goes away."""
+    """One brushsvg command beside a copy of the drawing, called DRAWING, started at once. In a `with`, so that its
+    folder goes away."""
 
-    def __init__(self, chosen: str, drawing: str | None, command: str, *words: str):
-        self.program = executable(chosen)
+    def __init__(self, chosen: str, drawing: str, *words: str):
+        self.program, self.words = executable(chosen), words
         self.folder = tempfile.TemporaryDirectory(prefix="brushsvg")
-        if drawing:
-            shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
+        shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, command, *([DRAWING] if drawing else []), *words],
+                [self.program, *words],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
@@ -114,7 +114,10 @@ class Run:
     def finish(self, may_refuse: bool = False) -> tuple[str, list[str]]:
         """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine."""
         out, err = self.process.communicate()
-        told = [re.sub(f"^brushsvg: (?:{re.escape(DRAWING)}: )?", "", line) for line in err.splitlines()]
+        ours = "|".join(
+            re.escape(word) for word in self.words if os.path.basename(word) == word
+        )  # not files of theirs
+        told = [in_dialogs(re.sub(f"^brushsvg: (?:(?:{ours}): )?", "", line)) for line in err.splitlines()]
         status = self.process.returncode
         if status == 0 or (may_refuse and status == 1 and out):
             return out, told
@@ -138,7 +141,7 @@ class Run:
         """The report that it printed, of what can be painted and of what is refused."""
         out, _ = self.finish(may_refuse=True)
         try:
-            report = json.loads(out)
+            report = json.loads(in_dialogs(out))
             report["refused"], report["warnings"], report["brush"]
         except (ValueError, KeyError, TypeError):
             self._stop_if_too_old()

@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import sys
 
-from brushsvg_program import Run, arguments, choices, guarded, root_of
+from brushsvg_program import DRAWING, Run, arguments, choices, guarded, root_of
+from brushsvg_tell import tell
 
 
 def main() -> None:
@@ -26,12 +27,11 @@ def main() -> None:
     ):
         args.cell = args.else_cell
     out = f"saved.{args.format}"
-    with Run(args.executable, args.input_file, args.command, out, *choices(args)) as run:
+    with Run(args.executable, args.input_file, args.command, DRAWING, out, *choices(args)) as run:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
-        sys.stdout.flush()
     if warnings:
-        sys.stderr.write("\n".join(["Saved. brushsvg warns:", *warnings]) + "\n")
+        tell("\n".join(["Saved. brushsvg warns:", *warnings]))
 
 
 if __name__ == "__main__":

@@ -1,29 +1,75 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brush settings: brush, machine, compensation and tolerance of the document. The command line uses them, too."""
+"""Brush settings: what the document says of the whole job, to brushsvg on the command line, too.
+
+Inkscape cannot show in a dialog what a document says: fields start with "leave as it is", and what is stored is told.
+"""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 
-from brushsvg_program import arguments, guarded
+from brushsvg_program import StopError, arguments, guarded
+from brushsvg_tell import tell
 
-CHOICES = ("brush", "compensation", "cell")
+PREFIX = "data-brushsvg-"
+OWN = {  # what brushsvg does where the document says nothing
+    "brush": "round-6",
+    "compensation": "closed",
+    "cell": "linuxcnc-3axis, for URScript ur5e",
+    "wide": "clamp",
+    "tolerance": "0.05mm",
+}
+NAMES = {"cell": "machine", "wide": "letters wider than the brush"}  # in the dialog
+KEEP, TAKE_BACK = ("", "keep"), "default"
+TOLERANCE_MM = (1e-5, 10.0)
 
 
 def main() -> None:
     from lxml import etree
 
-    args = arguments(tolerance="0.05", **dict.fromkeys(CHOICES, "document"))
+    args = arguments(**dict.fromkeys(OWN, "keep"))
+    wished = {name: getattr(args, name).strip() for name in OWN}
+    if wished["tolerance"] not in (*KEEP, TAKE_BACK):
+        wished["tolerance"] = _tolerance(wished["tolerance"])
     document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
     root = document.getroot()
-    said = {name: getattr(args, name) for name in CHOICES}
-    said["tolerance"] = f"{float(args.tolerance):g}mm"
-    for name, value in said.items():
-        root.attrib.pop(f"data-brushsvg-{name}", None)
-        if value not in ("document", "0.05mm"):
-            root.set(f"data-brushsvg-{name}", value)
+    before = _said(root)
+    for name, value in wished.items():
+        if value == TAKE_BACK:
+            root.attrib.pop(PREFIX + name, None)
+        elif value not in KEEP:
+            root.set(PREFIX + name, value)
     document.write(sys.stdout.buffer)
+    tell("\n".join(_told(before, _said(root))))
+
+
+def _tolerance(typed: str) -> str:
+    least, greatest = TOLERANCE_MM
+    try:
+        value = float(typed.removesuffix("mm").replace(",", "."))
+    except ValueError:
+        raise StopError(
+            f"{typed[:24]!r} is no tolerance: type millimetres, {TAKE_BACK}, or nothing."
+        ) from None
+    if not least <= value <= greatest:
+        raise StopError(f"Tolerance {value:g} mm is outside the range [{least:g}, {greatest:g}] mm.")
+    return f"{value:g}mm"
+
+
+def _said(root) -> dict[str, str]:
+    """What the document says of the whole job: also what the dialog does not have, as a speed."""
+    return {key.removeprefix(PREFIX): value for key, value in root.items() if key.startswith(PREFIX)}
+
+
+def _told(before: dict[str, str], after: dict[str, str]) -> Iterator[str]:
+    yield "The document says now:" if before != after else "Nothing was changed. The document says:"
+    for name in [*OWN, *(name for name in after if name not in OWN)]:
+        own = f"nothing, and brushsvg takes {OWN.get(name)}"
+        was = f" (before: {before.get(name, 'nothing')})" if before.get(name) != after.get(name) else ""
+        called = NAMES.get(name, name) if name in OWN else PREFIX + name
+        yield f"    {called}: {after.get(name, own)}{was}"
 
 
 if __name__ == "__main__":

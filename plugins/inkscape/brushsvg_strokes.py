@@ -14,7 +14,8 @@ import tempfile
 from xml.etree import ElementTree
 
 from brushsvg_preview import INKSCAPE, OUTLINE, SKIPPED, SVG, own_ids, user_from_mm
-from brushsvg_program import Run, StopError, arguments, element_of, guarded, selection
+from brushsvg_program import DRAWING, Run, StopError, arguments, element_of, guarded, selection
+from brushsvg_tell import tell
 from brushsvg_text import name_of, with_letters
 
 STROKES = "strokes.svg"
@@ -41,7 +42,7 @@ def main() -> None:
     svg = document.getroot()
     with tempfile.TemporaryDirectory(prefix="brushsvg") as folder:
         drawing, by_id = with_letters(etree, svg, args.input_file, folder)
-        with Run(args.executable, drawing, "import", STROKES, *words) as run:
+        with Run(args.executable, drawing, "import", DRAWING, STROKES, *words) as run:
             _, warnings = run.finish()
             drawn = ElementTree.fromstring(run.made(STROKES))
     per_shape = _of_shapes(by_id, drawn)
@@ -54,8 +55,7 @@ def main() -> None:
         writer.replace(shape, paths)
     document.write(sys.stdout.buffer)
     if warnings:
-        sys.stdout.flush()
-        sys.stderr.write("\n".join(["Converted. brushsvg warns:", *warnings]) + "\n")
+        tell("\n".join(["Converted. brushsvg warns:", *warnings]))
 
 
 def _mm(length: str) -> float:
@@ -102,10 +102,9 @@ class _Writer:
         kept.set(f"{INKSCAPE}label", OUTLINE)
         kept.set(SKIPPED, "yes")
         kept.append(shape)
-        place = self.user_from_mm
-        if self._is_plain(parent):
-            place = -self._place(parent) @ place
-        else:  # in a drawing within the drawing: its strokes lie above all
+        is_plain = self._is_plain(parent)
+        place = -self._place(parent if is_plain else self.svg) @ self.user_from_mm
+        if not is_plain:  # in a drawing within the drawing: its strokes lie above all
             strokes = self.etree.SubElement(self.svg, f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
             strokes.set(f"{INKSCAPE}label", group.get(f"{INKSCAPE}label"))
             group = strokes

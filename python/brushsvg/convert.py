@@ -75,6 +75,11 @@ def prepare(
     design = layout.arrange(importers.read_drawing(path, options.reading), options.layout)
     stage("finding strokes")
     strokes, notices = strokes_of(design, options.paths_as)
+    refused, left_out = [], []
+    if partly and options.wide == "refuse":
+        strokes, _, refused, left_out = _sorted_out(
+            strokes, strokes, lambda some: within_reach(some, brush, options.wide)
+        )
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
 
@@ -90,13 +95,14 @@ def prepare(
             progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
         )
 
-    refused, left_out = [], []
     try:
         done = compensated(painted)
     except Error:
         if not partly:
             raise
-        painted, strokes, refused, left_out = _sorted_out(painted, strokes, compensated)
+        painted, strokes, why, which = _sorted_out(painted, strokes, compensated)
+        refused += why
+        left_out += which
         done = compensated(painted)
     plan = _with_speeds(done.plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
@@ -116,13 +122,13 @@ def prepare(
     )
 
 
-def _sorted_out(painted, wanted, compensated):
-    """Strokes that can be painted, with what they should become, why the others cannot, and what those should become:
+def _sorted_out(painted, wanted, step):
+    """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
     each is tried alone."""
     sound, refused, left_out = [], [], []
     for pair in zip(painted, wanted, strict=True):
         try:
-            compensated(pair[:1])
+            step(pair[:1])
         except Error as error:
             refused.append(Notice(pair[0].id, str(error)))
             left_out.append(pair[1])

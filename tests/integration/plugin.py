@@ -49,10 +49,14 @@ class Plugin:
     def effect(self, name: str, drawing: Path, out: Path, select: str = "") -> Path:
         """The drawing as Inkscape saves it after an effect; select: ids with commas between."""
         chosen = f"select-by-id:{select};" if select else ""
-        actions = f"{chosen}org.brushsvg.{name}.noprefs;export-filename:{out};export-do"
-        self._run(["xvfb-run", "-a", "inkscape", "--batch-process", f"--actions={actions}", str(drawing)])
+        self.batch(drawing, out, f"{chosen}org.brushsvg.{name}.noprefs")
         assert out.exists()
         return out
+
+    def batch(self, drawing: Path, out: Path, *actions: str) -> subprocess.CompletedProcess:
+        """Inkscape with a display and nobody before it."""
+        words = f"--actions={';'.join([*actions, f'export-filename:{out}', 'export-do'])}"
+        return self._run(["xvfb-run", "-a", "inkscape", "--batch-process", words, str(drawing)])
 
     def script(
         self, name: str, drawing: Path, *words: str, before: tuple = ()

@@ -36,8 +36,9 @@ def ends_mm(path, select):
     return [np.vstack([each.subpaths[0].cubics[0, 0], each.subpaths[0].cubics[-1, 3]]) for each in elements]
 
 
-def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path):
-    out, layer = checked(plugin, tmp_path, BODY)
+@pytest.mark.parametrize("own", ["", 'transform="translate(4,3) rotate(3)"'])
+def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
+    out, layer = checked(plugin, tmp_path, f"{OPEN.replace('<svg', f'<svg {own}')}{BODY}</svg>")
     assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 1 warned of"
     texts = [" ".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
     assert "width 22.000 mm is outside the range [0.000, 8.400] mm" in texts[0]
@@ -50,6 +51,16 @@ def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path):
         ends_mm(shown, "#brushsvg-check path"), ends_mm(out, "#wide, #sharp"), strict=True
     ):
         assert np.abs(marked - drawn).max() < 0.01
+
+
+def test_letters_that_the_document_has_refused_are_marked_in_place(plugin, tmp_path):
+    fat = (
+        OPEN.replace("<svg ", '<svg data-brushsvg-wide="refuse" ') + '<path id="fat" d="M20 20h60v14h-60z"/>'
+    )
+    _, layer = checked(plugin, tmp_path, f'{fat}<path id="thin" d="M20 45h60v4h-60z"/></svg>')
+    assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 0 warned of"
+    (text,) = (" ".join(text.itertext()) for text in layer.iter(f"{SVG}text"))
+    assert text.startswith("width 14 mm of its outline is outside the range")
 
 
 def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):

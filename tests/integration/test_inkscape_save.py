@@ -9,6 +9,7 @@ from plugin import SOURCE, Plugin, sentence
 
 from brushsvg import brush_names, cell_names, find_cell
 from brushsvg.posts import POSTS
+from brushsvg.reach import WIDE
 
 SCHEMA = "/usr/share/inkscape/extensions/inkscape.extension.rng"
 GROUPS = """<svg xmlns="http://www.w3.org/2000/svg" width="6in" height="90mm" viewBox="10 5 300 200"
@@ -124,13 +125,14 @@ def options(file, parameter):
     root = ElementTree.parse(file).getroot()
     own = "{http://www.inkscape.org/namespace/inkscape/extension}"
     found = [each for each in root.iter(f"{own}param") if each.get("name") == parameter]
-    return {option.get("value") for each in found for option in each} - {"document"}
+    return {option.get("value") for each in found for option in each} - {"document", "keep", "default"}
 
 
 def test_dialogs_offer_what_comes_along():
     for file in SOURCE.glob("*.inx"):
         assert options(file, "brush") in (set(), set(brush_names())), file
         assert options(file, "cell") <= set(cell_names()), file
+        assert options(file, "wide") in (set(), set(WIDE)), file
 
 
 def test_every_language_can_be_saved():

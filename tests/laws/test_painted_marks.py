@@ -88,6 +88,22 @@ def test_blots_and_gaps_have_no_say():
     assert made.fit.left_aside > 0.003
 
 
+def test_paper_that_lies_millimetres_higher_than_it_was_taught():
+    """The fit once stood before a wall at 2 mm."""
+    brush, _, painted = sheet(3)
+    marks = [
+        core.PaintedMark(name, poses + np.array([0, 0, 2.8]), rings)
+        for name, poses, rings in painted.marks
+        if poses[:, 2].min() < -3.2
+    ]
+    options = core.MarkOptions()
+    options.deepest_mm, options.height_mm = brush.deepest, core.Prior(0, 1.5)
+    fit = core.fit_marks(marks, None, options)
+    assert fit.height_mm == pytest.approx(2.8 + painted.height, abs=0.15)
+    lag = np.polynomial.polynomial.polyval(DEPTHS[1:] * brush.deepest, fit.laws.lag)
+    assert lag == pytest.approx([brush.law("lag")(depth) for depth in DEPTHS[1:] * brush.deepest], rel=0.05)
+
+
 def test_what_to_expect_is_what_comes():
     """The intervals promised before painting are those of the fit afterwards."""
     _brush, strokes, _ = sheet(3)

@@ -194,72 +194,6 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
     assert "p0 and 5 like it: the mark reaches" in refusal(capsys, "convert", "w.svg", "x.json")
 
 
-def on_root(*settings):
-    return DRAWING.replace("<svg ", "<svg " + " ".join(f"data-brushsvg-{each}" for each in settings) + " ", 1)
-
-
-def test_the_document_chooses_for_the_whole_job(desk, capsys):
-    (desk / "said.svg").write_text(
-        on_root('brush="rigid"', 'cell="ur5e"', 'compensation="none"', 'tolerance=".2mm"')
-    )
-    flags = ["--brush", "rigid", "--cell", "ur5e", "--compensation", "none", "--tolerance", "0.2"]
-    assert main(["convert", "said.svg", "said.script"]) == 0
-    assert main(["convert", "d.svg", "typed.script", *flags]) == 0
-    assert (desk / "said.script").read_bytes() == (desk / "typed.script").read_bytes()
-    (desk / "said.svgz").write_bytes(gzip.compress((desk / "said.svg").read_bytes()))
-    assert main(["convert", "said.svgz", "packed.script"]) == 0
-    assert (desk / "packed.script").read_bytes() == (desk / "typed.script").read_bytes()
-
-
-def test_what_is_typed_wins_over_the_document(desk, capsys):
-    (desk / "said.svg").write_text(on_root('cell="ur5e"', 'compensation="none"', 'tolerance="0.2mm"'))
-    flags = ["--cell", "linuxcnc-3axis", "--compensation", "closed", "--tolerance", "0.05"]
-    assert main(["convert", "said.svg", "said.ngc", *flags]) == 0
-    assert main(["convert", "d.svg", "plain.ngc"]) == 0
-    assert (desk / "said.ngc").read_bytes() == (desk / "plain.ngc").read_bytes()
-
-
-@pytest.mark.parametrize("file", ["/etc/hostname", "mine.toml", "../mine.toml", "no-such-cell"])
-def test_the_document_names_no_files(desk, capsys, file):
-    (desk / "mine.toml").write_text("")
-    (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
-    told = refusal(capsys, "convert", "d.svg", "x.ngc")
-    assert (
-        told == f"brushsvg: d.svg: the drawing asks for cell {file}, which does not come along: give --cell"
-    )
-    (desk / "d.svg").write_text(on_root(f'brush="{file}"'))
-    _, err = plan(desk, capsys)
-    assert any(f"asks for brush {file}, all is painted with round-6" in line for line in err)
-
-
-@pytest.mark.parametrize(
-    ("setting", "sentence"),
-    [
-        ('compensation="most"', "data-brushsvg-compensation: 'most' is none of none, constant, closed"),
-        ('tolerance="11mm"', "data-brushsvg-tolerance: 11 mm is outside the range [1e-05, 10] mm"),
-        ('cell=""', "data-brushsvg-cell: it is empty"),
-        ('machine="x"', "data-brushsvg-machine is not known; known: width, speed"),
-    ],
-)
-def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, sentence):
-    (desk / "d.svg").write_text(on_root(setting))
-    assert sentence in refusal_of(capsys, "convert", "d.svg", "x.ngc")
-    assert main(["convert", "d.svg", "x.ngc", "--lenient"]) == 0
-
-
-def refusal_of(capsys, *words):
-    assert main(list(words)) == 1
-    return capsys.readouterr().err
-
-
-def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
-    (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
-    assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
-    (desk / "d.svg").write_text(on_root('cell="ur5e"'))
-    passes, _ = plan(desk, capsys)
-    assert [each.get("settings", {}) for each in passes] == [{}, {}]
-
-
 def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L32 63"))
     assert main(["predict", "d.svg", "x.svg"]) == 0
@@ -285,6 +219,20 @@ def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     assert "Left out, since they cannot be painted: 6\n  b: width 30.000 mm" in capsys.readouterr().out
     assert main(["convert", "d.svg", "x.ngc"]) == 1
     assert not (desk / "x.ngc").exists()
+
+
+def test_a_report_names_outlines_that_are_too_wide_and_refused(desk, capsys):
+    fat = '<path id="fat" fill="#000" stroke="none" d="M30 60h60v14h-60z"/>'
+    too_wide = '<path id="line" stroke-width="30" d="M30 50h60"/>'
+    (desk / "d.svg").write_text(DRAWING.replace("</svg>", f"{fat}{too_wide}</svg>"))
+    assert main(["report", "d.svg", "--json", "--wide", "refuse"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    assert [each["where"] for each in report["refused"]] == ["fat", "line"]
+    assert report["refused"][0]["sentence"].startswith("width 14 mm of its outline is outside the range")
+    assert [each["stroke"] for each in report["strokes"]] == ["a", "b"]
+    assert main(["report", "d.svg", "--select", "#fat", "--wide", "refuse"]) == 1
+    assert main(["report", "d.svg", "--all-brushes", "--wide", "refuse"]) == 0
+    assert main(["convert", "d.svg", "x.ngc", "--wide", "refuse"]) == 1
 
 
 def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "brushsvg/profile.hpp"
 
 // How the contact patch trails the handle. Everything is a template on the scalar T: double, or a dual number with
-// the value in a member `a` (a solver's jet). Angles in radians, lengths in mm.
+// the value in a member `a` and derivatives in `v` (a solver's jet). Angles in radians, lengths in mm.
 namespace brushsvg {
 
 template <class T>
@@ -37,7 +38,17 @@ struct LawPiece {
 
     T at(const T& depth) const {
         T r = coefficients[degree];
-        for (int i = degree; i-- > 0;) r = r * depth + coefficients[i];
+        if constexpr (std::is_arithmetic_v<T>) {
+            for (int i = degree; i-- > 0;) r = r * depth + coefficients[i];
+        } else {  // the chain rule once, not at every power
+            const double x = value_of(depth);
+            double by_depth = 0.0;
+            for (int i = degree; i-- > 0;) {
+                by_depth = by_depth * x + value_of(r);
+                r = r * x + coefficients[i];
+            }
+            r.v += by_depth * depth.v;
+        }
         return r;
     }
     T slope(const T& depth) const {

@@ -17,7 +17,7 @@ def border_file(args) -> None:
     from ..jobs import around, border
 
     check_places(args.output)
-    settle(args)
+    settle(args, args.input)
     cell = cell_of(args)
     work, marks, *_ = look(args, cell, outlines=False)
     cell = machine.as_exact_as(cell, work.options.tolerance_mm)

@@ -7,7 +7,7 @@ from ..brushes import find_brush
 from ..console import RefusedError, about, stage, tell
 from ..fold import folded
 from ..program import Job
-from .choices import brush_of, cell_of, warn_of_example
+from .choices import brush_of, cell_of, settle, warn_of_example
 from .outputs import check_places, suffix_of, write
 
 
@@ -18,6 +18,8 @@ def chart_file(args) -> None:
     from ..chart_report import chart_report
 
     check_places(args.output, args.page, args.chart)
+    if args.drawing:
+        settle(args, args.drawing)
     brush = brush_of(args) or find_brush(convert.DEFAULT_BRUSH)
     cell = machine.as_exact_as(cell_of(args), machine.DEFAULT_TOLERANCE_MM)
     with about(args.output):

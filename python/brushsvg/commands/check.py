@@ -12,6 +12,7 @@ from ..console import RefusedError, about, stage, tell
 from ..errors import Error
 from ..files import read_bytes
 from ..fold import folded
+from ..importers import settings_in
 from ..moves import duration_s
 from .choices import brush_of
 from .outputs import check_places, suffix_of, write
@@ -134,5 +135,7 @@ def _as_made(args, made, cell: Cell, brush) -> convert.Work:
     """The drawing or plan that a program should paint, prepared as its header says."""
     if suffix_of(args.input) != ".json":
         args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
+        with about(args.input):
+            args.wide = args.wide or settings_in(args.input).get("wide")
     work = prepare(args, cell, brush)
     return convert.nearest_first(work) if made.nearest_first else work

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .. import convert
 from ..brushes import brush_names, find_brush
 from ..cell import Cell
-from ..cell_file import DEFAULT_CELL, cell_names, find_cell
+from ..cell_file import cell_names, find_cell
 from ..console import about, say
 from ..errors import Error
 from ..importers import ReadOptions, settings_in
@@ -13,16 +13,19 @@ from ..layout import Layout
 from .outputs import suffix_of
 
 
-def settle(args) -> None:
+def settle(args, drawing: str) -> None:
     """What was not typed is as the drawing says. It can only name what comes along: it reads no other file."""
-    with about(args.input):
-        said = settings_in(args.input)
-        if args.brush is None and said.get("brush") not in brush_names():
-            said.pop("brush", None)  # the strokes that ask for it are warned of
-        if args.cell is None and said.get("cell", DEFAULT_CELL) not in cell_names():
-            raise Error(f"the drawing asks for cell {said['cell']}, which does not come along: give --cell")
+    with about(drawing):
+        said = settings_in(drawing)
+        for kind, names in (("brush", brush_names()), ("cell", cell_names())):
+            if getattr(args, kind) is None and said.get(kind, names[0]) not in names:
+                raise Error(
+                    f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
+                    f"{', '.join(names)}: give --{kind}",
+                    where="svg",
+                )
     for name, value in said.items():
-        if getattr(args, name) is None:
+        if getattr(args, name, value) is None:
             setattr(args, name, value)
 
 

@@ -13,7 +13,7 @@ from .work import prepare
 
 def convert_file(args) -> None:
     check_places(args.output, args.preview, args.report)
-    settle(args)
+    settle(args, args.input)
     cell = cell_of(args)
     work = prepare(args, cell)
     cell = machine.as_exact_as(cell, work.options.tolerance_mm)

@@ -18,7 +18,7 @@ def report_file(args) -> None:
     if args.all_brushes:
         return _all_brushes(args)
     args.brush = args.brush[0] if args.brush else None
-    settle(args)
+    settle(args, args.input)
     cell = cell_of(args)
     work, marks, warnings, forbidden = look(
         args, cell, outlines=suffix_of(args.preview) == ".svg", partly=True
@@ -40,8 +40,8 @@ def report_file(args) -> None:
 
 
 def _all_brushes(args) -> None:
-    given, args.brush = args.brush or [], None
-    settle(args)
+    given, args.brush = args.brush or [], convert.DEFAULT_BRUSH  # whatever brush the drawing asks for
+    settle(args, args.input)
     asked = [*brush_names(), *(name for name in given if name not in brush_names())]
     brushes = []
     for name in asked:

@@ -16,7 +16,7 @@ from .work import look
 
 def predict_file(args) -> None:
     check_places(args.output)
-    settle(args)
+    settle(args, args.input)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
     work, marks, *_ = look(args, cell_of(args), outlines=outlines, whole=suffix == ".json")
@@ -35,7 +35,7 @@ def predict_file(args) -> None:
 
 def animate_file(args) -> None:
     check_places(args.output)
-    settle(args)
+    settle(args, args.input)
     cell = cell_of(args)
     work, marks, *_ = look(args, cell, outlines=True, in_loads=True)
     with about(args.input):

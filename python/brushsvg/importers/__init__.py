@@ -44,7 +44,7 @@ def _dxf(data: bytes, options: ReadOptions) -> Design:
 
 
 def settings_in(path: str | os.PathLike) -> dict:
-    """Brush, cell, compensation and tolerance [mm] that a drawing asks for, as far as it does.
+    """Brush, cell, compensation, tolerance [mm] and wide that a drawing asks for, as far as it does.
 
     Error if the file cannot be read.
     """

@@ -9,7 +9,6 @@ from ..errors import Error
 from ..units import length_mm, number
 
 PREFIX = "data-brushsvg-"
-COMPENSATIONS = ("none", "constant", "closed", "refined")
 
 
 def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:
@@ -19,7 +18,7 @@ def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dic
 
 
 def document_settings(attributes: dict[str, str]) -> dict:
-    """What the root element says of the whole job: brush, cell, compensation, tolerance; valid ones only."""
+    """What the root element says of the whole job: brush, cell, compensation, tolerance, wide; valid ones only."""
     settings, _ = _read(attributes, _OF_THE_DOCUMENT | {"brush": _KNOWN["brush"]})
     return settings
 
@@ -74,10 +73,13 @@ def _name(text: str) -> str:
     return text
 
 
-def _compensation(text: str) -> str:
-    if text not in COMPENSATIONS:
-        raise Error(f"{text[:24]!r} is none of {', '.join(COMPENSATIONS)}")
-    return text
+def _one_of(*known: str):
+    def read(text: str) -> str:
+        if text not in known:
+            raise Error(f"{text[:24]!r} is none of {', '.join(known)}")
+        return text
+
+    return read
 
 
 def _tolerance_mm(text: str) -> float:
@@ -102,6 +104,7 @@ _KNOWN = {
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),
-    "compensation": ("compensation", _compensation),
+    "compensation": ("compensation", _one_of("none", "constant", "closed", "refined")),
     "tolerance": ("tolerance", _tolerance_mm),
+    "wide": ("wide", _one_of("clamp", "passes", "refuse")),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..importers import READERS
 from . import values
 from .flags import add_looks, add_z_offset, plans_and_programs
 from .operands import PICTURES, PROGRAMS, check_files
@@ -12,6 +13,7 @@ def add_chart(commands) -> None:
     chart.add_argument("output", metavar="OUT", help=plans_and_programs())
     chart.add_argument("--brush", metavar="NAME|FILE", help="the nearest that is known; default: round-6")
     chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
+    chart.add_argument("--drawing", metavar="FILE", help="whose brush and cell are meant where none is typed")
     chart.add_argument(
         "--sheet",
         metavar="WxH",
@@ -39,7 +41,7 @@ def add_chart(commands) -> None:
 
 def _check_chart(args) -> None:
     written = [(args.output, (".json", *PROGRAMS)), (args.page, (".svg",)), (args.chart, (".json",))]
-    check_files(args, [(args.brush, None)], written)
+    check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 
 
 def add_calibrate(commands) -> None:

@@ -1,0 +1,118 @@
+"""Brush settings in the real Inkscape: what is touched is stored, the rest stays, and what is stored is told."""
+
+from xml.etree import ElementTree
+
+import pytest
+from command import SOUND, brushsvg
+from plugin import SOURCE, Plugin, sentence
+
+from brushsvg.cell_file import DEFAULT_CELL
+from brushsvg.convert import DEFAULT_BRUSH, Options
+
+STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    file = tmp_path / "drawing.svg"
+    said = " ".join(f'data-brushsvg-{name}="{value}"' for name, value in STORED.items())
+    file.write_text(SOUND.replace("<svg ", f"<svg {said} "))
+    return file
+
+
+def stored(text) -> dict:
+    attributes = ElementTree.fromstring(text).attrib
+    prefix = "data-brushsvg-"
+    return {key.removeprefix(prefix): value for key, value in attributes.items() if key.startswith(prefix)}
+
+
+def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
+    done = plugin.script("settings", drawing)
+    assert stored(done.stdout) == STORED
+    assert done.stderr.decode().splitlines() == [
+        "Nothing was changed. The document says:",
+        "    brush: mine",
+        "    compensation: nothing, and brushsvg takes closed",
+        "    machine: grbl-servo",
+        "    letters wider than the brush: nothing, and brushsvg takes clamp",
+        "    tolerance: 0.1mm",
+        "    data-brushsvg-speed: 7",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("word", "changed", "told"),
+    [
+        ("--brush=rigid", {"brush": "rigid"}, "brush: rigid (before: mine)"),
+        ("--brush=default", {"brush": None}, "brush: nothing, and brushsvg takes round-6 (before: mine)"),
+        ("--compensation=none", {"compensation": "none"}, "compensation: none (before: nothing)"),
+        (
+            "--cell=default",
+            {"cell": None},
+            "machine: nothing, and brushsvg takes linuxcnc-3axis, for URScript ur5e",
+        ),
+        ("--wide=passes", {"wide": "passes"}, "letters wider than the brush: passes (before: nothing)"),
+        ("--tolerance=0.2", {"tolerance": "0.2mm"}, "tolerance: 0.2mm (before: 0.1mm)"),
+        ("--tolerance= 0,2 mm", {"tolerance": "0.2mm"}, "tolerance: 0.2mm (before: 0.1mm)"),
+        ("--tolerance=default", {"tolerance": None}, "tolerance: nothing, and brushsvg takes 0.05mm"),
+    ],
+)
+def test_one_field_changes_one_setting(plugin, drawing, word, changed, told):
+    done = plugin.script("settings", drawing, word)
+    expected = {name: value for name, value in {**STORED, **changed}.items() if value is not None}
+    assert stored(done.stdout) == expected
+    assert done.stderr.decode().startswith("The document says now:\n") and told in done.stderr.decode()
+    assert done.stderr.count(b"(before: ") == 1
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ("fine", "'fine' is no tolerance: type millimetres, default, or nothing."),
+        ("0", "Tolerance 0 mm is outside the range [1e-05, 10] mm."),
+        ("1e9", "Tolerance 1e+09 mm is outside the range [1e-05, 10] mm."),
+        ("nan", "Tolerance nan mm is outside the range [1e-05, 10] mm."),
+    ],
+)
+def test_a_tolerance_that_is_none_is_told(plugin, drawing, typed, told):
+    assert sentence(plugin.script("settings", drawing, f"--tolerance={typed}")) == f"{told}\n"
+
+
+def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
+    monkeypatch.syspath_prepend(SOURCE)
+    from brushsvg_settings import OWN
+
+    options, cell = Options(), f"{DEFAULT_CELL}, for URScript ur5e"
+    assert {
+        "brush": DEFAULT_BRUSH,
+        "compensation": options.compensation,
+        "cell": cell,
+        "wide": options.wide,
+        "tolerance": f"{options.tolerance_mm}mm",
+    } == OWN
+    dialog = (SOURCE / "brushsvg_settings.inx").read_text()
+    for name in ("brush", "compensation", "cell", "wide"):
+        assert f"brushsvg's own choice: {OWN[name]}<" in dialog
+    assert "takes it back to 0.05 mm" in dialog
+
+
+def test_the_command_line_uses_what_inkscape_stored(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND)
+    chosen = {"brush": "rigid", "compensation": "none", "cell": "ur5e", "wide": "refuse", "tolerance": "0.2"}
+    plugin.set(**{f"settings__{name}": value for name, value in chosen.items()})
+    try:
+        said = plugin.effect("settings", source, tmp_path / "said.svg")
+    finally:
+        plugin.set()
+    brushsvg("convert", "said.svg", "said.script", cwd=tmp_path, status=0)
+    flags = [word for name, value in chosen.items() for word in (f"--{name}", value)]
+    brushsvg("convert", "drawing.svg", "typed.script", *flags, cwd=tmp_path, status=0)
+    assert (tmp_path / "said.script").read_bytes() == (tmp_path / "typed.script").read_bytes()
+    again = plugin.effect("settings", said, tmp_path / "again.svg")
+    assert stored(again.read_text()) == stored(said.read_text()) == {**chosen, "tolerance": "0.2mm"}

@@ -1,0 +1,103 @@
+"""What Inkscape's user is told: in the words of dialogs, and without a dialog that nobody can close."""
+
+import re
+
+import pytest
+from command import OPEN, SOUND, path
+from plugin import SOURCE, Plugin
+
+IMAGE = '<image id="photo" href="x.png" width="10" height="10"/>'
+FILLED = f'{OPEN}<path id="i" d="M20 10h3v30h-3z"/>{IMAGE}</svg>'
+TOO_WIDE = path("M20 30 H90", width="30")
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    return Plugin(tmp_path_factory.mktemp("plugin"))
+
+
+@pytest.mark.parametrize(
+    ("drawing", "action", "suffix", "told"),
+    [
+        (
+            FILLED,
+            "org.brushsvg.strokes.noprefs",
+            "svg",
+            b"Converted. brushsvg warns:\nphoto: image is not read",
+        ),
+        (FILLED, "select-clear", "ngc", b"Saved. brushsvg warns:\nphoto: image is not read"),
+        (
+            TOO_WIDE,
+            "org.brushsvg.preview.noprefs",
+            "svg",
+            b"brushsvg refuses:\np: width 30.000 mm is outside",
+        ),
+        (TOO_WIDE, "select-clear", "ngc", b"brushsvg refuses:\np: width 30.000 mm is outside"),
+    ],
+)
+def test_in_batches_inkscape_ends_and_what_it_would_show_is_on_stderr(
+    plugin, tmp_path, drawing, action, suffix, told
+):
+    """A dialog would stay until the time is up."""
+    source = tmp_path / "drawing.svg"
+    source.write_text(drawing)
+    assert told in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
+
+
+def test_without_a_display_warnings_are_on_stderr_too(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(SOUND.replace("</svg>", f"{IMAGE}</svg>"))
+    done = plugin.save(source, tmp_path / "out.ngc")
+    assert b"Saved. brushsvg warns:\nphoto: image is not read" in done.stderr
+    assert (tmp_path / "out.ngc").read_bytes().endswith(b"M2\n")
+
+
+def document(setting: str) -> str:
+    return SOUND.replace("<svg ", f"<svg {setting} ")
+
+
+ADVICE = {  # what the command line advises: a script of ours and a drawing that are told so
+    "give --brush": ("preview", document('data-brushsvg-brush="mine"')),
+    "give --cell": ("preview", document('data-brushsvg-cell="mine"')),
+    "--width MM gives all strokes one width": ("preview", path("M20 30 H90", width="0.1")),
+    "--wide passes fills it": ("check", f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'),
+    " (--lenient draws what is sound)": ("save", path("M20 30 H90 V")),
+    "(brushsvg cell new --taught ...)": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
+    "--strokes few needs less": ("chart", SOUND, "--strokes=many", "--sheet=letter"),
+    "in Inkscape with Path > Object to Path, or with inkscape --export-text-to-path --export-plain-svg -o out.svg "
+    "in.svg": ("save", SOUND.replace("</svg>", '<text id="word" x="9" y="9">a</text></svg>')),
+}
+
+
+@pytest.fixture
+def in_dialogs(monkeypatch):
+    monkeypatch.syspath_prepend(SOURCE)
+    from brushsvg_tell import IN_DIALOGS
+
+    return IN_DIALOGS
+
+
+@pytest.mark.parametrize("typed", ADVICE)
+def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, typed):
+    script, text, *words = ADVICE[typed]
+    source = tmp_path / "drawing.svg"
+    source.write_text(text)
+    done = plugin.script(script, source, *words)
+    told = " ".join(
+        re.sub("<[^>]*>", " ", (done.stdout + done.stderr).decode()).split()
+    )  # a check breaks its lines
+    assert in_dialogs[typed].strip() in told.replace("&gt;", ">")
+    assert typed not in told or typed in in_dialogs[typed]
+
+
+def test_all_advice_is_tried(in_dialogs):
+    assert set(ADVICE) == set(in_dialogs)
+
+
+def test_files_of_ours_that_nobody_knows_are_not_named(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(document('data-brushsvg-brush="rigid"'))
+    assert plugin.script("chart", source).stderr.startswith(b"brushsvg refuses:\nbrush: brush rigid is a pen")
+    (tmp_path / "mine.json").write_text("{}")
+    done = plugin.script("preview", source, f"--brush_file={tmp_path / 'mine.json'}")
+    assert f"{tmp_path / 'mine.json'}: ".encode() in done.stderr

@@ -1,0 +1,134 @@
+"""What a drawing says on its outermost svg of the whole job, and commands that go by it."""
+
+import gzip
+
+import pytest
+
+from brushsvg import read_plan
+from brushsvg.cell_file import cell_names
+from brushsvg.cli import main
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"
+ stroke="#203060" stroke-width="3"><path id="a" d="M30 40 C50 20 70 20 90 40"/><path id="b" d="M30 60 H90"/></svg>"""
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "d.svg").write_text(DRAWING)
+    return tmp_path
+
+
+def refusal_of(capsys, *words):
+    assert main(list(words)) == 1
+    return capsys.readouterr().err
+
+
+def on_root(*settings):
+    return DRAWING.replace("<svg ", "<svg " + " ".join(f"data-brushsvg-{each}" for each in settings) + " ", 1)
+
+
+def test_the_document_chooses_for_the_whole_job(desk, capsys):
+    (desk / "said.svg").write_text(
+        on_root('brush="rigid"', 'cell="ur5e"', 'compensation="none"', 'tolerance=".2mm"')
+    )
+    flags = ["--brush", "rigid", "--cell", "ur5e", "--compensation", "none", "--tolerance", "0.2"]
+    assert main(["convert", "said.svg", "said.script"]) == 0
+    assert main(["convert", "d.svg", "typed.script", *flags]) == 0
+    assert (desk / "said.script").read_bytes() == (desk / "typed.script").read_bytes()
+    (desk / "said.svgz").write_bytes(gzip.compress((desk / "said.svg").read_bytes()))
+    assert main(["convert", "said.svgz", "packed.script"]) == 0
+    assert (desk / "packed.script").read_bytes() == (desk / "typed.script").read_bytes()
+
+
+def test_what_is_typed_wins_over_the_document(desk, capsys):
+    (desk / "said.svg").write_text(on_root('cell="ur5e"', 'compensation="none"', 'tolerance="0.2mm"'))
+    flags = ["--cell", "linuxcnc-3axis", "--compensation", "closed", "--tolerance", "0.05"]
+    assert main(["convert", "said.svg", "said.ngc", *flags]) == 0
+    assert main(["convert", "d.svg", "plain.ngc"]) == 0
+    assert (desk / "said.ngc").read_bytes() == (desk / "plain.ngc").read_bytes()
+
+
+@pytest.mark.parametrize("file", ["/etc/hostname", "mine.toml", "../mine.toml", "no-such-cell"])
+def test_the_document_names_no_files(desk, capsys, file):
+    (desk / "mine.toml").write_text("")
+    (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
+    told = refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    assert told == (
+        f"brushsvg: d.svg: svg: data-brushsvg-cell asks for cell '{file}', which does not come along; known are "
+        f"{', '.join(cell_names())}: give --cell\n"
+    )
+
+
+@pytest.mark.parametrize("file", ["/etc/hostname", "mine.json", "no-such-brush"])
+def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(desk, capsys, file):
+    (desk / "mine.json").write_text("")
+    (desk / "d.svg").write_text(on_root(f'brush="{file}"'))
+    for words in (
+        ("convert", "d.svg", "x.ngc"),
+        ("predict", "d.svg", "x.svg"),
+        ("animate", "d.svg", "x.html"),
+        ("report", "d.svg"),
+        ("border", "d.svg", "x.ngc"),
+        ("chart", "x.json", "--drawing", "d.svg"),
+    ):
+        assert refusal_of(capsys, *words) == (
+            f"brushsvg: d.svg: svg: data-brushsvg-brush asks for brush '{file}', which does not come along; known are "
+            "rigid, round-6: give --brush\n"
+        )
+    assert not (desk / "x.json").exists()
+    assert main(["convert", "d.svg", "x.ngc", "--brush", "round-6"]) == 0
+    assert f"asks for brush {file}, all is painted with round-6" in capsys.readouterr().err
+    assert main(["report", "d.svg", "--all-brushes"]) == 0
+
+
+def test_a_chart_is_for_the_brush_and_machine_of_a_drawing(desk, capsys):
+    (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))
+    assert main(["chart", "said.ngc", "--drawing", "d.svg"]) == 0
+    assert main(["chart", "typed.ngc", "--brush", "round-6", "--cell", "grbl-3axis"]) == 0
+    assert (desk / "said.ngc").read_bytes() == (desk / "typed.ngc").read_bytes()
+    assert main(["chart", "said.ngc", "--drawing", "d.svg", "--cell", "linuxcnc-3axis"]) == 0
+    assert (desk / "said.ngc").read_bytes() != (desk / "typed.ngc").read_bytes()
+
+
+FAT = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60" {}>'
+    '<path id="bar" d="M20 20h60v14h-60z"/></svg>'
+)
+
+
+def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
+    for name, setting in (("said.svg", 'data-brushsvg-wide="passes"'), ("d.svg", "")):
+        (desk / name).write_text(FAT.format(setting))
+    assert main(["convert", "said.svg", "said.ngc"]) == 0
+    assert main(["convert", "d.svg", "typed.ngc", "--wide", "passes"]) == 0
+    assert main(["convert", "d.svg", "clamped.ngc"]) == 0
+    said = (desk / "said.ngc").read_bytes()
+    assert said == (desk / "typed.ngc").read_bytes() != (desk / "clamped.ngc").read_bytes()
+    assert main(["check", "said.ngc", "said.svg"]) == 0
+    (desk / "no.svg").write_text(FAT.format('data-brushsvg-wide="refuse"'))
+    assert "width 14 mm of its outline is outside" in refusal_of(capsys, "convert", "no.svg", "x.ngc")
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ('compensation="most"', "data-brushsvg-compensation: 'most' is none of none, constant, closed"),
+        ('tolerance="11mm"', "data-brushsvg-tolerance: 11 mm is outside the range [1e-05, 10] mm"),
+        ('wide="very"', "data-brushsvg-wide: 'very' is none of clamp, passes, refuse"),
+        ('cell=""', "data-brushsvg-cell: it is empty"),
+        ('machine="x"', "data-brushsvg-machine is not known; known: width, speed"),
+    ],
+)
+def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, sentence):
+    (desk / "d.svg").write_text(on_root(setting))
+    assert sentence in refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    assert main(["convert", "d.svg", "x.ngc", "--lenient"]) == 0
+
+
+def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
+    (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
+    assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    (desk / "d.svg").write_text(on_root('cell="ur5e"'))
+    assert main(["convert", "d.svg", "x.json"]) == 0
+    assert [each.settings for each in read_plan((desk / "x.json").read_text()).passes] == ["{}", "{}"]
