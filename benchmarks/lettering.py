@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from brushsvg import _core, find_brush, score
+from brushsvg import _core, find_brush
 from brushsvg.design import Design
 from brushsvg.reach import within_reach
 from brushsvg.strokes import strokes
@@ -33,14 +33,14 @@ SEARCHED = 30  # characters that the best constant lag is searched on
 TOLERANCE_MM = 0.05
 
 
-def found(design: Design, brush) -> tuple[list, list[score.Meant]]:
+def found(design: Design, brush) -> tuple[list, list]:
     """Strokes to paint, and what each should become."""
     painted, wanted, _ = within_reach(strokes(design)[0], brush)
-    return painted, list(map(score.meant, wanted))
+    return painted, wanted
 
 
-def overlap(trace, wanted: score.Meant, brush) -> float:
-    return score.areas(score.view([trace], [wanted], brush)).overlap
+def overlap(trace, wanted, brush) -> float:
+    return _core.common_area([trace], [wanted], brush).overlap
 
 
 @dataclass
@@ -95,9 +95,9 @@ def painted(design: Design, name: str, best_mm: float) -> tuple[list[Way], int]:
     for way in done:
         traces = [way.paint(stroke, brush, design.sheet_mm) for stroke in some]
         way.alone = [overlap(trace, each, brush) for trace, each in zip(traces, wanted, strict=True)]
-        way.whole = [score.areas_of_sheet(traces, wanted, brush).overlap]
+        way.whole = [_core.common_area(traces, wanted, brush).overlap]
     widest = brush.half_width_range_mm()[1]
-    return done, sum(max(half for _, half in each.stroke.half_width) > widest for each in wanted)
+    return done, sum(max(half for _, half in each.half_width) > widest for each in wanted)
 
 
 def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:

@@ -13,7 +13,7 @@ import cma
 import numpy as np
 from scipy.interpolate import BSpline
 
-from brushsvg import _core, score
+from brushsvg import _core
 
 CONTROLS = 8
 EVERY_MM = 1.5  # poses along the way: a spline bends between those of a plan
@@ -22,7 +22,7 @@ WINDOW_PX = 6.0  # per mm
 ROUND_MM = 2.0  # paper round both marks, for what moves out of them
 
 
-def search(stroke, wanted: score.Meant, brush, tries: int, seed: int) -> dict[str, float]:
+def search(stroke, wanted, brush, tries: int, seed: int) -> dict[str, float]:
     """Overlaps as the report has them: closed, refined, and the best that so many simulations from each find."""
     found, best, most = {}, None, -1.0
     for method, step_mm in STARTS:
@@ -37,9 +37,9 @@ def search(stroke, wanted: score.Meant, brush, tries: int, seed: int) -> dict[st
     return found | {"found": most}
 
 
-def reported(a_pass, wanted: score.Meant, brush) -> float:
+def reported(a_pass, wanted, brush) -> float:
     (trace,) = _core.simulate(plan_of(a_pass, brush), brush).passes
-    return score.areas(score.view([trace], [wanted], brush)).overlap
+    return _core.common_area([trace], [wanted], brush).overlap
 
 
 def plan_of(a_pass, brush):
@@ -48,17 +48,16 @@ def plan_of(a_pass, brush):
     return plan
 
 
-def searched(start, wanted: score.Meant, brush, step_mm: float, tries: int, seed: int):
+def searched(start, wanted, brush, step_mm: float, tries: int, seed: int):
     poses = close_together(np.asarray(start.poses_mm))
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(poses, axis=0), axis=1))])
     knots = np.concatenate([[0.0] * 3, np.linspace(0.0, 1.0, CONTROLS - 2), [1.0] * 3])
     splines = BSpline.design_matrix(along / along[-1], knots, 3).toarray()
-    box = score.joint(
-        [wanted.box_mm, score.box_of_paint(_core.simulate(plan_of(start, brush), brush).passes[0], brush)]
-    )
-    low, size = box[:2] - ROUND_MM, box[2:] - box[:2] + 2 * ROUND_MM
+    painted = _core.painted_bounds(_core.simulate(plan_of(start, brush), brush).passes[0], brush)
+    points = np.vstack([*_core.wanted_outline(wanted, 0.01), np.reshape(painted, (2, 2))])
+    low, size = points.min(axis=0) - ROUND_MM, np.ptp(points, axis=0) + 2 * ROUND_MM
     window = (*low.tolist(), *size.tolist())
-    meant = score.wanted_pixels([wanted], window, WINDOW_PX)
+    meant = _core.wanted_coverage([wanted], window, WINDOW_PX)
 
     def moved(x: np.ndarray):
         out = poses + splines @ x.reshape(CONTROLS, 3)

@@ -1,5 +1,6 @@
 """Poses per stroke for a mark whose middle stays within 0.05 mm of the line: sampling every 0.5 mm, simplifying the
-tool's path (Douglas and Peucker in x, y, z, with the largest tolerance whose mark is as exact), and ours.
+tool's path (Douglas and Peucker in x, y, z, with the largest tolerance whose mark is as exact as ours, its middle and
+its edges), and ours.
 
 Seed and counts are printed; `--count N` curves and strokes of characters, these only where `--lettering FOLDER` names
 the folder where npm puts, or has put, them.
@@ -14,6 +15,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 import brushsvg
 from brushsvg import _core
@@ -21,6 +23,7 @@ from brushsvg.reach import within_reach
 
 TOLERANCE_MM = 0.05
 EVERY_MM = 0.5
+LOOK_MM = 0.05
 SHEET_MM = (400.0, 400.0)
 
 
@@ -45,8 +48,33 @@ def simplified(poses: np.ndarray, tolerance_mm: float) -> np.ndarray:
     return poses[stays]
 
 
-def by_simplifying(stroke, brush) -> int:
-    """Poses that Douglas and Peucker need for a mark within the tolerance."""
+def errors_mm(a_pass, stroke, brush) -> tuple[float, float]:
+    """How far a mark's middle is off the line at most, and how far its half width while the brush is taut."""
+    line = _core.flatten(stroke, 0.002)
+    at = np.linspace(0.0, line[-1, 2], max(2, int(line[-1, 2] / LOOK_MM)))
+    line = np.column_stack([np.interp(at, line[:, 2], line[:, k]) for k in (0, 1, 3)])
+    (marks,) = _core.simulate(plan_of(a_pass, brush), brush, for_outlines=False).passes
+    rows = np.flatnonzero(marks.taut)
+    middle_mm = _core.miss_of(a_pass, stroke, brush, TOLERANCE_MM).largest_mm
+    if not len(rows):
+        return middle_mm, 0.0
+    taut = slice(rows[0], rows[-1] + 1)
+    each = np.column_stack([_core.widest_points(marks, brush), marks.depth_mm])[taut]
+    parts = np.linspace(0.0, 1.0, 8, endpoint=False)[:, None, None]
+    each = np.concatenate([((1 - parts) * each[:-1] + parts * each[1:]).reshape(-1, 3), each[-1:]])
+    near = cKDTree(line[:, :2]).query(each[:, :2])[1]
+    painted = np.array([brush.half_width(depth) for depth in each[:, 2]])
+    return middle_mm, float(np.abs(painted - line[near, 2]).max())
+
+
+def plan_of(a_pass, brush):
+    plan = _core.Plan()
+    plan.brush, plan.sheet_mm, plan.passes = brush.name, SHEET_MM, [a_pass]
+    return plan
+
+
+def by_simplifying(stroke, brush, ours) -> int:
+    """Poses that Douglas and Peucker need for a mark whose middle and edges are as near as those of our plan."""
     plan = _core.compensate([stroke], brush, SHEET_MM, "closed", 0.005, few_poses=False).plan
     fine = np.asarray(plan.passes[0].poses_mm)
     (marks,) = _core.simulate(plan, brush, for_outlines=False).passes
@@ -54,12 +82,13 @@ def by_simplifying(stroke, brush) -> int:
     if not len(taut):
         return len(fine)
     first, last = int(np.ceil(taut[0])), int(taut[-1])  # landing and lift stay as they are, ours and theirs
+    limits = np.maximum(errors_mm(ours, stroke, brush), errors_mm(plan.passes[0], stroke, brush))
     low, high, fewest = 0.0, 1.0, len(fine)
     for _ in range(14):
         tolerance = 0.5 * (low + high)
         poses = np.vstack([fine[:first], simplified(fine[first : last + 1], tolerance), fine[last + 1 :]])
-        miss = _core.miss_of(_core.Pass(stroke.id, poses, 20.0), stroke, brush, TOLERANCE_MM)
-        if miss.largest_mm <= TOLERANCE_MM:
+        found = errors_mm(_core.Pass(stroke.id, poses, 20.0), stroke, brush)
+        if np.all(found <= limits + 1e-9):
             low, fewest = tolerance, min(fewest, len(poses))
         else:
             high = tolerance
@@ -108,7 +137,8 @@ def compared(title: str, strokes, brush) -> None:
     without = time.process_time() - begin
     few = np.array([len(each.poses_mm) for each in ours.plan.passes])
     sampled = np.array([math.ceil(length_mm(each.poses_mm) / EVERY_MM) + 1 for each in ours.plan.passes])
-    thinned = np.array([by_simplifying(stroke, brush) for stroke in strokes])
+    pairs = zip(strokes, ours.plan.passes, strict=True)
+    thinned = np.array([by_simplifying(stroke, brush, a_pass) for stroke, a_pass in pairs])
     within = np.array([miss.within_tolerance for miss in ours.misses])
     print(
         f"{title}: {len(strokes)} strokes, of them {within.sum()} within {TOLERANCE_MM} mm, which are compared"

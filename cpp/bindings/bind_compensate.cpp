@@ -4,7 +4,6 @@
 #include "bindings.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/error.hpp"
-#include "parallel.hpp"
 #ifdef BRUSHSVG_FIT
 #include "refine.hpp"
 #endif
@@ -80,21 +79,14 @@ too sharp for the lever.)")
             out.plan.sheet_mm = sheet_mm;
             if (!brush.width_follows_depth())
                 out.warnings.emplace_back("", "brush " + brush.name + " has one width: drawn widths are ignored");
+            std::vector<CompensatedPass> done(strokes.size());
             constexpr std::size_t at_once = 8;  // or Ctrl-C waits too long
-            const std::size_t chunks = (strokes.size() + at_once - 1) / at_once;
-            const auto in_strokes = progress.is_none() ? progress : py::cpp_function([&](std::size_t now, std::size_t) {
-                progress(std::min(strokes.size(), now * at_once), strokes.size());
-            });
-            in_chunks(chunks, 1, in_strokes, [&](std::size_t chunk) {
-                const std::size_t begin = chunk * at_once, end = std::min(strokes.size(), begin + at_once);
-                std::vector<CompensatedPass> done(end - begin);
-                on_all_processors(begin, end, [&](std::size_t i) { done[i - begin] = way(strokes[i]); });
-                for (CompensatedPass& one : done) {
-                    out.plan.passes.push_back(std::move(one.pass));
-                    out.misses.push_back(one.miss);
-                    for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
-                }
-            });
+            in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) { done[i] = way(strokes[i]); });
+            for (CompensatedPass& one : done) {
+                out.plan.passes.push_back(std::move(one.pass));
+                out.misses.push_back(one.miss);
+                for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
+            }
             return out;
         },
         py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed",

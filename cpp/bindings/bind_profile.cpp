@@ -1,3 +1,5 @@
+#include <pybind11/numpy.h>
+
 #include "bindings.hpp"
 #include "brushsvg/profile.hpp"
 
@@ -23,8 +25,8 @@ void bind_profile(py::module_& m) {
              py::arg("floor") = -std::numeric_limits<double>::infinity(), py::arg("floor_slope") = 0.0,
              py::arg("calibrated_mm") = py::none(), py::arg("source") = "", py::arg("assumed") = false,
              py::arg("half_interval_95") = std::vector<double>{}, py::arg("rmse_mm") = py::none())
-        .def(
-            "__call__", [](const Profile& p, double depth_mm) { return p(depth_mm); }, py::arg("depth_mm"))
+        .def("__call__", py::vectorize([](const Profile* p, double depth_mm) { return (*p)(depth_mm); }),
+             py::arg("depth_mm"))
         .def_readwrite("coefficients", &Profile::coefficients)
         .def_readwrite("floor", &Profile::floor)
         .def_readwrite("floor_slope", &Profile::floor_slope)

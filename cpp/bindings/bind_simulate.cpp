@@ -8,7 +8,7 @@ void bind_simulate(py::module_& m) {
         [](const Plan& plan, const Brush& brush, double tolerance_mm, bool for_outlines, const py::object& progress) {
             Marks marks;
             marks.passes.resize(plan.passes.size());
-            in_chunks(plan.passes.size(), 64, progress, [&](std::size_t i) {
+            in_parallel_chunks(plan.passes.size(), 64, progress, [&](std::size_t i) {
                 marks.passes[i] = simulate(plan.passes[i], brush, tolerance_mm, for_outlines);
             });
             return marks;

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "parallel.hpp"
+
 namespace py = pybind11;
 
 void bind_profile(py::module_& m);
@@ -22,6 +24,8 @@ void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);
 void bind_curve_fit(py::module_& m);
 void bind_coverage(py::module_& m);
+void bind_overlay(py::module_& m);
+void bind_verdict(py::module_& m);
 void bind_compensate(py::module_& m);
 void bind_interrupt(py::module_& m);
 void bind_thin_out(py::module_& m);
@@ -41,4 +45,14 @@ void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Wor
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (!progress.is_none()) progress(std::min(n, begin + chunk), n);
     }
+}
+
+/// The same, each chunk on all processors.
+template <class Work>
+void in_parallel_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
+    const py::object in_strokes = progress.is_none() ? progress : py::cpp_function([&](std::size_t now, std::size_t) {
+        progress(std::min(n, now * chunk), n);
+    });
+    in_chunks((n + chunk - 1) / chunk, 1, in_strokes,
+              [&](std::size_t k) { brushsvg::on_all_processors(k * chunk, std::min(n, (k + 1) * chunk), work); });
 }

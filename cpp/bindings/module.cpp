@@ -30,6 +30,8 @@ PYBIND11_MODULE(_core, m) {
     bind_medial_axis(m);
     bind_curve_fit(m);
     bind_coverage(m);
+    bind_overlay(m);
+    bind_verdict(m);
     bind_compensate(m);
     bind_interrupt(m);
     bind_thin_out(m);

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brushsvg/coverage.hpp"
-#include "brushsvg/region.hpp"
+#include "brushsvg/overlay.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/thin_out.hpp"
 #include "brushsvg/wanted.hpp"
@@ -31,9 +30,6 @@ constexpr double kBeyondSheetMm = 30.0;
 // what is good, the way is turned at its beginning by so much [rad] and tried again.
 constexpr std::array<double, 3> kFirstTurns{0.0, 1.2, -1.2};
 constexpr double kGood = 0.93;
-// Pixels judge by themselves where marks differ by more than they err (0.0017 on a taper).
-constexpr double kSurely = 0.005;
-constexpr double kPixelsToHalfWidth = 15.0, kLeastPixels = 8.0, kMostPixels = 2000.0;
 // Shares of the tolerance: of the tool's chords, and of what fewer poses may change of the mark. At twice as much of
 // the latter a tenth of them is saved, and the overlap loses as much again (0.0025 on characters) as it did (0.0006).
 constexpr double kChords = 0.2, kThinned = 0.5;
@@ -71,44 +67,17 @@ std::array<double, 4> box_of(const Poses& poses) {
     return {poses.col(0).minCoeff(), poses.col(1).minCoeff(), poses.col(0).maxCoeff(), poses.col(1).maxCoeff()};
 }
 
-/// Two plans for one wanted mark, and which of them paints it better.
-class Judge {
- public:
-    Judge(const Brush& brush, const Rings& wanted, double half_width, const Pass& a, const Pass& b)
-        : brush_(brush), wanted_(wanted), passes_{&a, &b}, marks_{simulate(a, brush, 0.03), simulate(b, brush, 0.03)} {
-        bounds_ = {painted_bounds(marks_[0], brush), painted_bounds(marks_[1], brush)};
-        auto box = bounds_[0];
-        const auto include = [&](double left, double low, double right, double high) {
-            box = {std::min(box[0], left), std::min(box[1], low), std::max(box[2], right), std::max(box[3], high)};
-        };
-        include(bounds_[1][0], bounds_[1][1], bounds_[1][2], bounds_[1][3]);
-        for (const Ring& ring : wanted)
-            include(ring.col(0).minCoeff(), ring.col(1).minCoeff(), ring.col(0).maxCoeff(), ring.col(1).maxCoeff());
-        const Window window{box[0], box[1], box[2] - box[0], box[3] - box[1]};
-        const double px_per_mm =
-            std::min(kPixelsToHalfWidth / half_width, kMostPixels / std::max(window.width_mm, window.height_mm));
-        fine_enough_ = px_per_mm * half_width >= kLeastPixels;
-        const Coverage meant = coverage(wanted, window, px_per_mm);
-        for (int k : {0, 1}) {
-            Marks all;
-            all.passes.push_back(marks_[k]);
-            const Coverage painted = coverage(all, brush, window, px_per_mm);
-            overlap_[k] = painted.cwiseMin(meant).cast<double>().sum() / painted.cwiseMax(meant).cast<double>().sum();
-        }
-        if (fine_enough_ && std::abs(overlap_[1] - overlap_[0]) > kSurely) return;
-        for (int k : {0, 1}) overlap_[k] = brushsvg::overlap(outline(simulate(*passes_[k], brush), brush), wanted);
+/// A pass and how well it paints its stroke: what the report says, pixel by pixel, so that no plan is kept that the
+/// report finds worse.
+struct Tried {
+    std::array<double, 4> painted_bounds, tool_bounds;
+    double overlap;
+    Tried(const Pass& pass, const Stroke& stroke, const Brush& brush) {
+        const PassMarks marks = simulate(pass, brush);
+        painted_bounds = brushsvg::painted_bounds(marks, brush);
+        tool_bounds = box_of(pass.poses_mm);
+        overlap = common_area(overlay({marks}, {stroke}, brush)).overlap();
     }
-    double overlap(int k) const { return overlap_[k]; }
-    const std::array<double, 4>& painted(int k) const { return bounds_[k]; }
-
- private:
-    const Brush& brush_;
-    const Rings& wanted_;
-    std::array<const Pass*, 2> passes_;
-    std::array<PassMarks, 2> marks_;
-    std::array<std::array<double, 4>, 2> bounds_;
-    std::array<double, 2> overlap_{};
-    bool fine_enough_ = false;
 };
 
 }  // namespace
@@ -132,27 +101,24 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
-    const auto painted_before = painted_bounds(simulate(closed.plan.pass, brush, 0.03), brush);
+    const Tried before(closed.plan.pass, stroke, brush);
+    closed.overlap = closed.overlap_closed = before.overlap;
     RefinedPass best = closed;
     for (double turn : kFirstTurns) {
         Eigen::VectorXd start = Eigen::VectorXd::Zero(path.unknowns());
         start[2] = turn;
         start[3] = 0.3 * turn;
         RefinedPass moved = closed;
+        moved.bettered = true;
         moved.plan.pass.arcs.clear();
         moved.plan.pass.poses_mm =
             poses_along(path.at(fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations, start)), brush,
                         kChords * options.tolerance_mm);
         moved.plan.pass = thin_out(moved.plan.pass, brush, kThinned * options.tolerance_mm);
-        const Judge judge(brush, wanted, half_width, best.plan.pass, moved.plan.pass);
-        best.overlap = judge.overlap(0);
-        if (!best.bettered) best.overlap_closed = best.overlap;
-        moved.overlap_closed = best.overlap_closed;
-        moved.overlap = judge.overlap(1);
-        moved.bettered = true;
-        const bool in_bounds =
-            anywhere || (stays(judge.painted(1), painted_before, 0.0) &&
-                         stays(box_of(moved.plan.pass.poses_mm), box_of(closed.plan.pass.poses_mm), kBeyondSheetMm));
+        const Tried after(moved.plan.pass, stroke, brush);
+        moved.overlap = after.overlap;
+        const bool in_bounds = anywhere || (stays(after.painted_bounds, before.painted_bounds, 0.0) &&
+                                            stays(after.tool_bounds, before.tool_bounds, kBeyondSheetMm));
         if (in_bounds && moved.overlap > best.overlap) best = moved;
         if (best.overlap >= kGood) break;
     }

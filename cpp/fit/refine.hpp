@@ -20,16 +20,17 @@ struct RefineOptions {
 
 struct RefinedPass {
     CompensatedPass plan;
-    /// Area of intersection over area of union of predicted and wanted mark, to 0.002: of the plan in closed form,
+    /// Area of intersection over area of union of predicted and wanted mark, as common_area() counts them for the
+    /// report: of the plan in closed form, and of this plan. Zero where nothing was tried.
     double overlap_closed = 0.0;
-    double overlap = 0.0;   ///< and of this plan
+    double overlap = 0.0;
     bool bettered = false;  ///< false: this plan is the one in closed form
 };
 
 /// The plan in closed form, moved until the outline of its mark lies best on the wanted one: where the patch goes, how
 /// deep it is pressed, where it starts and ends; where that is not good, again from a beginning that comes in from the
 /// side. The patch is never pushed, so q = P + r(depth) u holds all along. The
-/// plan is simulated, and kept only where its mark overlaps better, as coverage and overlap() judge, and stays in
+/// plan is simulated, and kept only where its mark overlaps better by the report's own measure, and stays in
 /// bounds. Its miss is that from the drawn middle line, which it leaves on purpose.
 /// Throws Error as compensate() does.
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});

@@ -279,7 +279,7 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
 /// of it for that, less costs time, and poses where the brush is loose, which stay as they are.
 constexpr double kStepShare = 0.35;
 /// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
-/// tenth of the tolerance off the truth between them: at 0.95 a mark was 0.0001 mm off too far.
+/// little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
@@ -336,7 +336,7 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
             result.miss = miss;
             pass = trial;
         }
-        // rows of the check lie a tenth of the tolerance off the truth between them; fewer poses need more to spare
+        // rows of the check lie a little off the truth between them; fewer poses need more to spare
         const bool sure = !options.few_poses && miss.largest_mm <= 0.9 * options.tolerance_mm;
         if (sure || ((turns || (options.few_poses && result.miss.within_tolerance)) && !better) ||
             trial.poses_mm.rows() >= Index(kMostSamples))

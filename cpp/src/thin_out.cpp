@@ -1,5 +1,6 @@
 #include "brushsvg/thin_out.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -12,17 +13,22 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 /// Places of a move that are looked at, at most: more find the same error, fewer miss a kink of the path.
 constexpr Index kLooks = 10;
+/// Less is not pressed any more.
+constexpr double kLeastDepthMm = 1e-3;
 /// A move shorter than this has no direction to speak of.
 constexpr double kLeastMoveMm = 1e-6;
-/// From one move to the next the tool turns by no more, or it would have to stop there. Bends this tight slow it down
-/// anyway: 0.6 needs 8 % more poses and takes as long.
+/// From one move to the next the tool turns by no more, up and down counted: or it would have to stop there. Bends this
+/// tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
 constexpr double kMostTurnRad = 1.0;
 /// How far beside the path a move may end, in second differences over half its length: a third for an even curve. More
 /// of them win less than 1 % of the poses, none but the third loses a tenth.
 constexpr double kBeside[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
+/// And how much of that in depth, which the brush does not smooth: half the sagitta at a third.
+constexpr double kDeeper = 0.75;
 /// The footprint's tip may be off by so many tolerances: it lies inside the mark, its sides are what shows.
 constexpr double kTipShare = 3.0;
 
@@ -30,6 +36,7 @@ constexpr double kTipShare = 3.0;
 struct Traced {
     Ring tcp, middle;
     std::vector<double> depth, along;  ///< along: path of the TCP [mm]
+    double deepest = 0.0;
     std::vector<Vector2d> contact, heading;
     std::vector<bool> taut;     ///< at the pose
     std::vector<bool> dragged;  ///< from the pose to the next: taut all the way, in a straight move
@@ -61,6 +68,7 @@ struct Traced {
         }
         for (Index i = 0; i < n; ++i) {
             depth[i] = -pass.poses_mm(i, 2);
+            deepest = std::max(deepest, depth[i]);
             if (i > 0) along[i] = along[i - 1] + (tcp.row(i) - tcp.row(i - 1)).norm();
         }
         for (Index i = 0; i + 1 < n; ++i)
@@ -70,13 +78,15 @@ struct Traced {
             for (Index i = arc.first; i < arc.last; ++i) dragged[i] = false;
     }
 
-    Vector2d tcp_at(double s, Index near) const {
+    /// Where the TCP was after a way: x, y, depth. `near`: a pose to look from.
+    Vector3d at(double s, Index near) const {
         Index i = near;
         while (i > 0 && along[i] > s) --i;
         while (i + 2 < tcp.rows() && along[i + 1] < s) ++i;
         const double step = along[i + 1] - along[i], t = step > 0.0 ? (s - along[i]) / step : 0.0;
-        return (tcp.row(i) + t * (tcp.row(i + 1) - tcp.row(i))).transpose();
+        return pose(i) + t * (pose(i + 1) - pose(i));
     }
+    Vector3d pose(Index i) const { return {tcp(i, 0), tcp(i, 1), depth[i]}; }
 };
 
 /// One stretch of dragged moves, walked from its beginning: as far as possible in each move.
@@ -86,31 +96,31 @@ class Walk {
         : was_(was), brush_(brush), law_(law), tolerance_(tolerance_mm) {}
 
     /// Poses that lead from pose `first` to pose `last`, both ends left out.
-    std::vector<Eigen::Vector3d> operator()(Index first, Index last) {
+    std::vector<Vector3d> operator()(Index first, Index last) {
         first_ = first;
         last_ = last;
-        std::vector<Eigen::Vector3d> out;
+        std::vector<Vector3d> out;
         state_.taut = state_.heading_known = true;
         state_.contact = was_.contact[first];
         state_.heading = was_.heading[first];
-        at_ = was_.tcp.row(first).transpose();
-        direction_ = Vector2d::Zero();
+        at_ = was_.pose(first);
+        way_ = Vector3d::Zero();
         Index i = first, stride = 4;
         while (i < last) {
             const auto [j, step] = farthest(i, stride);
             stride = std::max<Index>(2, j - i);
-            direction_ = (step.to - at_).normalized();
+            way_ = step.to - at_;
             at_ = step.to;
             state_ = step.state;
             i = j;
-            if (i < last) out.emplace_back(at_.x(), at_.y(), -was_.depth[i]);
+            if (i < last) out.emplace_back(at_.x(), at_.y(), -at_.z());
         }
         return out;
     }
 
  private:
     struct Step {
-        Vector2d to;
+        Vector3d to;  ///< x, y, depth
         LagState<double> state;
         bool good = false;
     };
@@ -120,7 +130,7 @@ class Walk {
     /// curve changes on the way, more or less than that is better.
     std::pair<Index, Step> farthest(Index i, Index stride) const {
         Index good = i + 1;
-        Step best = tried(i, good, was_.tcp.row(good).transpose());
+        Step best = tried(i, good, was_.pose(good));
         for (double share : kBeside) {
             Index step = stride, bad = last_ + 1;
             for (Index j = std::min(good + step, last_); j > good; j = std::min(good + step, last_)) {
@@ -147,20 +157,22 @@ class Walk {
         }
         return {good, best};
     }
-    Vector2d beside(Index i, Index j, double share) const {
-        const Vector2d here = was_.tcp.row(j).transpose();
+    Vector3d beside(Index i, Index j, double share) const {
+        const Vector3d here = was_.pose(j);
         const double h = std::min(0.5 * (was_.along[j] - was_.along[i]), was_.along[last_] - was_.along[j]);
         if (!(h > 0.0)) return here;
-        return here - share * (was_.tcp_at(was_.along[j] - h, j) - 2.0 * here + was_.tcp_at(was_.along[j] + h, j));
+        const Vector3d bends = was_.at(was_.along[j] - h, j) - 2.0 * here + was_.at(was_.along[j] + h, j);
+        Vector3d to = here - share * Vector3d(bends.x(), bends.y(), kDeeper * bends.z());
+        to.z() = std::clamp(to.z(), std::min(here.z(), kLeastDepthMm), was_.deepest);
+        return to;
     }
 
-    Step tried(Index i, Index j, const Vector2d& to) const {
+    Step tried(Index i, Index j, const Vector3d& to) const {
         Step step{to, state_};
-        const Move<double> move(at_, to, was_.depth[i], was_.depth[j]);
-        if (direction_.squaredNorm() > 0.0 && move.length > kLeastMoveMm && j > i + 1) {
-            const double turn = std::atan2(direction_.x() * move.along.y() - direction_.y() * move.along.x(),
-                                           direction_.dot(move.along));
-            if (std::abs(turn) > kMostTurnRad) return step;
+        const Move<double> move(at_.head<2>(), to.head<2>(), at_.z(), to.z());
+        if (move.length > kLeastMoveMm && j > i + 1) {
+            const double turn = std::atan2(way_.cross(to - at_).norm(), way_.dot(to - at_));
+            if (turn > kMostTurnRad) return step;
         }
         bool good = true;
         const Index stride = std::max<Index>(1, (j - i) / kLooks);
@@ -213,13 +225,13 @@ class Walk {
     double tolerance_;
     Index first_ = 0, last_ = 0;
     LagState<double> state_;
-    Vector2d at_, direction_;
+    Vector3d at_, way_;  ///< where the walk is, and the move that led there
 };
 
 Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tolerance_mm) {
     const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
     const Index n = pass.poses_mm.rows();
-    std::vector<Eigen::Vector3d> poses;
+    std::vector<Vector3d> poses;
     std::vector<Index> now(n, 0);  // where the poses that stay are
     const auto keep = [&](Index i) {
         now[i] = Index(poses.size());
@@ -235,7 +247,7 @@ Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tol
             ++i;
             continue;
         }
-        for (const Eigen::Vector3d& pose : walk(i, end)) poses.push_back(pose);
+        for (const Vector3d& pose : walk(i, end)) poses.push_back(pose);
         i = end;
     }
     Pass out = pass;

@@ -16,6 +16,8 @@ using Eigen::Vector2d;
 constexpr double kLiftSlackMm = 0.05;
 /// How far from there straight moves may stray: not so far that the patch slips, or relaxes.
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
+/// Steps of the depth, 128 in all, in which a lift comes as far inside: sooner it would need a move of its own.
+constexpr double kLiftEases = 8.0;
 /// An arc turns the heading by no less: smaller ones say no more than their chord.
 constexpr double kLeastArcRad = 1e-3;
 /// Poses nearer than this are one: the way between them is rounding, and points anywhere.
@@ -78,20 +80,21 @@ void lift(const Stance& last, const Brush& brush, PoseList& out) {
         out.add(last.contact_mm + std::max(0.0, reach_mm) * last.heading, depth);
     };
     const auto reach = [&](double depth) { return brush.lag(depth) - kLiftSlackMm; };
-    add(reach(last.depth_mm), last.depth_mm);
-    // straight moves that stay inside the curve, but not far: each as long as some straight line does
+    // straight moves that stay inside the curve, but not far: each as long as some straight line does; the first begins
+    // where the brush is taut, and comes inside on its way
     constexpr int n = 128;
     const auto depth_at = [&](int k) { return last.depth_mm * (n - k) / n; };
     int from = 0;
-    double at = reach(last.depth_mm);
+    double at = brush.lag(last.depth_mm);
     while (from < n) {
         double least = -1e300, most = 1e300;
         int to = from;
         double slope = 0.0;
         for (int k = from + 1; k <= n; ++k) {
             const double by = depth_at(from) - depth_at(k), wanted = reach(depth_at(k));
+            const double inside = from > 0 ? 1.0 : std::min(1.0, double(k) / kLiftEases);
             least = std::max(least, (wanted - kLiftBandMm - at) / by);
-            most = std::min(most, (wanted + kLiftBandMm - at) / by);
+            most = std::min(most, (wanted + kLiftSlackMm - inside * (kLiftSlackMm - kLiftBandMm) - at) / by);
             if (least > most) break;
             slope = 0.5 * (least + most);
             to = k;

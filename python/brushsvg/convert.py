@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _core, importers, layout, report, score, suit
+from . import _core, importers, layout, report, suit
 from .animation import animation
 from .brushes import find_brush
 from .cell import Cell
@@ -252,7 +252,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     px_per_mm = min(
         4.0, 4000.0 / max(work.plan.sheet_mm)
     )  # overlaps to 2e-4, in a twentieth of the rings' time
-    wanted = score.wanted_pixels(list(map(score.meant, work.strokes)), window, px_per_mm)
+    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
     best, most = work, -1.0
     greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
@@ -354,8 +354,8 @@ def misses_picture(suffix: str, work: Work, marks) -> bytes:
 
     px_per_mm = min(20.0, render.PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
-    wanted = score.wanted_pixels(list(map(score.meant, work.strokes)), window, px_per_mm)
-    return render.misses_png(wanted, score.painted_pixels(marks.passes, work.brush, window, px_per_mm))
+    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    return render.misses_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
 
 
 def advice(work: Work) -> str:

@@ -12,11 +12,19 @@ SLIGHT = 1e-6
 
 
 def reason(
-    stroke, line: np.ndarray, brush, place_mm, miss, tolerance_mm: float, compensation: str = "closed"
+    stroke,
+    line: np.ndarray,
+    brush,
+    place_mm,
+    is_missing: bool,
+    miss,
+    tolerance_mm: float,
+    compensation: str = "closed",
 ) -> str:
     """The first of the reasons that holds near a place [mm], the gravest first.
 
-    stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; miss: of the pass.
+    stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; is_missing: whether
+    paint is missing there, else there is too much; miss: of the pass.
     """
     at = int(np.hypot(line[:, 0] - place_mm[0], line[:, 1] - place_mm[1]).argmin())
     s, half, length = line[at, 2], line[at, 3], line[-1, 2]
@@ -39,7 +47,7 @@ def reason(
         return f"{how}: the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
     if length + 2 * half <= footprint:
         return f"too short for the brush: a dab, whose footprint is {footprint:.2g} mm long"
-    turn_deg = _corner_deg(line, s, max(footprint, 2 * half))
+    turn_deg = _corner_deg(line, s, max(footprint, 2 * half), stroke.closed)
     if turn_deg > CORNER_DEG:
         return f"a corner of {turn_deg:.0f} degrees, sharper than the footprint"
     if not stroke.closed and s < max(brush.tip_to_widest(depth), half):
@@ -55,6 +63,10 @@ def reason(
     rise = np.gradient(line[:, 3], np.maximum.accumulate(line[:, 2] + 1e-9 * np.arange(len(line))))
     if abs(rise[at]) > STEEP:
         return "its width changes faster than a footprint can show"
+    if is_missing and compensation == "refined" and miss.largest_mm > tolerance_mm:
+        return "less is painted there for the sake of the rest of the outline"
+    if is_missing:  # what a footprint covers on a bend is never less than across its middle
+        return f"the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
     return "the footprint is wider on bends than across its middle"
 
 
@@ -75,16 +87,19 @@ def _finest_measured(brush) -> float:
     return brush.half_width(max((law.calibrated_mm[0] for law in laws if law.calibrated_mm), default=0.0))
 
 
-def _corner_deg(line: np.ndarray, s: float, reach_mm: float) -> float:
-    """The sharpest corner near a place of the line."""
+def _corner_deg(line: np.ndarray, s: float, reach_mm: float, closed: bool) -> float:
+    """The sharpest corner near a place of the line; of a closed one, also that at its seam."""
     steps = np.diff(line[:, :2], axis=0)
     steps = steps[np.hypot(*steps.T) > 0]
     if len(steps) < 2:
         return 0.0
-    turns = np.abs(_turns(steps))
+    turns, length = np.abs(_turns(steps)), line[-1, 2]
     at = np.unique(line[:, 2])[1:-1][: len(turns)]
-    near = np.abs(at - s) <= reach_mm
-    return float(np.degrees(turns[: len(at)][near].max(initial=0.0)))
+    away = np.abs(at - s)
+    near = turns[: len(at)][(np.minimum(away, length - away) if closed else away) <= reach_mm]
+    if closed and min(s, length - s) <= reach_mm:
+        near = np.append(near, np.abs(_turns(steps[[-1, 0]])))
+    return float(np.degrees(near.max(initial=0.0)))
 
 
 def _turns(steps: np.ndarray) -> np.ndarray:

@@ -7,12 +7,11 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from . import _core, score
+from . import _core
 from .reasons import reason
 from .uncertainty import Uncertainty
 
 RING_TOLERANCE_MM = 0.01
-LEAST_SQUARE_MM = 0.5  # in which paint and drawing differ most; half a width of a wide stroke
 SMALL_MM2 = 0.005  # that is no difference worth a word
 
 
@@ -90,52 +89,48 @@ def measure(
     if strokes is None:
         rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
         return rows, _in_all(rows, None)
-    rows, wanted = [], []
-    for a_pass, trace, stroke in zip(plan.passes, marks.passes, strokes, strict=True):
-        if stroke is None:
-            rows.append(_bare_figures(a_pass))
-            continue
-        wanted.append(score.meant(stroke))
-        seen = score.view([trace], wanted[-1:], brush)
-        miss = _core.miss_of(a_pass, stroke, brush, tolerance_mm)
-        line = _core.flatten(stroke, RING_TOLERANCE_MM)
-        figures = replace(
-            _bare_figures(a_pass),
-            overlap=score.areas(seen).overlap,
-            centre_mean_mm=miss.mean_mm,
-            centre_largest_mm=miss.largest_mm,
-            width_error_mm=score.width_error(line, seen),
-            widths_out_of_reach=_out_of_reach(stroke, brush),
-            drawn_mm=float(line[-1, 2]),
-            worst=_worst(seen, stroke, line, brush, miss, tolerance_mm, compensation),
-        )
-        rows.append(figures)
-    meant = wanted if drawn is None else list(map(score.meant, drawn))
-    overlap = score.areas_of_sheet(marks.passes, meant, brush).overlap if rows else None
-    return tuple(rows), _in_all(tuple(rows), overlap)
+    known = [
+        (trace, stroke) for trace, stroke in zip(marks.passes, strokes, strict=True) if stroke is not None
+    ]
+    found = iter(_core.verdicts([trace for trace, _ in known], [stroke for _, stroke in known], brush))
+    rows = tuple(
+        _bare_figures(a_pass)
+        if stroke is None
+        else _figures(a_pass, stroke, next(found), brush, tolerance_mm, compensation)
+        for a_pass, stroke in zip(plan.passes, strokes, strict=True)
+    )
+    meant = [stroke for _, stroke in known] if drawn is None else list(drawn)
+    overlap = _core.common_area(marks.passes, meant, brush).overlap if rows else None
+    return rows, _in_all(rows, overlap)
 
 
-def _worst(seen, stroke, line, brush, miss, tolerance_mm: float, compensation: str) -> Worst | None:
-    size_mm = max(LEAST_SQUARE_MM, float(np.median(line[:, 3])))
-    place_mm, is_missing, area_mm2 = score.worst_place(seen, size_mm)
-    if area_mm2 < SMALL_MM2:
-        return None
-    why = reason(stroke, line, brush, place_mm, miss, tolerance_mm, compensation)
-    return Worst(place_mm, is_missing, area_mm2, why)
+def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: str) -> Figures:
+    miss = _core.miss_of(a_pass, stroke, brush, tolerance_mm)
+    line = _core.flatten(stroke, RING_TOLERANCE_MM)
+    worst, place = None, verdict.worst
+    if place.area_mm2 >= SMALL_MM2:
+        why = reason(stroke, line, brush, place.at_mm, place.is_missing, miss, tolerance_mm, compensation)
+        worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why)
+    return replace(
+        _bare_figures(a_pass),
+        overlap=verdict.overlap,
+        centre_mean_mm=miss.mean_mm,
+        centre_largest_mm=miss.largest_mm,
+        width_error_mm=verdict.width_error_mm,
+        widths_out_of_reach=_out_of_reach(stroke, brush),
+        drawn_mm=float(line[-1, 2]),
+        worst=worst,
+    )
 
 
 def groups(marks, brush, strokes) -> tuple[Group, ...]:
     """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
-    known = [
-        (trace, score.meant(stroke))
-        for trace, stroke in zip(marks.passes, strokes or (), strict=bool(strokes))
-        if stroke is not None
-    ]
+    known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
     found = []
-    for members in score.touching([wanted for _, wanted in known]):
-        traces, wanted = [known[k][0] for k in members], [known[k][1] for k in members]
-        overlap = score.areas_of_sheet(traces, wanted, brush).overlap
-        found.append(Group(tuple(each.stroke.id for each in wanted), overlap))
+    for members in _core.touching([stroke for _, stroke in known]):
+        traces, wanted = zip(*(known[k] for k in members), strict=True)
+        overlap = _core.common_area(traces, wanted, brush).overlap
+        found.append(Group(tuple(stroke.id for stroke in wanted), overlap))
     return tuple(found)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import _core, score
+from . import _core
 from .errors import Error
 from .reach import within_reach
 
@@ -75,12 +75,11 @@ def _overlap_at(factor: float, strokes, brush, tolerance_mm: float) -> float:
         try:
             painted, wanted, _ = within_reach([scaled(stroke, factor)], brush)
             plan = _core.compensate(painted, brush, (1.0, 1.0), "closed", tolerance_mm).plan
-            seen = score.view(_core.simulate(plan, brush).passes, list(map(score.meant, wanted)), brush)
+            found = _core.common_area(_core.simulate(plan, brush).passes, wanted, brush)
         except Error:  # not to be painted at this size: all of it is missing
-            seen = score.view([], [score.meant(scaled(stroke, factor))], brush)
-        found = score.areas(seen)
-        common += found.common
-        together += found.together
+            found = _core.common_area([], [scaled(stroke, factor)], brush)
+        common += found.common_mm2
+        together += found.together_mm2
     return common / together if together > 0 else 1.0
 
 

@@ -161,7 +161,7 @@ def _both_sides(plan, brush, step: np.ndarray):
     """Marks with the lag a step up and a step down, and how much of the step was gone: r stays above 0."""
     depths = np.linspace(*brush.depth_range_mm, 101)
     change = np.abs(np.polynomial.polynomial.polyval(depths, step))
-    lag = np.array([brush.lag(depth) for depth in depths])
+    lag = brush.lag(depths)
     part = min(1.0, 0.5 * float(np.min(lag / np.maximum(change, 1e-300))))
     return *(_core.simulate(plan, with_lag(brush, sign * part * step)) for sign in (1, -1)), part
 
@@ -181,7 +181,7 @@ def with_lag(brush, change: np.ndarray):
 def _effects(brush, trace, parts, lag_runs, mixing) -> _Effects:
     depth = np.asarray(trace.depth_mm)
     contact, along = np.asarray(trace.contact_mm), _unit(np.asarray(trace.heading_rad))
-    gap, widest, half = (np.array([getattr(brush, law)(d) for d in depth]) for law in LAWS[1:])
+    gap, widest, half = (getattr(brush, law)(depth) for law in LAWS[1:])
     d_contact = np.zeros((len(depth), 2, len(lag_runs)))
     d_along = np.zeros_like(d_contact)
     for k, (up, down, part) in enumerate(lag_runs):

@@ -189,6 +189,14 @@ TEST_CASE("a brush whose lag grows as fast as its depth is pressed before it run
     CHECK((m.contact_mm.row(first) - m.contact_mm.row(0)).norm() < 1e-9);  // rested during the landing
 }
 
+TEST_CASE("a straight line takes a landing, one move and a lift without a move of its own for coming inside") {
+    const Brush brush = shipped("round-6");
+    const Poses poses = compensate(stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 1.5}}), brush).pass.poses_mm;
+    CHECK(poses.rows() <= 6);
+    CHECK(poses(3, 2) > poses(2, 2));  // lifted from the last pose at full depth on
+    CHECK(poses(3, 0) < poses(2, 0));
+}
+
 TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest during landing and lift") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(11);

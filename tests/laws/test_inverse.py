@@ -359,8 +359,7 @@ def test_ends_of_the_mark(half_width, seed):
     (start, end), (first, last) = painted.middle.at([0, painted.middle.length])
     near = np.array_split(np.arange(len(painted.rows.pose)), 2)
     halves = [
-        rows[np.hypot(*(painted.widest[rows] - p).T) < 12][::2]
-        for rows, p in zip(near, (start, end), strict=True)
+        rows[np.hypot(*(painted.widest[rows] - p).T) < 12] for rows, p in zip(near, (start, end), strict=True)
     ]
     assert reach(painted, end, last, halves[1]) <= half_width + 2e-3
     assert reach(painted, start, -first, halves[0]) <= half_width + 2e-3

@@ -5,6 +5,7 @@ import pytest
 
 from brushsvg import _core, compensate, find_brush, flatten, report, simulate
 from brushsvg.reach import within_reach
+from brushsvg.reasons import _corner_deg
 
 
 def stroke(points, half, closed=False, wanted=None):
@@ -42,6 +43,12 @@ def found(wanted, how="closed"):
         (stroke([(20, 40), (70, 40)], 0.3), "thinner than the finest line that was measured", None),
         (stroke([(20, 40), (60, 40), (25, 50)], 1.5), "a corner of 164 degrees", (60, 40)),
         (stroke(arc(4.0, 1.0, 60), 3.9, True), "turns tighter than", None),
+        (
+            stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True),
+            "a corner of 90 degrees",
+            None,
+        ),
+        (stroke(arc(20.0, 1.0, 200), 1.5, True), "the mark's middle is up to 0.0", None),
         (stroke([(20, 40), (70, 40)], 2.0), "it begins there", (19, 40)),
         (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "it ends there", None),
     ],
@@ -56,6 +63,15 @@ def test_the_reason_is_told(wanted, says, near):
 def test_without_compensation_the_lag_is_the_reason():
     wanted = stroke([(20, 40), (60, 40), (60, 80)], 1.5)
     assert "nothing makes up for the lag" in found(wanted, "none").reason
+
+
+def test_a_closed_line_has_a_corner_at_its_seam_too():
+    """The worst place of a square lay where it begins, and bends were blamed."""
+    square = flatten(stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True), 0.01)
+    for s in (0.0, 1.0, 159.0, 160.0):
+        assert _corner_deg(square, s, 3.0, True) == pytest.approx(90)
+        assert _corner_deg(square, s, 3.0, False) == 0.0
+    assert _corner_deg(square, 20.0, 3.0, True) == 0.0
 
 
 def test_a_flattened_dab_has_no_corner():

@@ -13,6 +13,7 @@
 #include "brushsvg/marks.hpp"
 #include "brushsvg/medial_axis.hpp"
 #include "brushsvg/miss.hpp"
+#include "brushsvg/overlay.hpp"
 #include "brushsvg/plan.hpp"
 #include "brushsvg/profile.hpp"
 #include "brushsvg/region.hpp"
@@ -20,4 +21,5 @@
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/thin_out.hpp"
+#include "brushsvg/verdict.hpp"
 #include "brushsvg/wanted.hpp"

@@ -1,0 +1,55 @@
+"""Pixels laid over each other, against shapes whose answer is known."""
+
+import numpy as np
+import pytest
+
+from brushsvg import Stroke, _core, compensate, find_brush, simulate, trace_outlines
+
+
+def box(x0, y0, x1, y1):
+    return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)
+
+
+def straight(name, a, b, half):
+    a, b = np.array(a, float), np.array(b, float)
+    return Stroke(
+        name,
+        np.concatenate([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b])[None],
+        half_width=[(0, half), (1, half)],
+    )
+
+
+def test_who_touches_whom():
+    strokes = [
+        straight("a", (0, 0), (20, 0), 1.0),
+        straight("b", (10, 5), (10, 1.9), 1.0),
+        straight("near", (0, 2.3), (5, 2.3), 0.99),  # its box meets that of a, 0.3 mm are between them
+        straight("c", (10, 6), (30, 30), 1.0),
+        straight("diagonal", (28, 8), (40, 20), 1.0),  # within the box of c
+    ]
+    assert _core.touching(strokes) == [[0, 1, 3]]
+    halves = [straight("left", (0, 40), (5, 40), 1), straight("right", (9, 40), (15, 40), 1)]
+    assert _core.touching(halves) == []
+    halves[0].wanted_mm, halves[1].wanted_mm = (
+        [box(0, 38, 7, 42)],
+        [box(7, 38, 15, 42)],
+    )  # shares of one letter
+    assert _core.touching(halves) == [[0, 1]]
+
+
+def test_pixels_agree_with_rings():
+    """On a drawing that needs tiles as well as on one that does not."""
+    brush = find_brush("round-6")
+    rng = np.random.default_rng(3)
+    strokes = [
+        straight(f"s{k}", rng.uniform(20, 580, 2), rng.uniform(20, 580, 2), float(half))
+        for k, half in enumerate(rng.uniform(0.3, 4.0, 12))
+    ]
+    marks = simulate(compensate(strokes, brush, (600, 600)).plan, brush)
+    trace_outlines(marks, brush)
+    for some in (slice(0, 1), slice(0, 12)):
+        painted = _core.unite([ring for trace in marks.passes[some] for ring in trace.outline_mm])
+        wanted = _core.unite([ring for s in strokes[some] for ring in _core.wanted_outline(s, 0.01)])
+        found = _core.common_area(marks.passes[some], strokes[some], brush)
+        assert found.overlap == pytest.approx(_core.overlap(painted, wanted), abs=1e-3)
+        assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *wanted])), rel=1e-3)
