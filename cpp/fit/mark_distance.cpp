@@ -7,7 +7,7 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kNearMm = 0.5;   // a way out that is shorter than a brush's hairs are wide is not improved on
+constexpr double kNearMm = 0.5;   // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
 constexpr double kGrazing = 0.3;  // cosine below which an edge that is met aslant says nothing more exact
 
 /// The predicted edge beside one point of a painted one.
@@ -51,7 +51,7 @@ Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
     const NearestEdge edge = nearest_edge(last.drop, at.x(), at.y());
     const Eigen::Vector2d swept = swept_normal(footprints, row, edge).normalized();
     const double aslant = std::max(kGrazing, swept.dot(out));
-    far += footprints.nearer_between(x + far * out, row, 0.0) / aslant;
+    if (far < kNearMm) far += footprints.nearer_between(x + far * out, row, 0.0) / aslant;
     return {edge, row, -far, swept, aslant};
 }
 
@@ -82,7 +82,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
             const Eigen::Vector2d swept = swept_normal(footprints, row, nearest);
             beside.normal = swept.normalized();
             beside.distance_mm *= swept.norm();
-            beside.distance_mm -= footprints.nearer_between(x, row, nearest.distance);
+            if (nearest.distance < kNearMm) beside.distance_mm -= footprints.nearer_between(x, row, nearest.distance);
         }
         row = beside.row;
         distance_mm[k] = beside.distance_mm;
