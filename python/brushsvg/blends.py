@@ -81,9 +81,10 @@ def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray
     return radii
 
 
-def on_the_spot(steps_mm: np.ndarray) -> np.ndarray:
-    """(n,) which steps (n, 3) go straight up or down."""
-    return (np.abs(steps_mm[:, :2]).max(axis=1, initial=0.0) < ON_THE_SPOT_MM) & (steps_mm[:, 2] != 0)
+def on_the_spot(steps_mm: np.ndarray, sideways_mm: float = ON_THE_SPOT_MM) -> np.ndarray:
+    """(n,) which steps (n, 3) go straight up or down: less than so far sideways."""
+    sideways = np.abs(steps_mm[:, :2]).max(axis=1, initial=0.0)
+    return (sideways < sideways_mm) & (np.abs(steps_mm[:, 2]) > ON_THE_SPOT_MM)
 
 
 def blended(poses_mm: np.ndarray, radii_mm: np.ndarray, arcs=()) -> tuple[np.ndarray, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _core
 from .blends import blend_radii, blended
-from .cell import Cell
+from .cell import Cell, robot_from_paper
 from .cell_file import find_cell
 from .errors import Error
 from .files import write_files
@@ -21,6 +21,7 @@ from .paint import in_loads, painted_mm, visits
 from .posts import POSTS, Post
 from .program import WHOLE_JOB, Job, program, unchecked_program
 from .report import clock
+from .written import as_written
 
 DEFAULT_TOLERANCE_MM = 0.05
 
@@ -84,8 +85,9 @@ def shifted_by_blends(plan, brush, cell: Cell, tolerance_mm: float) -> list[tupl
     # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
     rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
+    told = [_with_circles_that_are_told(a_pass, cell) for a_pass in plan.passes]
     for first, last in _groups(plan.passes):
-        runs = as_run(plan.passes[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
+        runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
         pairs = zip(plan.passes[first:last], runs, strict=True)
         cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
         both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
@@ -105,6 +107,13 @@ def shifted_by_blends(plan, brush, cell: Cell, tolerance_mm: float) -> list[tupl
 
 ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
 POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
+
+
+def _with_circles_that_are_told(a_pass, cell: Cell):
+    if not a_pass.arcs:
+        return a_pass
+    arcs = as_written(a_pass, cell, robot_from_paper(cell)).arcs
+    return _core.Pass(a_pass.stroke, a_pass.poses_mm, a_pass.speed_mm_s, arcs=arcs)
 
 
 def _groups(passes) -> Iterator[tuple[int, int]]:

@@ -104,6 +104,11 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
     return replace(step, points_mm=moved(frame, step.points_mm), arc=arc)
 
 
+def via(points_mm: np.ndarray) -> np.ndarray:
+    """Of the points of a circle that follow its first one, the one that tells how it goes."""
+    return points_mm[(len(points_mm) - 1) // 2]
+
+
 def duration_s(program: Program) -> float:
     """Time for the whole program: each move starts and ends at rest, with the cell's acceleration."""
     total_s, here = 0.0, None

@@ -12,6 +12,7 @@ from .cell import Cell, Station, robot_from_paper
 from .errors import Error
 from .limits import broken_limits
 from .moves import Arc, Move, Program, Section, Wait, rise_over
+from .written import Written, as_written
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
@@ -46,6 +47,8 @@ def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WH
 def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
     """The same for who only asks how long it takes or wants to see it: limits are not looked at."""
 
+    frame = robot_from_paper(cell, job.z_offset_mm)
+
     def sections() -> Iterator[Section]:
         count = len(plan.passes)
         for number, a_pass in enumerate(plan.passes, 1):
@@ -53,9 +56,9 @@ def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job
                 continue
             visits = job.visits[number - 1] if job.visits else ()
             yield from (visit(station, brush, cell) for station in visits)
-            yield Section(f"stroke {number} of {count}: {a_pass.stroke}", _moves(a_pass, brush, cell))
+            moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
+            yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
 
-    frame = robot_from_paper(cell, job.z_offset_mm)
     return Program(header, cell, frame, sections, cell.heights.safe_mm, rise_over(cell, plan.sheet_mm, frame))
 
 
@@ -92,7 +95,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
     return Section(f"paint: {station.name}", tuple(steps))
 
 
-def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
+def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if len(poses) == 0:
         return ()
@@ -104,24 +107,26 @@ def _moves(a_pass, brush, cell: Cell) -> tuple[Move, ...]:
         Move("travel", over(start, heights.safe_mm), speeds.travel_mm_s),
         Move("approach", over(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
-        *_painting(poses, a_pass.arcs, a_pass.speed_mm_s, press_mm_s, cell),
+        *_painting(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
         Move("lift", over(end, heights.clearance_mm), press_mm_s),
         Move("retract", over(end, heights.safe_mm), speeds.travel_mm_s),
     )
 
 
-def _painting(poses: np.ndarray, arcs, paint_mm_s: float, press_mm_s: float, cell: Cell) -> Iterator[Move]:
+def _painting(
+    poses: np.ndarray, written: Written, paint_mm_s: float, press_mm_s: float, cell: Cell
+) -> Iterator[Move]:
     """From the first pose on, straight up and down as slowly as a landing, along arcs where the plan has them."""
-    steps = np.diff(poses, axis=0)
+    arcs, steps = written.arcs, np.diff(written.poses_mm, axis=0)
     kinds = np.full(len(steps), PLAIN)
-    kinds[on_the_spot(steps)] = ON_THE_SPOT
+    kinds[on_the_spot(steps, written.sideways_mm)] = ON_THE_SPOT
     for number, arc in enumerate(arcs):
         kinds[arc.first : arc.last] = number
     new_run = np.diff(kinds) != 0
     radii = None
     if cell.blending.radius_mm:
-        radii = blend_radii(poses, cell.blending, arcs)
-        new_run |= turns_rad(poses, arcs)[1:-1] > SHARP_RAD
+        radii = blend_radii(written.poses_mm, cell.blending, arcs)
+        new_run |= turns_rad(written.poses_mm, arcs)[1:-1] > SHARP_RAD
     for run in np.split(np.arange(len(steps)), np.flatnonzero(new_run) + 1):
         if not len(run):
             continue

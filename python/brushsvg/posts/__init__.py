@@ -13,12 +13,14 @@ class Post(NamedTuple):
     """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
 
     in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
+    circles_by_pose: a circle is told by a pose on its way; else by its centre.
     """
 
     title: str
     extensions: tuple[str, ...]
     write: Callable[[Program], Iterator[str]]
     in_robot_frame: bool = True
+    circles_by_pose: bool = False
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -50,5 +52,5 @@ POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
     "grbl": Post("G-code for grbl", GCODE, _grbl),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo),
-    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, in_robot_frame=False),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, True),
 }

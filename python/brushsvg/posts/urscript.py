@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frame import frame_of_pose, rotation, rotation_vector
-from ..moves import Move, Program, Wait
+from ..moves import Move, Program, Wait, via
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -57,9 +57,8 @@ def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int)
 def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
     speed = number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
-    if move.arc is not None and len(move.points_mm) > 1:
-        via, end = move.points_mm[(len(move.points_mm) - 1) // 2], move.points_mm[-1]
-        values = np.array([[*via, *end]]) * M
+    if move.arc is not None:
+        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]]) * M
         yield from rows(
             f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
         )

@@ -1,0 +1,131 @@
+"""What of a pass is left in a program's text, and that nobody who reads one back decides otherwise than its writer."""
+
+import random
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from programs import LANGUAGES, call
+
+from brushsvg import _core, checking, rewriting
+from brushsvg.brushes import find_brush
+from brushsvg.cell import Paper, robot_from_paper
+from brushsvg.cell_file import find_cell, write_cell
+from brushsvg.machine import text_of
+from brushsvg.posts import POSTS
+from brushsvg.program import unchecked_program
+from brushsvg.readback import read_program
+from brushsvg.written import as_written
+
+BRUSH = find_brush("round-6")
+SHEET_MM = (100.0, 80.0)
+DOWN, UP = (20.0, 20.0, 0.0), (60.0, 50.0, 0.0)
+
+
+def arc(centre_mm, radius_mm, first, last, count, z=-2.0):
+    angles = np.radians(np.linspace(first, last, count))
+    x, y = centre_mm
+    return [(x + radius_mm * np.cos(a), y + radius_mm * np.sin(a), z) for a in angles]
+
+
+def cell_of(name, decimals, **changes):
+    return replace(find_cell(name), decimals=decimals, **changes)
+
+
+def found_by_check(poses, arcs, cell):
+    """The text of one stroke, and what check says of its lines."""
+    a_pass = _core.Pass("one", np.array(poses), 20.0, arcs=arcs)
+    made = unchecked_program(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass]), BRUSH, cell)
+    text = "".join(text_of(POSTS[cell.language], made))
+    ran = checking.run(read_program(text, LANGUAGES[cell.name], cell), BRUSH, cell, SHEET_MM)
+    return text, rewriting.differing_line(text, rewriting.again(ran, BRUSH, cell, 0.0), cell)
+
+
+# a chord of 0.7 mm on a circle of 14 mm between lines, as a turn that fills a corner ends
+ONE_CHORD = [DOWN, (30, 20, -2), (45, 22, -2), *arc((50, 40), 14, -70, -67.2, 2), (60, 40, -2), UP]
+# on a circle of 400 m: at any number of decimals that one writes, its places lie on one line
+FLAT = [DOWN, (30, 20, -2), *arc((40, 4e5 + 20), 4e5, -89.9993, -89.9985, 3), (60, 40, -2), UP]
+# smaller than what is written: rounded, it may run round the other way
+SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2), UP]
+
+
+@pytest.mark.parametrize("decimals", [3, 4, 6])
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e"])
+@pytest.mark.parametrize(
+    ("poses", "ends", "centre_mm"),
+    [(ONE_CHORD, (3, 4), (50, 40)), (FLAT, (2, 4), (40, 4e5 + 20)), (SMALL, (2, 5), (50, 40))],
+)
+def test_a_circle_that_cannot_be_told_is_run_along_its_chords(name, decimals, poses, ends, centre_mm):
+    circle = _core.Arc(*ends, centre_mm, 1)
+    text, said = found_by_check(poses, [circle], cell_of(name, decimals))
+    assert said is None
+    if name == "ur5e":
+        assert "movec" not in text
+
+
+def test_a_circle_that_can_be_told_is_one():
+    poses = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70, -40, 4), (60, 40, -2), UP]
+    text, said = found_by_check(poses, [_core.Arc(2, 5, (50, 40), 1)], cell_of("ur5e", 4))
+    assert said is None and text.count("movec") == 1
+    text, said = found_by_check(ONE_CHORD, [_core.Arc(3, 4, (50, 40), 1)], cell_of("linuxcnc-3axis", 4))
+    assert said is None and text.count("G3") == 1
+
+
+@pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4, 2e-3])
+@pytest.mark.parametrize("rotation_deg", [(0, 0, 0), (0, 0, 12.3), (1.1, -2.3, 12.3)])
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e"])
+def test_what_goes_up_almost_straight_is_as_fast_as_what_is_written(name, rotation_deg, sideways_mm):
+    cell = cell_of(name, 3, paper=Paper((0.0, -400.0, 20.0), rotation_deg))
+    poses = [DOWN, (20 + sideways_mm, 20, -2), (40, 25, -2), (40 + sideways_mm, 25, -1), (60, 50, -1), UP]
+    assert found_by_check(poses, [], cell)[1] is None
+
+
+@pytest.mark.parametrize("turn_deg", np.linspace(99.99, 100.01, 9))
+def test_a_robot_stops_where_the_corner_that_is_written_is_sharp(turn_deg):
+    angle = np.radians(turn_deg)
+    poses = [DOWN, (30, 20, -2), (40, 20, -2), (40 + np.cos(angle), 20 + np.sin(angle), -2), (50, 50, -2), UP]
+    assert found_by_check(poses, [], cell_of("ur5e", 3))[1] is None
+
+
+def test_places_are_those_of_the_text_in_the_frame_that_it_has():
+    a_pass = SimpleNamespace(poses_mm=[(1.23456, 2.0, 0.0), (1.2349, 2.0, -1.0)], arcs=[])
+    upright = as_written(a_pass, cell_of("linuxcnc-3axis", 3), np.eye(4))
+    assert upright.poses_mm[:, 0].tolist() == [1.235, 1.235]
+    cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (2.0, 1.0, 30.0)))
+    leaning = as_written(a_pass, cell, robot_from_paper(cell))
+    assert leaning.poses_mm == pytest.approx(np.array(a_pass.poses_mm), abs=1e-3)
+    assert leaning.sideways_mm > upright.sideways_mm
+
+
+def drawing(chance: random.Random) -> str:
+    def place():
+        return f"{chance.uniform(30, 70):.3f},{chance.uniform(30, 70):.3f}"
+
+    size, tall = chance.uniform(6, 40), chance.uniform(6, 30)
+    filled, line = 'fill="black"', f'stroke="black" fill="none" stroke-width="{chance.uniform(1, 7):.2f}"'
+    shapes = [
+        f'<rect {filled} x="{chance.uniform(20, 40)}" y="30" width="{size}" height="{tall}"/>',
+        f'<path {filled} d="M25,25h{size + 8}v8h-{size}v8h{size / 2}v8h-{size / 2}v10h-8z"/>',
+        f'<circle {line} cx="50" cy="50" r="{size / 2}"/>',
+        f'<path {line} d="M{place()}C{place()} {place()} {place()}S{place()} {place()}"/>',
+        f'<path {line} d="M{place()}L{place()}L{place()}L{place()}"/>',
+        f'<path {line} stroke-linecap="round" d="M{place()}h{chance.choice([0, 0.01, 0.5])}"/>',
+    ]
+    turn = f"rotate({chance.choice([0, chance.uniform(0, 360)]):.3f} 50 50)"
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
+    return f'{head}<g transform="{turn}">{chance.choice(shapes)}{chance.choice(shapes)}</g></svg>'
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_check_allows_whatever_convert_writes(seed, tmp_path, capsys):
+    chance = random.Random(seed)
+    name = chance.choice(["linuxcnc-3axis", "grbl-3axis", "ur5e"])
+    cell, source, program = tmp_path / "c.toml", tmp_path / "a.svg", tmp_path / f"a{LANGUAGES[name]}"
+    cell.write_text(write_cell(cell_of(name, chance.randrange(3, 7))), encoding="utf-8")
+    source.write_text(drawing(chance), encoding="ascii")
+    words = ("--wide", "passes", "--cell", str(cell))
+    status, _, told = call(capsys, "convert", str(source), str(program), *words)
+    assert status == 0, told
+    status, _, told = call(capsys, "check", str(program), str(source), *words)
+    assert status == 0, told
