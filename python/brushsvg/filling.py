@@ -97,13 +97,24 @@ def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
     for element in dict.fromkeys(_element(strokes[k].id) for k in wider):
         numbers = elements[element]
         shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
-        starts = shapely.points([strokes[k].middle_mm[0, :2] for k in numbers])
-        homes = shapely.STRtree(shapes).nearest(starts) if len(shapes) > 1 else [0] * len(numbers)
         members: list[list[int]] = [[] for _ in shapes]
-        for k, home in zip(numbers, homes, strict=True):
+        for k, home in zip(numbers, _homes(shapes, [strokes[k] for k in numbers]), strict=True):
             members[home].append(k)
-        found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
+        if all(members):  # else a stroke paints in two of them
+            found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
     return found
+
+
+def _homes(shapes, strokes: list) -> list[int]:
+    """For each stroke the shape that has most of its part: shapes may meet where strokes begin."""
+    if len(shapes) == 1:
+        return [0] * len(strokes)
+    tree, homes = shapely.STRtree(shapes), []
+    for stroke in strokes:
+        part = region(_core.unite(stroke.wanted_mm))
+        near = tree.query(part)
+        homes.append(int(near[np.argmax(shapely.area(shapely.intersection(shapes[near], part)))]))
+    return homes
 
 
 def _element(name: str) -> tuple[str, str]:

@@ -71,20 +71,18 @@ def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[
     chains = ordered(joined(found.pieces, found))
     if len(chains) == 1:
         return [_stroke(chains[0], area)]
-    return [_stroke(chain, _part(chain, found)) for chain in chains]
+    return [_stroke(chain, _part(chain, found, area)) for chain in chains]
 
 
-def _part(chain, found: Skeleton) -> list[np.ndarray]:
+def _part(chain, found: Skeleton, area: list[np.ndarray]) -> list[np.ndarray]:
     """What lies nearest to a chain's branches, and what it paints inside of crossings."""
-    rings = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
-    for piece in chain:
-        for line in piece.inside:
-            rings.append(
-                _core.convex_hull(
-                    np.vstack([line[0, :2] + line[0, 2] * _ROUND, line[-1, :2] + line[-1, 2] * _ROUND])
-                )
-            )
-    return _core.unite(rings)
+    nearest = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
+    across = [
+        _core.convex_hull(np.vstack([line[0, :2] + line[0, 2] * _ROUND, line[-1, :2] + line[-1, 2] * _ROUND]))
+        for piece in chain
+        for line in piece.inside
+    ]
+    return _core.unite([*nearest, *_core.intersect(_core.unite(across), area)])
 
 
 def _stroke(chain, wanted_mm) -> OutlineStroke:
