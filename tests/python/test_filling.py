@@ -80,6 +80,13 @@ def test_a_disc_hardly_wider_than_the_brush_is_no_ring_to_turn_round_in(brush):
     assert not any(each.closed for each in passes)
 
 
+def test_the_first_pass_is_asked_for_its_own_discs_and_not_for_the_whole_shape(brush):
+    passes, wanted, _ = within_reach(of(SQUARE), brush, "passes")
+    own = painted(passes[:1]).area
+    assert _core.area(wanted[0].wanted_mm) == pytest.approx(own, rel=0.02)
+    assert own < 0.7 * 45 * 45
+
+
 def test_the_outermost_ring_comes_first_and_corners_are_entered_from_their_points(brush):
     passes, _, _ = within_reach(of(SQUARE), brush, "passes")
     rings, corners = [s for s in passes if s.closed], [s for s in passes if s.half_width[0][1] < 1]
