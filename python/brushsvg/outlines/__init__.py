@@ -25,6 +25,9 @@ SMOOTHED = 0.03
 # of 60 degrees 0.69, of 45 degrees 1.24: those are ends of strokes, not strokes.
 LEAST_SHARE = 0.8
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
+MOST_CUT = (
+    100_000  # points of a shape times what lies across crossings of a stroke: letters have some thousands
+)
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
 _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
@@ -82,7 +85,9 @@ def _part(chain, found: Skeleton, area: list[np.ndarray]) -> list[np.ndarray]:
         for piece in chain
         for line in piece.inside
     ]
-    return _core.unite([*nearest, *_core.intersect(_core.unite(across), area)])
+    if across and len(across) * sum(map(len, area)) < MOST_CUT:
+        across = _core.intersect(_core.unite(across), area)
+    return _core.unite([*nearest, *across])
 
 
 def _stroke(chain, wanted_mm) -> OutlineStroke:
