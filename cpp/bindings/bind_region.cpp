@@ -16,6 +16,8 @@ void bind_region(py::module_& m) {
         },
         py::arg("outlines"), py::arg("rule") = "nonzero", unlocked,
         "Rings of the shape that closed outlines fill; they may cross and turn either way.");
+    m.def("intersect", &intersect, py::arg("rings_a"), py::arg("rings_b"), unlocked,
+          "What two shapes have in common, each given as for unite.");
     m.def("convex_hull", &convex_hull, py::arg("points"), "Convex hull of points (n, 2), counter-clockwise.");
     m.def("clearance", &clearance, py::arg("rings"), py::arg("points"), unlocked,
           "Distance [mm] of points (n, 2) from the outline, on whichever side of it.");

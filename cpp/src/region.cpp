@@ -240,6 +240,14 @@ Rings fill(const Rings& outlines, FillRule rule) {
     return to_rings(filled);
 }
 
+Rings intersect(const Rings& a, const Rings& b) {
+    using namespace bp::operators;
+    const Set first = to_set(a), second = to_set(b);
+    Set both;
+    both = first & second;
+    return to_rings(both);
+}
+
 double area(const Rings& rings) {
     double sum = 0.0;
     for (const Ring& ring : rings) sum += signed_area(ring);

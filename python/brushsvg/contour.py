@@ -29,6 +29,7 @@ _EVEN = 0.25  # between places on a line, in half widths
 # What a line is longer than what it has to paint at either end, in half widths: a mark begins pointed, and one shorter
 # than a footprint lies behind its line.
 _LANDING = 1.5
+_TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 # Half width won per length, 0.71 in a right-angled corner: beyond, a longer line would press the brush so fast that its
 # tip runs back out of the corner.
 _BLUNT = 0.6
@@ -94,7 +95,12 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
         lengthened = [_lengthened(rows, shape, edge, half) for rows in candidates]
         found, left = _fill(left, lengthened, least, half)
         lines += found
-    return lines
+    alone = len(lines) == 1 and lines[0].closed
+    return [] if alone and _length_mm(lines[0]) < _TURNED_IN * half else lines
+
+
+def _length_mm(line: Line) -> float:
+    return _core.flatten(_core.Stroke(middle_mm=line.middle_mm, half_width=line.half_width), 0.02)[-1, 2]
 
 
 def _close_pairs(shape, half: float) -> float:

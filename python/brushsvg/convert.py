@@ -17,6 +17,7 @@ from .cell import Cell
 from .design import Notice
 from .errors import Error
 from .files import read_bytes
+from .letters import no_letter_worse
 from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
 from .paint import in_loads as in_loads_of
 from .paint import is_later_part
@@ -83,12 +84,12 @@ def prepare(
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
 
-    def compensated(some):
+    def compensated(some, compensation=options.compensation):
         return _core.compensate(
             some,
             brush,
             design.sheet_mm,
-            options.compensation,
+            compensation,
             options.tolerance_mm,
             options.lag_mm,
             options.speed_mm_s,
@@ -104,17 +105,20 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
-    plan = _with_speeds(done.plan, strokes)
+    plan, misses = done.plan, done.misses
+    if options.compensation == "refined":
+        plan.passes, misses = no_letter_worse(done, compensated(painted, "closed"), strokes, brush)
+    plan = _with_speeds(plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
     notices += _other_brushes(strokes, brush)
     if options.compensation == "closed":
-        notices += _misses(strokes, done.misses, options.tolerance_mm)
+        notices += _misses(strokes, misses, options.tolerance_mm)
     return Work(
         design.title,
         brush,
         plan,
         strokes,
-        tuple(done.misses),
+        tuple(misses),
         options,
         tuple(notices),
         tuple(refused),

@@ -11,7 +11,7 @@ import shapely
 
 from . import _core
 from .beside import Line, clamped, passes_beside
-from .contour import contour_passes, region, unpainted
+from .contour import contour_passes, painted, region, unpainted
 
 # More of the shape covered along its outline is worth the direction of writing, which middle lines have.
 _BETTER = 0.01
@@ -64,8 +64,20 @@ def _filling(shape, wide: dict[int, object], narrow: list, least: float, greates
     first, *others = wide
     part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
     passes = {first: lines, **{k: [] for k in others}}
-    along_outline = _tried(shape, passes, {first: (lines[0], part)}, narrow)
+    along_outline = _tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow)
     return along_outline if _is_better(along_outline, along_middles) else along_middles
+
+
+def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
+    """What the first of the lines is meant to paint of a part: its own discs, and what those of all lines leave."""
+    whole = region(part)
+    share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
+    polygons = [
+        one for one in shapely.get_parts(shapely.orient_polygons(share)) if one.geom_type == "Polygon"
+    ]
+    return _core.unite(
+        [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
+    )
 
 
 def _is_better(one: Filling, other: Filling) -> bool:
@@ -97,13 +109,24 @@ def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
     for element in dict.fromkeys(_element(strokes[k].id) for k in wider):
         numbers = elements[element]
         shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
-        starts = shapely.points([strokes[k].middle_mm[0, :2] for k in numbers])
-        homes = shapely.STRtree(shapes).nearest(starts) if len(shapes) > 1 else [0] * len(numbers)
         members: list[list[int]] = [[] for _ in shapes]
-        for k, home in zip(numbers, homes, strict=True):
+        for k, home in zip(numbers, _homes(shapes, [strokes[k] for k in numbers]), strict=True):
             members[home].append(k)
-        found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
+        if all(members):  # else a stroke paints in two of them
+            found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
     return found
+
+
+def _homes(shapes, strokes: list) -> list[int]:
+    """For each stroke the shape that has most of its part: shapes may meet where strokes begin."""
+    if len(shapes) == 1:
+        return [0] * len(strokes)
+    tree, homes = shapely.STRtree(shapes), []
+    for stroke in strokes:
+        part = region(_core.unite(stroke.wanted_mm))
+        near = tree.query(part)
+        homes.append(int(near[np.argmax(shapely.area(shapely.intersection(shapes[near], part)))]))
+    return homes
 
 
 def _element(name: str) -> tuple[str, str]:

@@ -20,6 +20,8 @@ SHAPES = {
     "triangle": "M5 48H55L30 4.7Z",
     "heart": "M40 49C12 26 10 17 10 15A15 13 0 0 1 40 11A15 13 0 0 1 70 15C70 17 68 26 40 49Z",
     "bow-tie": "M10 5L70 45V5L10 45Z",
+    "bow-tie on its side": "M5 4L95 45V4L5 45Z",
+    "plate with a hole": "M5 0H50V45H5ZM17 25a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0Z",
     "star": "M40 0L46.2 17.9L65 18.2L50 29.7L55.5 47.7L40 37L24.5 47.7L30 29.7L15 18.2L33.8 17.9Z",
     "ring": "M40 1A24 24 0 1 1 39.99 1ZM40 15A10 10 0 1 0 40.01 15Z",
     "disc": "M40 1A24 24 0 1 1 39.99 1Z",
@@ -64,6 +66,25 @@ def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     _core.trace_outlines(marks, brush)
     whole = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
     assert _core.overlap(marks.outline_mm, whole) > 0.95
+
+
+def test_holes_belong_to_no_stroke():
+    made = of(SHAPES["plate with a hole"], 'fill="red" fill-rule="evenodd" stroke="none"')
+    assert len(made) > 1
+    part = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
+    assert _core.area(part) == pytest.approx(45 * 45 - np.pi * 4.5**2, rel=1e-3)
+
+
+def test_a_disc_hardly_wider_than_the_brush_is_no_ring_to_turn_round_in(brush):
+    passes, _, _ = within_reach(of("M40 20A5 5 0 1 1 39.99 20Z"), brush, "passes")
+    assert not any(each.closed for each in passes)
+
+
+def test_the_first_pass_is_asked_for_its_own_discs_and_not_for_the_whole_shape(brush):
+    passes, wanted, _ = within_reach(of(SQUARE), brush, "passes")
+    own = painted(passes[:1]).area
+    assert _core.area(wanted[0].wanted_mm) == pytest.approx(own, rel=0.02)
+    assert own < 0.7 * 45 * 45
 
 
 def test_the_outermost_ring_comes_first_and_corners_are_entered_from_their_points(brush):

@@ -8,6 +8,9 @@ namespace brushsvg {
 /// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross.
 Rings unite(const Rings& rings);
 
+/// What two shapes have in common, each given as for unite.
+Rings intersect(const Rings& a, const Rings& b);
+
 /// How often an outline must run round a point for it to be inside.
 enum class FillRule { nonzero, evenodd };
 
