@@ -25,9 +25,7 @@ SMOOTHED = 0.03
 # of 60 degrees 0.69, of 45 degrees 1.24: those are ends of strokes, not strokes.
 LEAST_SHARE = 0.8
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
-MOST_CUT = (
-    100_000  # points of a shape times what lies across crossings of a stroke: letters have some thousands
-)
+MOST_CUT = 200_000  # points of a shape times its strokes: letters have some thousands
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
 _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
@@ -74,18 +72,19 @@ def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[
     chains = ordered(joined(found.pieces, found))
     if len(chains) == 1:
         return [_stroke(chains[0], area)]
-    return [_stroke(chain, _part(chain, found, area)) for chain in chains]
+    cuts = len(chains) * sum(map(len, area)) < MOST_CUT
+    return [_stroke(chain, _part(chain, found, area if cuts else None)) for chain in chains]
 
 
-def _part(chain, found: Skeleton, area: list[np.ndarray]) -> list[np.ndarray]:
-    """What lies nearest to a chain's branches, and what it paints inside of crossings."""
+def _part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
+    """What lies nearest to a chain's branches, and what it paints inside of crossings, cut to the area."""
     nearest = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
     across = [
         _core.convex_hull(np.vstack([line[0, :2] + line[0, 2] * _ROUND, line[-1, :2] + line[-1, 2] * _ROUND]))
         for piece in chain
         for line in piece.inside
     ]
-    if across and len(across) * sum(map(len, area)) < MOST_CUT:
+    if across and area:
         across = _core.intersect(_core.unite(across), area)
     return _core.unite([*nearest, *across])
 
