@@ -75,6 +75,11 @@ def test_holes_belong_to_no_stroke():
     assert _core.area(part) == pytest.approx(45 * 45 - np.pi * 4.5**2, rel=1e-3)
 
 
+def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
+    monkeypatch.setattr("brushsvg.outlines.MOST_CUT", 0)
+    test_holes_belong_to_no_stroke()
+
+
 def test_a_disc_hardly_wider_than_the_brush_is_no_ring_to_turn_round_in(brush):
     passes, _, _ = within_reach(of("M40 20A5 5 0 1 1 39.99 20Z"), brush, "passes")
     assert not any(each.closed for each in passes)

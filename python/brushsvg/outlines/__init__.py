@@ -77,14 +77,16 @@ def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[
 
 
 def _part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
-    """What lies nearest to a chain's branches, and what it paints inside of crossings, cut to the area."""
+    """What lies nearest to a chain's branches, and what of the area, if given, it paints inside of crossings."""
     nearest = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
+    if area is None:
+        return _core.unite(nearest)
     across = [
         _core.convex_hull(np.vstack([line[0, :2] + line[0, 2] * _ROUND, line[-1, :2] + line[-1, 2] * _ROUND]))
         for piece in chain
         for line in piece.inside
     ]
-    if across and area:
+    if across:
         across = _core.intersect(_core.unite(across), area)
     return _core.unite([*nearest, *across])
 
