@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "boxes.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/wanted.hpp"
@@ -9,16 +10,6 @@
 
 using namespace brushsvg;
 using V = Eigen::Vector2d;
-
-namespace {
-
-Ring box(double x0, double y0, double x1, double y1) {
-    Ring ring(4, 2);
-    ring << x0, y0, x1, y0, x1, y1, x0, y1;
-    return ring;
-}
-
-}  // namespace
 
 TEST_CASE("pixels count what rings measure") {
     const Brush brush = shipped("round-6");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "boxes.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/simulate.hpp"
 #include "round6.hpp"
@@ -13,11 +14,6 @@ using V = Eigen::Vector2d;
 
 namespace {
 
-Ring box(double x0, double y0, double x1, double y1) {
-    Ring ring(4, 2);
-    ring << x0, y0, x1, y0, x1, y1, x0, y1;
-    return ring;
-}
 Ring hole(double x0, double y0, double x1, double y1) { return box(x0, y0, x1, y1).colwise().reverse(); }
 
 Overlay laid(const Rings& wanted, const Rings& painted) {

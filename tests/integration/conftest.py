@@ -8,6 +8,7 @@ import pytest
 from command import COMMAND, SOUND, brushsvg
 from drawings import SOURCES, Inkscape, enlarged_kanji, kanji_file
 from npm import UnavailableError, fetched
+from plugin import Plugin
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,6 +37,12 @@ def npm(request):
 @pytest.fixture(scope="session")
 def inkscape(tmp_path_factory):
     return Inkscape(tmp_path_factory.mktemp("inkscape"))
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    """The extension in a new profile of Inkscape's, one for each file of tests."""
+    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 @pytest.fixture(scope="session")

@@ -5,18 +5,12 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from command import SOUND, brushsvg
-from plugin import Plugin
 
 from brushsvg import read_drawing
 from brushsvg.importers import ReadOptions
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 GAP_MM = 10
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 def markers_mm(path, select=None):

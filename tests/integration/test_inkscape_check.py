@@ -5,7 +5,6 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from command import OPEN, SOUND
-from plugin import Plugin
 
 from brushsvg import read_drawing
 from brushsvg.importers import ReadOptions
@@ -16,11 +15,6 @@ BODY = """<g id="layer" transform="translate(5,2)"><g id="turned" transform="rot
  <path id="wide" d="M 10,40 H 60" style="fill:none;stroke:#102030;stroke-width:20"/></g>
  <path id="sharp" d="M 20,45 L 80,45 L 22,49" style="fill:none;stroke:#0000ff;stroke-width:3"/>
  <path id="sound" d="M 20,30 H 90" style="fill:none;stroke:#a00000;stroke-width:3"/></g>"""
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 def checked(plugin, tmp_path, body, name="drawing"):

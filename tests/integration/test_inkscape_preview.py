@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from command import SOUND, brushsvg
-from plugin import Plugin, sentence
+from plugin import sentence
 
 from brushsvg import read_drawing
 from brushsvg.importers import ReadOptions
@@ -39,11 +39,6 @@ def drawing(head: str) -> str:
     if head == "px":
         body = f'<g id="all" transform="scale(3)">{body}</g>'
     return f"<svg {spaces} {HEADS[head]}>{body}</svg>"
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 def elements(text: str) -> dict:

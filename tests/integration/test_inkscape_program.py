@@ -12,11 +12,6 @@ from plugin import Plugin, sentence
 SCRIPTS = ["save", "preview", "check", "strokes", "chart"]
 
 
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
-
-
 @pytest.fixture
 def drawing(tmp_path):
     file = tmp_path / "drawing.svg"

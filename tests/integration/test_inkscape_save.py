@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 from command import SOUND, brushsvg, path
-from plugin import SOURCE, Plugin, sentence
+from plugin import SOURCE, sentence
 
 from brushsvg import brush_names, cell_names, find_cell
 from brushsvg.posts import POSTS
@@ -24,11 +24,6 @@ DRAWINGS = {
     "groups": GROUPS,
     "settings": SOUND.replace("<svg ", '<svg data-brushsvg-brush="rigid" data-brushsvg-tolerance="0.1mm" '),
 }
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 ENTRIES = {  # entry of the menu: extension, and how the command line writes the same

@@ -4,17 +4,12 @@ from xml.etree import ElementTree
 
 import pytest
 from command import SOUND, brushsvg
-from plugin import SOURCE, Plugin, sentence
+from plugin import SOURCE, sentence
 
 from brushsvg.cell_file import DEFAULT_CELL
 from brushsvg.convert import DEFAULT_BRUSH, Options
 
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 @pytest.fixture

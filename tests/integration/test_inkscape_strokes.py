@@ -9,7 +9,6 @@ import cv2
 import numpy as np
 import pytest
 from command import OPEN, SOUND, brushsvg
-from plugin import Plugin
 
 from brushsvg.importers.svg import read_svg
 from brushsvg.text import text_svg
@@ -42,11 +41,6 @@ def drawing(head: str) -> str:
     body = f'<g id="all" transform="scale(3)">{body}</g>' if head == "px" else body
     spaces = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
     return f"<svg {spaces} {HEADS[head]}>{body}</svg>"
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 def converted(plugin, source: Path, select: str = "turned") -> Path:

@@ -4,16 +4,11 @@ import re
 
 import pytest
 from command import OPEN, SOUND, path
-from plugin import SOURCE, Plugin
+from plugin import SOURCE
 
 IMAGE = '<image id="photo" href="x.png" width="10" height="10"/>'
 FILLED = f'{OPEN}<path id="i" d="M20 10h3v30h-3z"/>{IMAGE}</svg>'
 TOO_WIDE = path("M20 30 H90", width="30")
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from command import OPEN, brushsvg
-from plugin import Plugin
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
@@ -15,11 +14,6 @@ TEXT = """<g id="layer" transform="translate(8,2)"><text id="word" x="5" y="30" 
  style="font-size:24px;font-family:'DejaVu Sans'"
  ><tspan id="part">ob<tspan id="red" style="fill:#ff0000">c</tspan></tspan></text></g>
  <path id="path1" d="M 90,10 h 3 v 40 h -3 z"/>"""
-
-
-@pytest.fixture(scope="module")
-def plugin(tmp_path_factory):
-    return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 @pytest.fixture
