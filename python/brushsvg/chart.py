@@ -139,7 +139,8 @@ def _choices() -> Iterator[tuple[int, int]]:
 
 def _depths(brush, count: int, deepest_mm: float) -> list[float]:
     least, deepest = brush.depth_range_mm[0], min(brush.depth_range_mm[1], deepest_mm)
-    return np.linspace(max(least, SHALLOWEST * deepest), deepest, count).round(2).tolist()
+    depths = np.linspace(max(least, SHALLOWEST * deepest), deepest, count).round(2)
+    return np.clip(depths, least, deepest).tolist()
 
 
 def _units(brush, depths: list[float], repeats: int) -> list[_Unit]:

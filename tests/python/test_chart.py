@@ -225,6 +225,12 @@ def test_wrong_usage(tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("deepest", [5.566, 9.6583])
+def test_no_depth_is_rounded_beyond_the_brush(deepest):
+    made = chart(new_brush("own", 6.0, [(2, 1.0), (4, 2.0)], deepest), A4)
+    assert max(stroke.depth_mm for stroke in made.strokes) == pytest.approx(deepest, abs=0.01)
+
+
 def test_same_chart_each_time():
     texts = [write_chart(chart(find_brush("round-6"), A5)) for _ in range(2)]
     assert len(set(texts)) == 1
