@@ -91,23 +91,7 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
 ///     tan(psi1/2) = E tan(psi0/2),  psi = angle from the direction of motion to the heading.
 /// The result has unit length whatever the rounding of the heading given.
 template <class T>
-Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay) {
-    const T a = heading.dot(along);
-    const T b = along.x() * heading.y() - along.y() * heading.x();
-    T x, y;  // cos(psi/2), sin(psi/2) up to a common factor; the form without cancellation on either side
-    if (a >= T(0.0)) {
-        x = T(1.0) + a;
-        y = decay * b;
-    } else {
-        x = b;
-        y = decay * (T(1.0) - a);
-    }
-    const T norm = x * x + y * y;
-    if (!(norm > T(std::numeric_limits<double>::min()))) return along;  // psi = pi and E = 0: no lag left
-    const T c = (x * x - y * y) / norm;
-    const T s = T(2.0) * x * y / norm;
-    return Vec2<T>(c * along.x() - s * along.y(), c * along.y() + s * along.x());
-}
+Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay);
 
 /// beta, article (11) and (12): direction of the tip's displacement against the direction of motion, for constant lag,
 /// after psi went from alpha0 to alpha1 over s [mm]. In (0, pi) for alpha0 > 0.

@@ -31,15 +31,61 @@ struct Gauss<12> {
 };
 
 /// Mean of 1/r over [middle - half, middle + half]; nodes in mirrored pairs share a division.
-template <int N, class T>
-T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
-    T sum(0.0);
+template <int N>
+double mean_reciprocal(const LawPiece<double>& law, double middle, double half) {
+    double sum = 0.0;
     for (int i = 0; i < N / 2; ++i) {
-        const T step = half * Gauss<N>::x[i], a = law.at(middle + step), b = law.at(middle - step);
+        const double step = half * Gauss<N>::x[i], a = law.at(middle + step), b = law.at(middle - step);
         sum += Gauss<N>::w[i] * (a + b) / (a * b);
     }
     if (N % 2 == 1) sum += Gauss<N>::w[N / 2] / law.at(middle);
     return sum;
+}
+
+/// The same with derivatives: by the coefficients and the depths in plain numbers, the chain rule once at the end.
+template <int N, class T>
+T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
+    double sum = 0.0, by_middle = 0.0, by_half = 0.0;
+    std::array<double, kMaxLawDegree + 1> by_coefficient{};
+    for (int i = 0; i < N; ++i) {
+        const double depth = value_of(middle) + Gauss<N>::x[i] * value_of(half);
+        double r = 0.0, slope = 0.0;
+        for (int k = law.degree; k >= 0; --k) {
+            slope = slope * depth + r;
+            r = r * depth + value_of(law.coefficients[k]);
+        }
+        sum += Gauss<N>::w[i] / r;
+        double by_r = -Gauss<N>::w[i] / (r * r);
+        by_middle += by_r * slope;
+        by_half += by_r * slope * Gauss<N>::x[i];
+        for (int k = 0; k <= law.degree; ++k, by_r *= depth) by_coefficient[k] += by_r;
+    }
+    T mean(sum);
+    mean.v = by_middle * middle.v + by_half * half.v;
+    for (int k = 0; k <= law.degree; ++k) mean.v += by_coefficient[k] * law.coefficients[k].v;
+    return mean;
+}
+
+/// Without derivatives: what decides about events.
+template <class T>
+Vec2<double> values_of(const Vec2<T>& v) {
+    return {value_of(v.x()), value_of(v.y())};
+}
+template <class T>
+LawPiece<double> values_of(const LawPiece<T>& law) {
+    LawPiece<double> out{law.lo, law.hi, law.degree, {}, law.roots, law.clear2, law.steepest, law.most_twisted};
+    for (int k = 0; k <= law.degree; ++k) out.coefficients[k] = value_of(law.coefficients[k]);
+    return out;
+}
+template <class T>
+Move<double> values_of(const Move<T>& move) {
+    const double depth = value_of(move.depth_from);
+    const Vec2<double> from = values_of(move.from);
+    return {from, from + values_of(move.by), depth, depth + value_of(move.depth_by)};
+}
+template <class T>
+LagState<double> values_of(const LagState<T>& state) {
+    return {values_of(state.contact), values_of(state.heading), state.taut, state.heading_known};
 }
 
 /// Smallest t in [begin, end] from where a function bounded below by `lower(a, b)` on [a, b] is negative; 1 + end when
@@ -100,23 +146,19 @@ bool stays_taut(const LawPiece<T>& law, const Move<T>& move, double cosine0) {
     return value_of(move.length) * cosine0 >= std::abs(value_of(move.depth_by)) * law.steepest;
 }
 
-template <class T>
-double cosine_after(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, double begin, double t) {
-    const LagState<T> s = within_phase(law, move, start, T(begin), T(t));
-    return value_of(s.heading.dot(move.along));
+inline double cosine_after(const LawPiece<double>& law, const Move<double>& move, const LagState<double>& start,
+                           double begin, double t) {
+    return within_phase(law, move, start, begin, t).heading.dot(move.along);
 }
 
 /// t in [begin, 1] where a taut brush goes loose, 2 when it does not.
-template <class T>
-double first_loosening(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, double begin,
-                       double end) {
-    const double length = value_of(move.length), depth_by = value_of(move.depth_by);
-    const double cosine0 = value_of(start.heading.dot(move.along));
-    if (stays_taut(law, move, cosine0)) return 2.0;
+inline double first_loosening(const LawPiece<double>& law, const Move<double>& move, const LagState<double>& start,
+                              double begin, double end) {
+    const double length = move.length, depth_by = move.depth_by;
     // A dip of g that is shallower moves the patch by its square; to look for less would take no end where g only
     // touches 0.
     const double noise = 1e-10 * (length + std::abs(depth_by) * law.steepest);
-    const auto lengthening = [&](double t) { return depth_by * value_of(law.slope(move.depth(T(t)))); };
+    const auto lengthening = [&](double t) { return depth_by * law.slope(move.depth(t)); };
     const auto g = [&](double t) { return length * cosine_after(law, move, start, begin, t) - lengthening(t); };
     if (g(begin) < -noise) return begin;
     const double bend = std::abs(depth_by * depth_by * depth_by) * law.most_twisted / 8.0;
@@ -147,6 +189,28 @@ std::vector<T> squared_lever(const LawPiece<T>& law, const T& d0, const T& dd) {
 }
 
 }  // namespace detail
+
+template <class T>
+Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay) {
+    const Vec2<double> u = detail::values_of(heading), v = detail::values_of(along);
+    const double e = value_of(decay), a = u.dot(v), b = v.x() * u.y() - v.y() * u.x();
+    // cos(psi/2), sin(psi/2) up to a common factor; the form without cancellation on either side
+    const double x = a >= 0.0 ? 1.0 + a : b, y = e * (a >= 0.0 ? b : 1.0 - a), norm = x * x + y * y;
+    if (!(norm > std::numeric_limits<double>::min())) return along;  // psi = pi and E = 0: no lag left
+    const double c = (x * x - y * y) / norm, s = 2.0 * x * y / norm;
+    Vec2<T> out(T(c * v.x() - s * v.y()), T(c * v.y() + s * v.x()));
+    if constexpr (!std::is_arithmetic_v<T>) {
+        // of angles, not of components: d psi1 = (E d psi0 + sin(psi0) dE) / (cos^2(psi0/2) + E^2 sin^2(psi0/2))
+        const double share = 2.0 * (1.0 + std::abs(a)) / norm;
+        using Slopes = decltype(T::v);
+        const Slopes motion = v.x() * along.y().v - v.y() * along.x().v;
+        const Slopes turn = u.x() * heading.y().v - u.y() * heading.x().v - motion;
+        const Slopes turned = motion + share * (e * turn + b * decay.v);
+        out.x().v = -value_of(out.y()) * turned;
+        out.y().v = value_of(out.x()) * turned;
+    }
+    return out;
+}
 
 template <class T>
 T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T& length, int splits_left) {
@@ -232,7 +296,9 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
     // a move has at most as many events as its polynomials have roots; the bound only guards against rounding
     for (int events = 0; events < 64 && value_of(begin) < value_of(end); ++events) {
         if (state.taut) {
-            const double t = first_loosening(law, move, state, value_of(begin), value_of(end));
+            double t = 2.0;
+            if (!stays_taut(law, move, value_of(state.heading.dot(move.along))))
+                t = first_loosening(values_of(law), values_of(move), values_of(state), value_of(begin), value_of(end));
             if (t > value_of(begin)) {
                 T until = end;
                 if (t < value_of(end)) until = T(t);
