@@ -94,7 +94,12 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "w.csv").write_text("depth_mm,width_mm\n3,2.5\n8,7\n")
     assert main("brush new mine --lag 5 --width-at 3=2.5 --width-at 8=7 --depth-max 10".split()) == 0
-    assert "assumed: lag, tip_gap, tip_to_widest and the footprints" in capsys.readouterr().out
+    assert (
+        "assumed: lag, tip_gap, tip_to_widest, widths beyond 8 mm of depth (8.9 mm at 10 mm) and the footprints"
+        in capsys.readouterr().out
+    )
+    assert main("brush new flat --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
+    assert "beyond" not in capsys.readouterr().out
     assert main("brush new sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()) == 1
     assert "its directory does not exist" in capsys.readouterr().err
     assert main("brush new ./table.json --lag 5 --widths w.csv --depth-max 10 --speed 12".split()) == 0

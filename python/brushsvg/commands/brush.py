@@ -50,6 +50,11 @@ def brush_new(args) -> None:
     write({path: text})
     tell(f"{path}: {reach(brush)}\n")
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
+    deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
+    if deepest > measured and "half_width" not in assumed:
+        assumed.append(
+            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest):.1f} mm at {deepest:g} mm)"
+        )
     tell(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
 
 
