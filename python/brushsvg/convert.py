@@ -17,9 +17,10 @@ from .cell import Cell
 from .design import Notice
 from .errors import Error
 from .files import read_bytes
-from .machine import DEFAULT_TOLERANCE_MM, time_s, whole_program
+from .machine import DEFAULT_TOLERANCE_MM, as_exact_as, problems, time_s, whole_program
 from .paint import in_loads as in_loads_of
 from .paint import is_later_part
+from .program import Job
 from .reach import within_reach
 from .refining import refined
 from .strokes import strokes as strokes_of
@@ -44,6 +45,8 @@ class Options:
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
+    cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
+    z_offset_mm: float = 0.0  # of the paper, against the cell's
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,7 @@ def prepare(
         done = compensated(painted, first)
     plan, misses, moved = done.plan, done.misses, [False] * len(painted)
     if is_refined:
-        better = refined(painted, strokes, brush, done, compensated)
+        better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, misses, moved = better.passes, better.misses, better.moved
     plan = _with_speeds(plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
@@ -127,6 +130,18 @@ def prepare(
         tuple(refused),
         tuple(left_out),
     )
+
+
+def _forbidden(brush, options: Options):
+    """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
+    if options.cell is None:
+        return None
+    cell, job = as_exact_as(options.cell, options.tolerance_mm), Job(options.z_offset_mm)
+
+    def sentences(plan) -> list:
+        return problems(plan, brush, _core.simulate(plan, brush), cell, options.tolerance_mm, job)
+
+    return sentences
 
 
 def _sorted_out(painted, wanted, step):

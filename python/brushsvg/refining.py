@@ -1,4 +1,5 @@
-"""Refined passes where they are right to take: towards what a brush can reach, and no letter the worse for them."""
+"""Refined passes where they are right to take: towards what a brush can reach, within a machine's limits, and no letter
+the worse for them."""
 
 from __future__ import annotations
 
@@ -24,11 +25,12 @@ class Refined:
     moved: list[bool]
 
 
-def refined(painted: list, wanted: list, brush, closed, compensated) -> Refined:
-    """The refined passes of strokes, but the closed form's where those paint a letter worse.
+def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=None) -> Refined:
+    """The refined passes of strokes, but the closed form's where those are forbidden, or paint a letter worse.
 
     painted: strokes that the brush can paint; wanted: what they should become; closed: their compensation in closed
-    form; compensated: (strokes, method) to what _core.compensate returns.
+    form; compensated: (strokes, method) to what _core.compensate returns; forbidden: a plan to the sentences that
+    forbid it.
     """
     aims = [towards_reach(*pair, brush) for pair in zip(painted, wanted, strict=True)]
     done = compensated(aims, "refined")
@@ -46,6 +48,8 @@ def refined(painted: list, wanted: list, brush, closed, compensated) -> Refined:
     keep_closed(
         k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)
     )
+    if forbidden:
+        keep_closed(_forbidden(passes, closed.plan, moved, forbidden))
     if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
         keep_closed(worse_of(redirected))  # they were judged by what they aimed at
     keep_closed(worse_of(_core.touching(wanted)))
@@ -70,3 +74,18 @@ def towards_reach(painted, wanted, brush):
         painted.colour,
         painted.settings,
     )
+
+
+def _forbidden(passes: list, closed, moved: list[bool], forbidden) -> list[int]:
+    """Numbers of refined passes that may not be run as they are, while less forbids those in closed form."""
+
+    def sentences(*some) -> list:
+        return forbidden(_core.Plan(closed.brush, closed.brush_sha256, closed.sheet_mm, list(some)))
+
+    if not sentences(*passes):
+        return []
+    return [
+        k
+        for k, (mine, other) in enumerate(zip(passes, closed.passes, strict=True))
+        if moved[k] and (broken := sentences(mine)) and len(sentences(other)) < len(broken)
+    ]

@@ -1,10 +1,13 @@
-"""`--compensation refined` on shapes wider than the brush, and what is told of where it goes."""
+"""`--compensation refined` on shapes wider than the brush, what is told of where it goes, and a machine's limits."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from brushsvg import _core, compensate, find_brush
-from brushsvg.convert import Options, _misses, prepare
+from brushsvg import _core, cli, compensate, find_brush, find_cell
+from brushsvg.convert import Options, _misses, predict, prepare
+from brushsvg.machine import as_exact_as, problems
 from brushsvg.refining import towards_reach
 
 BRUSH = find_brush("round-6")
@@ -71,3 +74,49 @@ def test_a_refined_plan_tells_of_strokes_left_in_closed_form(tmp_path):
     closed, refined = works(tmp_path, text)
     assert any("turns too sharply" in notice.sentence for notice in closed.notices)
     assert refined.notices == closed.notices
+
+
+TWO = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100"><g fill="none"
+stroke="#000" stroke-linecap="round"><path id="one" d="M20 20 H60" stroke-width="3"/>
+<path id="far" d="{d}" stroke-width="{width}"/></g></svg>"""
+
+
+@pytest.mark.parametrize(
+    ("limit", "d", "width"),
+    [("height", "M20 80 H60", 5), ("margin", "M94 50 h0", 8)],
+    ids=["height", "margin"],
+)
+def test_a_refined_stroke_beyond_a_limit_is_left_in_closed_form(tmp_path, limit, d, width):
+    """What closed painted was refused when refined: the tool goes lower, or farther beyond the edge."""
+    text = TWO.format(d=d, width=width)
+    closed, refined = works(tmp_path, text)
+    poses = [np.vstack([each.poses_mm for each in work.plan.passes]) for work in (closed, refined)]
+    cell = find_cell()
+    if limit == "height":
+        low, lower = (each[:, 2].min() for each in poses)
+        assert lower < low - 0.1
+        cell = replace(cell, heights=replace(cell.heights, lowest_mm=(low + lower) / 2))
+    else:
+        near, far = (each[:, 0].max() - 100 for each in poses)
+        assert far > near + 0.1
+        cell = replace(cell, workspace=replace(cell.workspace, margin_mm=(near + far) / 2))
+    _, held = works(tmp_path, text, cell=cell)
+    checked = as_exact_as(cell, 0.05)
+    assert problems(refined.plan, BRUSH, predict(refined, False), checked, 0.05)
+    assert not problems(held.plan, BRUSH, predict(held, False), checked, 0.05)
+    one, far = held.plan.passes
+    assert np.array_equal(one.poses_mm, refined.plan.passes[0].poses_mm)
+    assert not np.array_equal(one.poses_mm, closed.plan.passes[0].poses_mm)
+    assert np.array_equal(far.poses_mm, closed.plan.passes[1].poses_mm)
+
+
+def test_the_command_line_refines_within_its_cell(tmp_path, monkeypatch):
+    """And what it wrote is what `check` expects of the drawing."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "two.svg").write_text(TWO.format(d="M20 80 H60", width=5))
+    assert cli.main(["cell", "new", "low.toml"]) == 0
+    cell = tmp_path / "low.toml"
+    cell.write_text(cell.read_text().replace("lowest_mm = -20.0", "lowest_mm = -6.0"))
+    words = ["two.svg", "two.ngc", "--cell", "low.toml", "--compensation", "refined"]
+    assert cli.main(["convert", *words]) == 0
+    assert cli.main(["check", "two.ngc", "two.svg", "--cell", "low.toml"]) == 0

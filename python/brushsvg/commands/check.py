@@ -135,6 +135,7 @@ def _as_made(args, made, cell: Cell, brush) -> convert.Work:
     """The drawing or plan that a program should paint, prepared as its header says."""
     if suffix_of(args.input) != ".json":
         args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
+        args.z_offset = made.z_offset_mm
         with about(args.input):
             args.wide = args.wide or settings_in(args.input).get("wide")
     work = prepare(args, cell, brush)

@@ -58,6 +58,8 @@ def options_of(args, cell: Cell, brush=None) -> convert.Options:
         paths_as=args.paths_as,
         wide=args.wide or convert.Options.wide,
         speed_mm_s=min(convert.Options.speed_mm_s, cell.speeds.paint_mm_s),
+        cell=cell,
+        z_offset_mm=getattr(args, "z_offset", None) or 0.0,
     )
 
 
