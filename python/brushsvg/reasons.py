@@ -9,6 +9,9 @@ from ._core import footprint_at
 CORNER_DEG = 25.0  # a polyline of a smooth line turns by less from piece to piece
 STEEP = 0.25  # mm of half width per mm: a footprint is about three times as long as half of its width
 SLIGHT = 1e-6
+SEEN = 0.05  # of the one width that a brush has: less is not what one sees first
+GRAVE = 0.25  # of half the width: a middle that is so far off the line is what one sees first
+POINTED = 0.3  # of its greatest width, a tenth of the way there from its tip: a disc has 0.44, a drop 0.1
 
 
 def reason(
@@ -42,16 +45,24 @@ def reason(
             )
         if halves.max() < finest - SLIGHT:
             return f"thinner than the finest line that was measured of the brush, {2 * finest:.3g} mm"
-    if compensation in ("none", "constant") and miss.largest_mm > max(tolerance_mm, 0.25 * half):
+    else:
+        own = brush.half_width(depth)
+        widths = f"{2 * half:.3g} mm wide there, the one width of the brush is {2 * own:.3g} mm"
+        if (half - own if is_missing else own - half) > SEEN * own:
+            return widths
+    if compensation in ("none", "constant") and miss.largest_mm > max(tolerance_mm, GRAVE * half):
         how = "nothing makes up for the lag" if compensation == "none" else "one lag does not fit everywhere"
         return f"{how}: the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
+    if min(tolerance_mm, miss.largest_mm) > GRAVE * half:
+        return f"the tolerance is {tolerance_mm:g} mm: the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
     if length + 2 * half <= footprint:
         return f"too short for the brush: a dab, whose footprint is {footprint:.2g} mm long"
     turn_deg = _corner_deg(line, s, max(footprint, 2 * half), stroke.closed)
     if turn_deg > CORNER_DEG:
         return f"a corner of {turn_deg:.0f} degrees, sharper than the footprint"
     if not stroke.closed and s < max(brush.tip_to_widest(depth), half):
-        return "it begins there: a footprint is pointed behind"
+        how = "a footprint is pointed behind" if _is_pointed(brush, depth) else "with the back of a footprint"
+        return f"it begins there: {how}"
     if not stroke.closed and length - s < max(footprint, half):
         return "it ends there: with the front of a footprint"
     lag_mm = brush.lag(depth)
@@ -80,6 +91,14 @@ def _depth(brush, half_width_mm: float) -> float:
 def _length_of(brush, depth_mm: float) -> float:
     """Of the footprint, from its tip to its front."""
     return float(footprint_at(brush.footprints, depth_mm, 1.0)[:, 0].max())
+
+
+def _is_pointed(brush, depth_mm: float) -> bool:
+    outline = np.abs(footprint_at(brush.footprints, depth_mm, 1.0))
+    widest, half = outline[outline[:, 1].argmax()]
+    edge = outline[outline[:, 0] <= widest]
+    edge = edge[edge[:, 0].argsort()]
+    return bool(np.interp(0.1 * widest, edge[:, 0], edge[:, 1]) < POINTED * half)
 
 
 def _finest_measured(brush) -> float:

@@ -27,11 +27,11 @@ def box(x0, y0, x1, y1):
     return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)]
 
 
-def found(wanted, how="closed"):
-    brush = find_brush("round-6")
+def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
+    brush = find_brush(name)
     painted, wanted, _ = within_reach([wanted], brush)
-    plan = compensate(painted, brush, (120, 120), how).plan
-    rows, _ = report.measure(plan, simulate(plan, brush), brush, wanted, compensation=how)
+    plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
+    rows, _ = report.measure(plan, simulate(plan, brush), brush, wanted, tolerance_mm, compensation=how)
     return rows[0].worst
 
 
@@ -58,6 +58,30 @@ def test_the_reason_is_told(wanted, says, near):
     assert says in worst.reason
     if near:
         assert worst.place_mm == pytest.approx(near, abs=3.0)
+
+
+@pytest.mark.parametrize(
+    ("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider than the pen", "thinner than the pen"]
+)
+def test_a_brush_of_one_width_is_told_to_be_one(half, is_missing):
+    """The middle of a line 4 mm wide was said to be 0.04 mm off, where the pen paints 1 mm."""
+    bend = np.column_stack([np.linspace(20, 100, 60), 60 + 5 * np.sin(np.linspace(0, 6, 60))])
+    worst = found(stroke(bend, half), name="rigid")
+    assert worst.is_missing == is_missing
+    assert worst.reason == f"{2 * half:g} mm wide there, the one width of the brush is 1 mm"
+
+
+def test_a_round_nib_is_not_pointed_behind():
+    square = stroke([(30, 40), (60, 40)], 0.5, wanted=box(28.8, 39.5, 60.4, 40.5))
+    assert found(square, name="rigid").reason == "it begins there: with the back of a footprint"
+
+
+def test_a_coarse_tolerance_is_the_reason():
+    """With 5 mm it was the footprint on bends, where the middle was 2.5 mm off."""
+    worst = found(stroke(arc(20.0, 1.0, 200), 2.0, True), "closed", tolerance_mm=5.0)
+    assert "the tolerance is 5 mm: the mark's middle is up to" in worst.reason
+    fine = found(stroke(arc(20.0, 1.0, 200), 2.0, True), "closed")
+    assert "tolerance" not in fine.reason
 
 
 def test_without_compensation_the_lag_is_the_reason():
