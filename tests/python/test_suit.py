@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, find_brush, suit
+from brushsvg import Stroke, _core, convert, find_brush, suit
 from brushsvg.cli import main
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">
@@ -19,8 +19,17 @@ def line(length, half):
     return Stroke("s", p, half_width=[(0, half), (1, half)])
 
 
+BRUSH = find_brush("round-6")
+
+
+def painted(strokes):
+    """Made in closed form."""
+    plan = _core.compensate(strokes, BRUSH, (0.0, 0.0)).plan
+    return _core.simulate(plan, BRUSH).passes, strokes
+
+
 def test_too_large_a_drawing_is_advised_to_shrink():
-    found = suit.best_size([line(200, 8.0)] * 3, find_brush("round-6"))
+    found = suit.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
     assert found.best == 0.35
     assert "0.98 in place of 0.00 (tried; --scale 0.35)" in suit.advice(found)
@@ -29,14 +38,63 @@ def test_too_large_a_drawing_is_advised_to_shrink():
 
 
 def test_a_drawing_of_the_right_size_is_left_alone():
-    found = suit.best_size([line(150, 1.5)] * 40, find_brush("round-6"))
-    assert (found.best, found.tried, found.strokes) == (1.0, suit.TRIED, 40)
+    found = suit.best_size([line(150, 1.5)] * 40, BRUSH, painted)
+    assert (found.best, found.tried, found.strokes) == (1.0, suit.FEW, 40)
     assert suit.advice(found).startswith("Size: none from 0.35 to 2.8")
-    assert "tried on 16 of 40 strokes" in suit.advice(found)
+    assert "tried on 6 of 40 strokes" in suit.advice(found)
+
+
+def test_what_looks_better_is_tried_as_it_is_made():
+    """A first look costs a few strokes at nine sizes; what is then advised holds for more of them."""
+    seen = []
+
+    def made(strokes):
+        seen.extend(strokes)
+        return painted(strokes)
+
+    found = suit.best_size([line(150, 4.0), line(150, 5.0)] * 20, BRUSH, made, quick=painted)
+    assert found.overlaps[1.0] == pytest.approx(0.4, abs=0.15)  # half of them are refused
+    assert (found.best, found.tried, len(seen)) == (0.7, suit.TRIED, suit.TRIED * len(found.overlaps))
+    found = suit.best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
+    assert found.best == 1.0  # nothing looked better
 
 
 def test_nothing_is_advised_where_no_size_can_be_painted():
-    assert suit.advice(suit.best_size([line(200, 40.0)], find_brush("round-6"))) == ""
+    assert suit.advice(suit.best_size([line(200, 40.0)], BRUSH, painted)) == ""
+
+
+def said(tmp_path, text, **options):
+    """(overlap at a scale, advice) of a drawing."""
+    path = tmp_path / "said.svg"
+    path.write_text(text)
+    work = convert.prepare(path, convert.Options(**options), partly=True)
+    marks = convert.predict(work, outlines=False)
+    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, convert.advice(work)
+
+
+DABS = "".join(f'<path d="M{20 * k} 50h0" stroke-width="{w}"/>' for k, w in enumerate((1, 2, 3, 4, 6, 8), 1))
+SHEET = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100">'
+
+
+def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
+    """0.7 times was advised for 0.82 in place of 0.69, where dabs refined come to 0.86, and to 0.83 at that size."""
+    text = f'{SHEET}<g stroke="#000" stroke-linecap="round">{DABS}</g></svg>'
+    assert "drawn 0.7 times" in said(tmp_path, text)[1]
+    overlap, advice = said(tmp_path, text, compensation="refined")
+    if "in place of" in advice:
+        assert f"in place of {overlap:.2f}" in advice
+    assert "drawn 0.7 times" not in advice
+
+
+def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
+    """A square filled in passes was advised to shrink, as if it were painted in one."""
+    text = f'{SHEET}<rect id="r" x="30" y="20" width="60" height="50"/></svg>'
+    overlap, advice = said(tmp_path, text)
+    assert "drawn 0." in advice
+    assert f"in place of {overlap:.2f}" in advice
+    overlap, advice = said(tmp_path, text, wide="passes")
+    assert overlap > 0.99
+    assert advice.startswith("Size: none from 0.5 to 1.4")
 
 
 def test_scaling_a_stroke_scales_all_of_it():
