@@ -10,7 +10,8 @@ import numpy as np
 from . import _core, shapes
 from .errors import Error
 from .new_brush import need_fits, outlines_assumed
-from .painted import Painted, depths_painted
+from .painted import Painted, depths_painted, middle
+from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
@@ -24,6 +25,7 @@ class MarkCalibration:
     brush: _core.Brush
     fit: object
     painted: Painted
+    scale: SheetScale | None = None
 
 
 def calibrate_marks(
@@ -49,6 +51,8 @@ def calibrate_marks(
     options.lag_terms = min(LAG_TERMS, painted.depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
     fit = _core.fit_marks(painted.marks, None, options)
+    scale = _scale(fit, painted)
+    refuse_scale(scale)
     _refuse_unlike(fit, painted)
     brush = brush_of(fit.laws, name, (least, deepest), np.array(fit.covariance))
     brush.max_speed_mm_s = max_speed_mm_s
@@ -58,7 +62,7 @@ def calibrate_marks(
         getattr(brush, law).calibrated_mm = (0.0, painted.deepest_mm)
     _refuse_unsure(brush, fit)
     _core.check(brush)
-    return MarkCalibration(brush, fit, painted)
+    return MarkCalibration(brush, fit, painted, scale)
 
 
 def options_for(expected: dict) -> _core.MarkOptions:
@@ -186,6 +190,16 @@ def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     half = brush.half_width(depth)
     shape = shapes.egg if laws.round_tail else shapes.drop
     return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), laws.front_per_half * half))
+
+
+def _scale(fit, painted: Painted) -> SheetScale | None:
+    """Of the sheet, by the displacements of the marks that are any of this brush."""
+    like = [
+        (middle(np.array(mark.poses_mm)[:, :2]), miss.displacement_mm)
+        for mark, miss in zip(painted.marks, fit.marks, strict=True)
+        if not miss.outlier
+    ]
+    return sheet_scale(*map(np.array, zip(*like, strict=True))) if like else None
 
 
 def _refuse_unlike(fit, painted: Painted) -> None:

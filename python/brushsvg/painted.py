@@ -122,14 +122,15 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
-def _middle(points: np.ndarray) -> np.ndarray:
+def middle(points: np.ndarray) -> np.ndarray:
+    """Of the box round points (n, 2)."""
     return 0.5 * (points.min(axis=0) + points.max(axis=0))
 
 
 def _refuse_other_frames(found: list) -> None:
     """Units, direction of y, exchanged marks: seen in where marks lie beside where their strokes do."""
-    planned = np.array([_middle(poses[:, :2]) for _, poses, _ in found])
-    seen = np.array([_middle(np.vstack(rings)) for _, _, rings in found])
+    planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
+    seen = np.array([middle(np.vstack(rings)) for _, _, rings in found])
     spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
     sizes = lambda points: float(np.hypot(*np.ptp(points, axis=0)))  # noqa: E731
     lengths = [sizes(poses[:, :2]) for _, poses, _ in found]

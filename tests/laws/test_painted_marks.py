@@ -10,6 +10,7 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
+from brushsvg.errors import Error  # noqa: E402
 from brushsvg.mark_calibrate import calibrate_marks, expected_brush  # noqa: E402
 from brushsvg.painted import read_painted  # noqa: E402
 
@@ -63,6 +64,18 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
     assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # 1.2 is what was known before
     assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
     assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
+
+
+def test_a_sheet_scanned_at_another_scale_is_refused():
+    """Once it passed, with the lag off by 7 % and the tip gap by 27 % at a scale of 0.97."""
+    _, strokes, painted = sheet(3)
+    plan, marks = as_file(strokes, painted)
+    for mark in marks:
+        mark["outline_mm"] = [(0.97 * np.array(ring)).tolist() for ring in mark["outline_mm"]]
+    with pytest.raises(
+        Error, match=r"the sheet is (2\.[5-9]|3\.[0-5])\d \+- \d.\d\d % smaller than the plan"
+    ):
+        calibrate_marks(read_painted(plan, marks, None), "b")
 
 
 def test_displacements_come_back():
