@@ -13,6 +13,7 @@ if not hasattr(core, "fit_marks"):
 from brushsvg.errors import Error  # noqa: E402
 from brushsvg.mark_calibrate import calibrate_marks, expected_brush  # noqa: E402
 from brushsvg.painted import read_painted  # noqa: E402
+from brushsvg.plot import law_band  # noqa: E402
 
 DEPTHS = np.linspace(0.2, 1.0, 5)
 
@@ -99,6 +100,30 @@ def test_blots_and_gaps_have_no_say():
     for depth in DEPTHS * brush.deepest:
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.05)
     assert made.fit.left_aside > 0.003
+
+
+def intervals(made, law="lag"):
+    return law_band(made.brush, law, DEPTHS * made.brush.depth_range_mm[1])[0]
+
+
+def test_a_foreign_ring_does_not_make_the_rest_surer():
+    """Its points once counted among those over which the noise is spread: intervals were 9 % too short."""
+    _, strokes, painted = sheet(3)
+    plan, marks = as_file(strokes, painted)
+    alone = calibrate_marks(read_painted(plan, marks, None), "b")
+    frame = np.array([[-30, -30], [30, -30], [30, 30], [-30, 30]]) + np.mean(strokes[5][1][:, :2], axis=0)
+    marks[5]["outline_mm"].append(frame.tolist())
+    framed = calibrate_marks(read_painted(plan, marks, None), "b")
+    assert framed.fit.left_aside > 0.1
+    for law in ("lag", "tip_gap", "half_width"):
+        np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
+
+
+def test_points_never_count_as_more_than_there_are():
+    _, _, made = calibrated(3, noise=0.0, displacement=0.0, height=0.0, placement=0.0, turn=0.0)
+    assert made.fit.noise_mm == pytest.approx(0.05), "the least that is believed"
+    assert made.fit.effective_samples <= made.fit.samples
+    assert intervals(made).min() > 0.015
 
 
 def test_paper_that_lies_millimetres_higher_than_it_was_taught():
