@@ -1,6 +1,7 @@
 """Whole painted marks give back the brush that painted them; the slow stepping simulator paints."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import painter
@@ -11,7 +12,7 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 from brushsvg.errors import Error  # noqa: E402
-from brushsvg.mark_calibrate import calibrate_marks, expected_brush  # noqa: E402
+from brushsvg.mark_calibrate import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
 from brushsvg.painted import read_painted  # noqa: E402
 from brushsvg.plot import law_band  # noqa: E402
 
@@ -100,6 +101,33 @@ def test_blots_and_gaps_have_no_say():
     for depth in DEPTHS * brush.deepest:
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.05)
     assert made.fit.left_aside > 0.003
+
+
+def test_depths_that_nobody_painted_are_refused():
+    _, strokes, painted = sheet(3)
+    done = read_painted(*as_file(strokes, painted), None)
+    with pytest.raises(
+        Error, match=r"were painted to a depth of 4\.51\d* mm.* \"depth_range_mm\": \[0, 4\.51"
+    ) as refusal:
+        calibrate_marks(done, "b", (0.0, 1.6 * done.deepest_mm))
+    assert refusal.value.where == "depth_range_mm"
+
+
+def test_a_law_that_is_left_open_is_refused_with_its_number():
+    laws = core.MarkLaws([2.0, 1.0, 0.0, 0.0], [0.0, 0.4], [0.0, 0.5, 0.0], 1.8, 1.0)
+
+    def open_by(share):
+        """The lag's cubic is open, by this share of the lag at the deepest, 10 mm."""
+        covariance = np.zeros((13, 13))
+        covariance[3, 3] = (share * 12.0 / 1000.0 / 1.96) ** 2
+        _refuse_unsure(brush_of(laws, "b", (0.0, 10.0), covariance), SimpleNamespace(remarks=[]))
+
+    with pytest.raises(
+        Error, match=r"leave the lag open, 12\.0 \+- 14\.4 mm at depth 10 mm: paint curved"
+    ) as refusal:
+        open_by(1.2)
+    assert refusal.value.where == "lag"
+    open_by(0.7)  # open in the last tenth alone
 
 
 def intervals(made, law="lag"):
