@@ -1,5 +1,6 @@
 #include "mark_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "brushsvg/error.hpp"
@@ -109,7 +110,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     }
     out.left_aside = aside / std::max(1.0, out.samples);
     // repeats divide squares, of which the loss lets through the slope's share
-    out.effective_samples = out.samples * fit.weighing.slope / fit.weighing.repeats;
+    out.effective_samples = std::min(out.samples, (out.samples - aside) * fit.weighing.slope / fit.weighing.repeats);
     out.remarks = doubts(fit.model, fit.shared, fit.own, fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats));
     return out;
 }

@@ -71,19 +71,23 @@ MatrixXd part_of(const MatrixXd& inverse, Index mark, Index shared) {
     return out;
 }
 
-/// Sum over points of one closed outline, per number of points in between; and how many pairs that are.
+/// Sum over points of one closed outline, per number of points in between; and how many pairs with a say that are.
 struct Along {
     std::vector<double> sum, pairs;
-    template <class Product>
-    void add(Index begin, Index end, Product&& product) {
+    template <class Says, class Product>
+    void add(Index begin, Index end, Says&& says, Product&& product) {
         const Index n = end - begin, farthest = std::min(kFarthest, (n + 1) / 2);
         if (Index(sum.size()) < farthest) {
             sum.resize(std::size_t(farthest), 0.0);
             pairs.resize(std::size_t(farthest), 0.0);
         }
         for (Index lag = 0; lag < farthest; ++lag) {
-            for (Index k = 0; k < n; ++k) sum[std::size_t(lag)] += product(begin + k, begin + (k + lag) % n);
-            pairs[std::size_t(lag)] += double(n);
+            for (Index k = 0; k < n; ++k) {
+                const Index a = begin + k, b = begin + (k + lag) % n;
+                if (!says(a) || !says(b)) continue;
+                sum[std::size_t(lag)] += product(a, b);
+                pairs[std::size_t(lag)] += 1.0;
+            }
         }
     }
     double mean(std::size_t lag) const { return sum[lag] / std::max(1.0, pairs[lag]); }
@@ -122,10 +126,14 @@ Weighing weighed(const MarkProblem& at) {
         const VectorXd psi =
             (mark.distance_mm / out.noise_mm).unaryExpr([&](double z) { return cost(out.loss, z).psi; });
         const MatrixXd made = weight * mark.by * part_of(inverse, i, at.shared.size());
+        // a page's border has no say: if it counted, the noise of the marks would be spread over it
+        const auto says = [&](Index k) {
+            return out.loss != Loss::tukey || std::abs(mark.distance_mm[k]) < kTukey * out.noise_mm;
+        };
         for (std::size_t r = 0; r < at.model.rings(i); ++r) {
             const Index begin = at.model.ring_begin(i, r), end = at.model.ring_begin(i, r + 1);
-            left.add(begin, end, [&](Index a, Index b) { return psi[a] * psi[b]; });
-            followed.add(begin, end, [&](Index a, Index b) { return made.row(a).dot(mark.by.row(b)); });
+            left.add(begin, end, says, [&](Index a, Index b) { return psi[a] * psi[b]; });
+            followed.add(begin, end, says, [&](Index a, Index b) { return made.row(a).dot(mark.by.row(b)); });
         }
     }
     // the sum ends where a pair of neighbours is lost in noise
@@ -143,7 +151,16 @@ Weighing weighed(const MarkProblem& at) {
         out.together = together;
         whole = sum / std::max(0.3, 1.0 - hat);
     }
-    out.repeats = std::max(1e-6, whole / out.slope);
+    // of noise below the least, points would count as more than there are
+    const double least = out.slope * out.slope;
+    if (!(whole > least)) {
+        if (whole > 0.1 * least)
+            for (double& c : out.together) c *= least / whole;
+        else
+            out.together = {least};
+        whole = least;
+    }
+    out.repeats = whole / out.slope;
     return out;
 }
 

@@ -1,5 +1,6 @@
 #include "brushsvg/brush.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,8 +21,9 @@ constexpr double kDeepestMm = 1000.0;   // no brush is longer, and plans grow wi
 constexpr double kRigidLeverMm = 0.05;  // what a rigid pen's widest section may be off unseen: the usual tolerance
 constexpr double kLargestLawMm = 1000.0;
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
-constexpr double kOddMm = 0.05;   // less is within the usual tolerance and nothing to wonder about
-constexpr double kPoorFit = 0.3;  // RMSE by the law's size; the article's worst, its angles' tip gap, has 0.6
+constexpr double kOddMm = 0.05;     // less is within the usual tolerance and nothing to wonder about
+constexpr double kPoorFit = 0.3;    // RMSE by the law's size; the article's worst, its angles' tip gap, has 0.6
+constexpr double kRounding = 1e-4;  // of a correlation: what five digits leave of a covariance
 constexpr double kLawAgainstOutlineMm = 0.5;  // outlines rule the mark, laws the inverse; they must agree
 
 std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
@@ -113,6 +115,58 @@ void check_range(const Profile& law, double lo, double hi, const char* where) {
     if (std::any_of(half.begin(), half.end(), [](double value) { return !(value >= 0.0); }) ||
         (law.rmse_mm && !(*law.rmse_mm >= 0.0)))
         throw Error("an interval or rmse_mm is negative", where);
+}
+
+/// Symmetric, positive semi-definite within rounding, and no law less sure than it may be large.
+void check_covariance(const Brush& brush) {
+    if (brush.covariance.empty()) return;
+    const Eigen::Index n = Eigen::Index(brush.covariance.size());
+    Eigen::MatrixXd c(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const std::vector<double>& row = brush.covariance[std::size_t(i)];
+        if (Eigen::Index(row.size()) != n)
+            throw Error(
+                format("a row of covariance holds %.0f numbers, its columns %.0f", double(row.size()), double(n)),
+                "covariance");
+        c.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
+    }
+    if (!c.allFinite()) throw Error("a number is not finite", "covariance");
+    const Eigen::VectorXd least = c.diagonal().cwiseMax(1e-24).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd correlation = least.asDiagonal() * c * least.asDiagonal();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const std::string here = "covariance[" + std::to_string(i) + "]";
+        if (correlation(i, i) < -kRounding)
+            throw Error(format("the variance %.4g must not be negative", c(i, i)), here + "[" + std::to_string(i) + "]",
+                        c(i, i), std::array<double, 2>{0.0, INFINITY});
+        for (Eigen::Index j = 0; j < i; ++j)
+            if (!(std::abs(correlation(i, j) - correlation(j, i)) <= kRounding))
+                throw Error(
+                    format("%.4g differs from %.4g on the other side: a covariance is symmetric", c(i, j), c(j, i)),
+                    here + "[" + std::to_string(j) + "]");
+    }
+    const Eigen::MatrixXd raised = correlation + kRounding * Eigen::MatrixXd::Identity(n, n);
+    if (raised.llt().info() != Eigen::Success)
+        throw Error(
+            "some sum of the coefficients would have a negative variance: a covariance is positive semi-definite",
+            "covariance");
+    Eigen::Index first = 0;
+    for (const auto& [law, where] : laws(brush)) {
+        const Eigen::Index count = Eigen::Index(law->coefficients.size());
+        if (first + count > n) throw Error("covariance must have one row per coefficient", "covariance");
+        for (double depth : {brush.depth_range_mm[0], brush.depth_range_mm[1]}) {
+            Eigen::VectorXd powers = Eigen::VectorXd::Ones(count);
+            for (Eigen::Index i = 1; i < count; ++i) powers[i] = powers[i - 1] * depth;
+            const double sure =
+                1.96 * std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
+            if (!(sure <= kLargestLawMm))
+                throw Error(format("by the covariance the law is known to +- %.3g mm at depth %.2f mm; no more than "
+                                   "%.0f mm is taken for true",
+                                   sure, depth, kLargestLawMm),
+                            where, sure, std::array<double, 2>{0.0, kLargestLawMm});
+        }
+        first += count;
+    }
+    if (first != n) throw Error("covariance must have one row per coefficient", "covariance");
 }
 
 bool crosses_itself(const Ring& p) {
@@ -221,6 +275,7 @@ void check(const Brush& brush) {
             if (!std::isfinite(c)) throw Error("a coefficient is not finite", where);
         check_range(*profile, lo, hi, where);
     }
+    check_covariance(brush);
     check_lag(brush);
     check_rising(brush);
     if (brush.footprints.dragged.empty()) throw Error("there is no outline", "footprints.dragged");

@@ -10,11 +10,14 @@ import numpy as np
 from . import _core, shapes
 from .errors import Error
 from .new_brush import need_fits, outlines_assumed
-from .painted import Painted, depths_painted
+from .painted import Painted, depths_painted, middle
+from .plausible import BEYOND
+from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
-UNSURE = 0.6  # a law whose 95 % interval is this share of it, at every depth, is no measurement
+# A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
+UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,7 @@ class MarkCalibration:
     brush: _core.Brush
     fit: object
     painted: Painted
+    scale: SheetScale | None = None
 
 
 def calibrate_marks(
@@ -44,11 +48,19 @@ def calibrate_marks(
             f"the plan goes {painted.deepest_mm:g} mm deep, beyond the depth range [{least:g}, {deepest:g}] mm",
             "depth_range_mm",
         )
+    if deepest > BEYOND * painted.deepest_mm:
+        raise Error(
+            f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
+            f'mm: paint deeper ones, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',
+            "depth_range_mm",
+        )
     options = options or _core.MarkOptions()
     options.deepest_mm = deepest
     options.lag_terms = min(LAG_TERMS, painted.depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
     fit = _core.fit_marks(painted.marks, None, options)
+    scale = _scale(fit, painted)
+    refuse_scale(scale)
     _refuse_unlike(fit, painted)
     brush = brush_of(fit.laws, name, (least, deepest), np.array(fit.covariance))
     brush.max_speed_mm_s = max_speed_mm_s
@@ -58,7 +70,7 @@ def calibrate_marks(
         getattr(brush, law).calibrated_mm = (0.0, painted.deepest_mm)
     _refuse_unsure(brush, fit)
     _core.check(brush)
-    return MarkCalibration(brush, fit, painted)
+    return MarkCalibration(brush, fit, painted, scale)
 
 
 def options_for(expected: dict) -> _core.MarkOptions:
@@ -188,6 +200,16 @@ def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), laws.front_per_half * half))
 
 
+def _scale(fit, painted: Painted) -> SheetScale | None:
+    """Of the sheet, by the displacements of the marks that are any of this brush."""
+    like = [
+        (middle(np.array(mark.poses_mm)[:, :2]), miss.displacement_mm)
+        for mark, miss in zip(painted.marks, fit.marks, strict=True)
+        if not miss.outlier
+    ]
+    return sheet_scale(*map(np.array, zip(*like, strict=True))) if like else None
+
+
 def _refuse_unlike(fit, painted: Painted) -> None:
     wild = [mark.stroke for mark, miss in zip(painted.marks, fit.marks, strict=True) if miss.outlier]
     if 2 * len(wild) > len(painted.marks):
@@ -210,9 +232,15 @@ def _refuse_unsure(brush: _core.Brush, fit) -> None:
             continue
         powers = np.vander(depths, count, increasing=True)
         half = 1.96 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", powers, block, powers), 0.0))
-        share = half / np.maximum([profile(d) for d in depths], 1e-9)
-        if share.min() > UNSURE and half.min() > 0.5:
-            told = f": {fit.remarks[0]}" if fit.remarks else ": add curved strokes at more depths"
+        values = np.array([profile(d) for d in depths])
+        unsure = (half > UNSURE * values) & (half > UNSURE_MM)
+        if unsure.mean() > UNSURE_PART:
+            worst = int(np.argmax(np.where(unsure, half / np.maximum(values, 1e-9), 0.0)))
+            todo = (
+                fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
+            )
             raise Error(
-                f"these marks leave the {law} open, +- {half.min():.1f} mm where it is surest{told}", law
+                f"these marks leave the {law.replace('_', ' ')} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at "
+                f"depth {depths[worst]:g} mm: {todo}",
+                law,
             )

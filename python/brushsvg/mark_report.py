@@ -9,6 +9,7 @@ import numpy as np
 from . import _core
 from .describe import LAWS, polynomial
 from .plot import INK, brush_picture_on, encoded, law_band, new_figure
+from .sheet_scale import told
 
 TABLE_ROWS = 6
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
@@ -63,6 +64,8 @@ def _moved(made) -> list[str]:
         f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
         f"most, by {sizes[far]:.2f} mm",
     ]
+    if made.scale:
+        lines.append(f"by where its marks lie the sheet is {told(made.scale.both)} than the plan")
     return lines
 
 

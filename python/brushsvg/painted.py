@@ -17,6 +17,16 @@ STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that
 PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
 UNITS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
+# How a sheet may lie: plan to sheet, and what to say
+LAID = (
+    (((-1, 0), (0, -1)), "turned by 180 degrees"),
+    (((0, -1), (1, 0)), "turned by 90 degrees, counter-clockwise"),
+    (((0, 1), (-1, 0)), "turned by 90 degrees, clockwise"),
+    (((-1, 0), (0, 1)), "mirrored (x must go right)"),
+    (((1, 0), (0, -1)), "upside down (y must go up)"),
+    (((0, 1), (1, 0)), "with x and y exchanged"),
+    (((0, -1), (-1, 0)), "with x and y exchanged, both the other way round"),
+)
 
 
 @dataclass(frozen=True)
@@ -122,14 +132,15 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
-def _middle(points: np.ndarray) -> np.ndarray:
+def middle(points: np.ndarray) -> np.ndarray:
+    """Of the box round points (n, 2)."""
     return 0.5 * (points.min(axis=0) + points.max(axis=0))
 
 
 def _refuse_other_frames(found: list) -> None:
     """Units, direction of y, exchanged marks: seen in where marks lie beside where their strokes do."""
-    planned = np.array([_middle(poses[:, :2]) for _, poses, _ in found])
-    seen = np.array([_middle(np.vstack(rings)) for _, _, rings in found])
+    planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
+    seen = np.array([middle(np.vstack(rings)) for _, _, rings in found])
     spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
     sizes = lambda points: float(np.hypot(*np.ptp(points, axis=0)))  # noqa: E731
     lengths = [sizes(poses[:, :2]) for _, poses, _ in found]
@@ -154,6 +165,7 @@ def _refuse_other_frames(found: list) -> None:
             )
     if off.max() <= FARTHEST_MM and len(found) < 2:
         return
+    _refuse_laid_otherwise(planned, seen)
     reach = np.hypot(*np.moveaxis(seen[:, None] - planned[None], 2, 0))
     other = reach.argmin(axis=1)
     wrong = [i for i, j in enumerate(other) if j != i and reach[i, j] < 0.5 * off[i] and off[i] > 15.0]
@@ -169,6 +181,36 @@ def _refuse_other_frames(found: list) -> None:
             f"the mark of stroke {found[worst][0]!r} lies {off[worst]:.0f} mm from it, more than {FARTHEST_MM:g} mm: "
             "are plan and marks those of one sheet, both in mm from its lower left corner?",
             f"marks[{worst}]",
+        )
+
+
+def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
+    """A sheet that is turned, mirrored or of another size as a whole: middles (n, 2) of strokes and marks."""
+    out = planned - planned.mean(axis=0)
+    if len(out) < 5 or np.linalg.matrix_rank(out, tol=10.0) < 2:
+        return
+    there = seen - seen.mean(axis=0)
+    slopes = np.linalg.lstsq(out, there, rcond=None)[0].T
+    size = math.sqrt(abs(np.linalg.det(slopes)))
+    if not size > 0 or np.linalg.norm(there - out @ slopes.T) > 0.2 * np.linalg.norm(there):
+        return  # no one movement of the sheet
+    for laid, words in LAID:
+        if np.linalg.norm(slopes / size - laid) < 0.5:
+            raise Error(
+                f"the sheet of the marks lies {words}; outlines count from the lower left corner of the plan's sheet",
+                "marks",
+            )
+    if abs(size - 1) > 0.2:
+        raise Error(
+            f"the marks lie {size:.3g} times as far apart as their strokes: are the outlines in pixels, or scanned at "
+            "another scale? They count in mm",
+            "marks",
+        )
+    if (away := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * FARTHEST_MM:
+        raise Error(
+            f"all marks lie {away:.0f} mm from their strokes, all the same way: outlines count from the lower left "
+            "corner of the plan's sheet",
+            "marks",
         )
 
 

@@ -64,6 +64,34 @@ TEST_CASE("numbers that no brush has are refused with their range") {
     CHECK(contains(changed([](Brush& b) { b.lag.coefficients = {0.0}; }), "the mark has no heading"));
 }
 
+TEST_CASE("a covariance that nothing can have is refused") {
+    Brush brush = shipped("round-6");
+    std::size_t n = 0;
+    for (const Profile* law : {&brush.lag, &brush.tip_gap, &brush.tip_to_widest, &brush.half_width})
+        n += law->coefficients.size();
+    std::vector<std::vector<double>> good(n, std::vector<double>(n, 0.0));
+    good[0][0] = 0.04;
+    good[1][1] = 0.01;
+    good[0][1] = good[1][0] = -0.02 * (1.0 + 1e-6);  // wholly correlated, as six digits leave it
+    const auto changed = [&](auto&& change) {
+        brush.covariance = good;
+        change(brush.covariance);
+        return refusal(brush);
+    };
+    using Matrix = std::vector<std::vector<double>>;
+    CHECK(changed([](Matrix&) {}) == "");
+    CHECK(changed([](Matrix& c) { c.clear(); }) == "");
+    CHECK(contains(changed([](Matrix& c) { c[1][1] = -0.01; }), "covariance[1][1]: the variance -0.01 must not"));
+    CHECK(contains(changed([](Matrix& c) { c[0][1] = 0.01; }), "covariance[1][0]: -0.02 differs from 0.01"));
+    CHECK(contains(changed([](Matrix& c) { c[0][1] = c[1][0] = 0.03; }), "covariance: some sum of the coefficients"));
+    CHECK(contains(changed([](Matrix& c) { c[2][0] = c[0][2] = 0.001; }), "covariance: some sum of the coefficients"));
+    CHECK(contains(changed([](Matrix& c) { c[0][0] = 1e200; }),
+                   "lag: by the covariance the law is known to +- 1.96e+100"));
+    CHECK(contains(changed([](Matrix& c) { c[0][0] = NAN; }), "covariance: a number is not finite"));
+    CHECK(contains(changed([](Matrix& c) { c.pop_back(); }), "covariance"));
+    CHECK(contains(changed([](Matrix& c) { c.assign(1, {1.0}); }), "covariance must have one row per coefficient"));
+}
+
 TEST_CASE("laws and outlines must agree to half a millimetre, and shapes must be rings") {
     Brush brush = shipped("round-6");
     brush.half_width.coefficients[1] = 0.30;

@@ -1,6 +1,7 @@
 """Whole painted marks give back the brush that painted them; the slow stepping simulator paints."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import painter
@@ -10,8 +11,10 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
-from brushsvg.mark_calibrate import calibrate_marks, expected_brush  # noqa: E402
+from brushsvg.errors import Error  # noqa: E402
+from brushsvg.mark_calibrate import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
 from brushsvg.painted import read_painted  # noqa: E402
+from brushsvg.plot import law_band  # noqa: E402
 
 DEPTHS = np.linspace(0.2, 1.0, 5)
 
@@ -65,6 +68,18 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
     assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
 
 
+def test_a_sheet_scanned_at_another_scale_is_refused():
+    """Once it passed, with the lag off by 7 % and the tip gap by 27 % at a scale of 0.97."""
+    _, strokes, painted = sheet(3)
+    plan, marks = as_file(strokes, painted)
+    for mark in marks:
+        mark["outline_mm"] = [(0.97 * np.array(ring)).tolist() for ring in mark["outline_mm"]]
+    with pytest.raises(
+        Error, match=r"the sheet is (2\.[5-9]|3\.[0-5])\d \+- \d.\d\d % smaller than the plan"
+    ):
+        calibrate_marks(read_painted(plan, marks, None), "b")
+
+
 def test_displacements_come_back():
     _, painted, made = calibrated(3)
     found = np.array([miss.displacement_mm for miss in made.fit.marks])
@@ -86,6 +101,57 @@ def test_blots_and_gaps_have_no_say():
     for depth in DEPTHS * brush.deepest:
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.05)
     assert made.fit.left_aside > 0.003
+
+
+def test_depths_that_nobody_painted_are_refused():
+    _, strokes, painted = sheet(3)
+    done = read_painted(*as_file(strokes, painted), None)
+    with pytest.raises(
+        Error, match=r"were painted to a depth of 4\.51\d* mm.* \"depth_range_mm\": \[0, 4\.51"
+    ) as refusal:
+        calibrate_marks(done, "b", (0.0, 1.6 * done.deepest_mm))
+    assert refusal.value.where == "depth_range_mm"
+
+
+def test_a_law_that_is_left_open_is_refused_with_its_number():
+    laws = core.MarkLaws([2.0, 1.0, 0.0, 0.0], [0.0, 0.4], [0.0, 0.5, 0.0], 1.8, 1.0)
+
+    def open_by(share):
+        """The lag's cubic is open, by this share of the lag at the deepest, 10 mm."""
+        covariance = np.zeros((13, 13))
+        covariance[3, 3] = (share * 12.0 / 1000.0 / 1.96) ** 2
+        _refuse_unsure(brush_of(laws, "b", (0.0, 10.0), covariance), SimpleNamespace(remarks=[]))
+
+    with pytest.raises(
+        Error, match=r"leave the lag open, 12\.0 \+- 14\.4 mm at depth 10 mm: paint curved"
+    ) as refusal:
+        open_by(1.2)
+    assert refusal.value.where == "lag"
+    open_by(0.7)  # open in the last tenth alone
+
+
+def intervals(made, law="lag"):
+    return law_band(made.brush, law, DEPTHS * made.brush.depth_range_mm[1])[0]
+
+
+def test_a_foreign_ring_does_not_make_the_rest_surer():
+    """Its points once counted among those over which the noise is spread: intervals were 9 % too short."""
+    _, strokes, painted = sheet(3)
+    plan, marks = as_file(strokes, painted)
+    alone = calibrate_marks(read_painted(plan, marks, None), "b")
+    frame = np.array([[-30, -30], [30, -30], [30, 30], [-30, 30]]) + np.mean(strokes[5][1][:, :2], axis=0)
+    marks[5]["outline_mm"].append(frame.tolist())
+    framed = calibrate_marks(read_painted(plan, marks, None), "b")
+    assert framed.fit.left_aside > 0.1
+    for law in ("lag", "tip_gap", "half_width"):
+        np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
+
+
+def test_points_never_count_as_more_than_there_are():
+    _, _, made = calibrated(3, noise=0.0, displacement=0.0, height=0.0, placement=0.0, turn=0.0)
+    assert made.fit.noise_mm == pytest.approx(0.05), "the least that is believed"
+    assert made.fit.effective_samples <= made.fit.samples
+    assert intervals(made).min() > 0.015
 
 
 def test_paper_that_lies_millimetres_higher_than_it_was_taught():

@@ -16,3 +16,12 @@ def test_many_of_a_kind_are_counted_where_the_first_of_them_stood():
         ("b", "another thing"),
     ]
     assert folded([]) == []
+
+
+def test_four_with_the_same_sentence_are_named():
+    told = [(law, "measured to 4 mm") for law in ("lag", "tip_gap", "tip_to_widest", "half_width")]
+    assert folded(told) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]
+    assert folded([*told, ("fifth", "measured to 4 mm")]) == [("lag and 4 like it", "measured to 4 mm")]
+    assert folded([*told[:3], ("half_width", "measured to 5 mm")]) == [
+        ("lag and 3 like it", "measured to 4 mm")
+    ]

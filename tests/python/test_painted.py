@@ -171,3 +171,29 @@ def test_the_file_itself(keys, where, said):
     with pytest.raises(Error) as refusal:
         read_measurements(json.dumps(head | keys).encode(), ".json")
     assert said in str(refusal.value) and refusal.value.where == where
+
+
+@pytest.mark.parametrize(
+    ("moved", "said"),
+    [
+        (lambda p: [200, 200] - p, "lies turned by 180 degrees"),
+        (lambda p: p[:, ::-1] * [-1, 1] + [200, 0], "lies turned by 90 degrees, counter-clockwise"),
+        (lambda p: p[:, ::-1] * [1, -1] + [0, 200], "lies turned by 90 degrees, clockwise"),
+        (lambda p: p * [-1, 1] + [200, 0], "lies mirrored (x must go right)"),
+        (lambda p: p[:, ::-1], "lies with x and y exchanged"),
+        (lambda p: p * 96 / 25.4, "3.78 times as far apart as their strokes: are the outlines in pixels"),
+        (lambda p: p - [100, 100], "all marks lie 141 mm from their strokes, all the same way"),
+    ],
+)
+def test_a_sheet_that_lies_otherwise_is_told_how(moved, said):
+    """Each of them was once asked for the ids of its strokes."""
+    shift = {"far": [0.0, 90.0, 0.0], "right": [40.0, 130.0, 0.0]}
+    more = [(name, (np.array(strokes()[0][1]) + by).tolist()) for name, by in shift.items()]
+    every = [*strokes(), *more]
+    plan_ = {"passes": [{"stroke": name, "poses_mm": poses, "speed_mm_s": 20} for name, poses in every]}
+    rows = [
+        {"stroke": name, "outline_mm": [moved(np.array(around(poses))).tolist()]} for name, poses in every
+    ]
+    with pytest.raises(Error) as refusal:
+        read_painted(plan_, rows, None)
+    assert said in str(refusal.value) and refusal.value.where == "marks"

@@ -1,0 +1,73 @@
+"""Whether a sheet of marks has the size of its plan, by how far off its marks lie."""
+
+import numpy as np
+import pytest
+
+from brushsvg.errors import Error
+from brushsvg.sheet_scale import refuse_scale, sheet_scale
+
+A5 = np.array([[x, y] for y in (25.0, 75.0, 125.0, 175.0) for x in (20.0, 50.0, 80.0, 110.0)])
+
+
+def off(middles, seed, sigma_mm=0.5, by=(1.0, 1.0), turn=0.0):
+    """What a fit finds of marks displaced at random, on a sheet that is stretched, shifted and turned."""
+    c, s = np.cos(turn), np.sin(turn)
+    out = middles - middles.mean(axis=0)
+    there = (out * by) @ np.array([[c, s], [-s, c]])
+    return there - out + [1.0, -2.0] + np.random.default_rng(seed).normal(0, sigma_mm, out.shape)
+
+
+def is_refused(middles, displacements):
+    try:
+        refuse_scale(sheet_scale(middles, displacements))
+    except Error:
+        return True
+    return False
+
+
+@pytest.mark.parametrize(
+    ("by", "said"),
+    [
+        ((0.97, 0.97), "% smaller than the plan: was the page printed"),
+        ((1.02, 1.02), "% larger than the plan: was the page printed"),
+        ((1.03, 1.0), "% larger than the plan in x and "),
+        ((1.0, 0.97), "different resolutions in x and y"),
+    ],
+)
+def test_another_scale_is_refused(by, said):
+    found = sheet_scale(A5, off(A5, 1, 0.3, by))
+    with pytest.raises(Error, match=said) as refusal:
+        refuse_scale(found)
+    assert refusal.value.where == "marks"
+    for (share, error), true in zip((found.x, found.y), by, strict=True):
+        assert abs(share - (true - 1)) < 3 * error < 0.01
+
+
+def test_the_number_is_told():
+    scatter = np.random.default_rng(0).normal(0, 0.05, A5.shape)
+    with pytest.raises(Error, match=r"the sheet is 3\.0\d \+- 0\.0\d % smaller than the plan"):
+        refuse_scale(sheet_scale(A5, -0.03 * A5 + scatter))
+
+
+@pytest.mark.parametrize("count", [8, 12, 16])
+def test_displacements_alone_are_no_scale(count):
+    rng = np.random.default_rng(count)
+    refused = 0
+    for seed in range(400):
+        middles = A5[rng.permutation(len(A5))[:count]]
+        refused += is_refused(middles, off(middles, seed, rng.uniform(0.5, 1.0), turn=0.02))
+    assert refused <= 1
+
+
+def test_what_cannot_tell_says_nothing():
+    shift = off(A5, 3, 0.5, (0.9, 0.9))
+    assert sheet_scale(A5[:7], shift[:7]) is None, "too few to know the scatter"
+    row = np.column_stack([np.linspace(0, 200, 12), np.full(12, 40.0)])
+    assert sheet_scale(row, np.zeros((12, 2))) is None, "all in one row"
+    refuse_scale(None)
+
+
+def test_a_sheet_as_exact_as_a_scan_passes():
+    """Without noise any scale is certain: as much as a scan is off is let through."""
+    assert not is_refused(A5, 0.002 * (A5 - A5.mean(axis=0)))
+    assert is_refused(A5, 0.004 * (A5 - A5.mean(axis=0)))
