@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -92,6 +93,30 @@ TEST_CASE("a pass thinned out twice stays near itself, and arcs, landings and li
     CHECK(thin.poses_mm.topRows(2) == pass.poses_mm.topRows(2));
     CHECK(thin.poses_mm.bottomRows(5) == pass.poses_mm.bottomRows(5));
     CHECK(thin_out(thin, brush, 0.05).poses_mm.rows() <= thin.poses_mm.rows());
+}
+
+TEST_CASE("a pen keeps its corners, and comes back where it should, however few poses there are") {
+    const Brush pen = shipped("rigid");
+    const auto kept = [&](const std::vector<V>& line, const std::vector<V>& corners) {
+        const Stroke stroke = stroke_of(polyline(line), {{0.0, 0.5}});
+        const Pass pass = compensate(stroke, pen, {}).pass;
+        const auto passes = [&](const V& corner) {
+            return ((pass.poses_mm.leftCols<2>().rowwise() - corner.transpose()).rowwise().norm().array() < 0.05).any();
+        };
+        return std::all_of(corners.begin(), corners.end(), passes);
+    };
+    const std::vector<std::vector<V>> lines = {{V(10, 10), V(40, 10), V(40, 40), V(10, 40), V(10, 10)},
+                                               {V(10, 10), V(20, 10), V(15, 18), V(10, 10)},
+                                               {V(10, 20), V(10, 10), V(2, 10), V(2, 20), V(9.99, 20)},
+                                               {V(10, 10), V(60, 10), V(20, 10)}};
+    for (const std::vector<V>& line : lines) CHECK(kept(line, line));
+    // a spike on a line of many poses, which a brush would smooth out
+    std::vector<V> spike{V(0, 10)};
+    for (int k = 0; k < 120; ++k) {
+        spike.push_back(V(0.5 * k + 0.5, 10));
+        if (k == 77) spike.insert(spike.end(), {V(39, 12), V(39, 10)});
+    }
+    CHECK(kept(spike, {V(39, 12)}));
 }
 
 TEST_CASE("nothing to thin out is no fault") {
