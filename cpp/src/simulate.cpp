@@ -118,7 +118,8 @@ class Tracer {
     void sample(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double end) {
         if (law_.rigid && !moved_) take_heading(start);
         // the event that begins this phase; a pen's turn
-        if (begin > 0.0 || turns_at_once(start, m.depth(begin))) row(m.tcp(begin), m.depth(begin), start, begin);
+        if (begin > 0.0 || tightens_at_once(start) || turns_at_once(start, m.depth(begin)))
+            row(m.tcp(begin), m.depth(begin), start, begin);
         // straight out from the contact the heading is the direction of motion from the first instant
         LagState<double> from = start;
         if (!from.taut && !from.heading_known && m.length > 0.0) from.heading = m.direction(begin);
@@ -140,6 +141,11 @@ class Tracer {
         }
     }
 
+    /// A landing can end with the lever drawn out to a rounding error: it is dragged from there, not from the next
+    /// pose.
+    bool tightens_at_once(const LagState<double>& start) const {
+        return start.taut && start.heading_known && !law_.rigid && !out_.taut.back();
+    }
     /// A pen heads along the next move at once: with no second row there the turn would be spread over that move.
     bool turns_at_once(const LagState<double>& start, double depth) const {
         if (!law_.rigid || !moved_) return false;
