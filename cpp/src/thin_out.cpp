@@ -290,7 +290,7 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
     const Traced was(pass, brush, marks);
     const Ring middle = widest_points(marks, brush);
     // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
-    for (const double share : {0.95, 0.7, 0.4}) {
+    for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {
         const Pass trial = thinned(pass, brush, was, share * tolerance_mm);
         const PassMarks now = simulate(trial, brush, exact_mm, false);
         // both ways: a mark that lacks a part is nowhere beside what it should be
