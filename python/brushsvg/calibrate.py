@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -38,12 +38,14 @@ class Point:
 
 @dataclass(frozen=True)
 class Fitted:
-    """One law: its points and fit, None where it is assumed; remarks in sentences."""
+    """One law: its points and fit, None where it is assumed; remarks in sentences; wild_mm: points by index that lie
+    so far off the law of the others."""
 
     name: str
     points: tuple[Point, ...]
     fit: object
     remarks: tuple[str, ...] = ()
+    wild_mm: dict[int, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -101,9 +103,10 @@ def _direct(measured: Measurements, total: bool) -> tuple[dict[str, list[Point]]
 
 def _of_angles(row: Row, total: bool) -> dict:
     degrees = math.radians(1.0)
-    plausible.refuse_series(row.where, *(row.numbers[name] for name in ("alpha0_deg", "s_mm", "alpha_deg")))
+    series = [row.numbers[name] for name in ("alpha0_deg", "s_mm", "alpha_deg")]
+    plausible.refuse_series(row.where, *series)
     try:
-        return _core.from_angles(
+        found = _core.from_angles(
             row.numbers["alpha0_deg"] * degrees,
             row.numbers["s_mm"],
             [a * degrees for a in row.numbers["alpha_deg"]],
@@ -112,6 +115,8 @@ def _of_angles(row: Row, total: bool) -> dict:
         )
     except Error as refusal:
         raise Error(str(refusal), row.where, refusal.value) from None
+    plausible.refuse_other_start(row.where, *series)
+    return found
 
 
 class _Maker:
@@ -158,7 +163,7 @@ class _Maker:
         """r + b at a depth. angular reads the middle of the mark, which is e = x_w - b nearer to the TCP's second line
         than the centre of friction; straight: (17) with the lag it lacks; side_view: (18), counted from first touch.
         """
-        if "value_mm" in row.numbers and row.where.startswith("side_view"):
+        if "value_mm" in row.numbers and row.kind == "side_view":
             return row.numbers["value_mm"] + self.done["lag"].fit.law(0.0)
         if "tip_to_widest" not in self.done:
             sentence = "this needs the widest section of the footprint: add rows of tip_to_widest"
@@ -188,11 +193,13 @@ class _Maker:
         plausible.refuse_range(law, max(depths), self.range_mm, points[0].where)
         if law in ("lag", "half_width"):
             plausible.refuse_falling(law, points)
-        most = different if law in FROM_ZERO else different - 1
-        degree = min(DEGREES[law], most)
+        # two values for each coefficient, or the law would follow their noise
+        coefficients = min(different, max(2, math.ceil(len(points) / 2)))
+        degree = min(DEGREES[law], coefficients if law in FROM_ZERO else coefficients - 1)
         remarks = []
         if degree < DEGREES[law]:
-            remarks.append(f"of degree {degree} instead of {DEGREES[law]}, for there are {different} depths")
+            few = f"{different} depths" if coefficients == different else f"{len(points)} values"
+            remarks.append(f"of degree {degree} instead of {DEGREES[law]}, for there are {few}")
         widest = law == "tip_to_widest"
         shape = _core.LawShape(
             self.range_mm,
@@ -209,7 +216,9 @@ class _Maker:
         if fit.held:
             what = "falls" if law == "half_width" else "is not positive"
             remarks.append(f"held to its shape: the law that fits best {what} somewhere in the depth range")
-        self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks))
+        first = int(law in FROM_ZERO)
+        wild = plausible.wild(depths, fit.residual_mm, len(fit.law.coefficients) - first, first)
+        self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), wild)
 
     def _carry(self, wanted: str, known: str, rows: list[Row]) -> None:
         """What the law found from sums inherits from those it was corrected by: with sums y = S - K k + W w its
@@ -222,7 +231,7 @@ class _Maker:
             self.pulls[law] = np.zeros((size, rate.shape[1]))
             self.pulls[law][first:] = inverse @ rate
 
-        seen_aside = np.array([row.where.startswith("side_view") for row in rows])
+        seen_aside = np.array([row.kind == "side_view" for row in rows])
         rate = -np.vander(depths, len(self.done[known].fit.law.coefficients), increasing=True)
         rate[seen_aside, 0] = 0.0  # r(d) - r(0)
         self.corrected = wanted

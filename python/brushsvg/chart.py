@@ -112,6 +112,11 @@ def chart(
     side = min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
     below = side + QUIET * side + 2 * EDGE_MM  # edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - below
+    if min(room) <= 2 * (side + QUIET * side):
+        raise Error(
+            f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners",
+            "sheet",
+        )
     best = None
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
         units = _units(brush, _depths(brush, depths, deepest_mm), repeats)

@@ -8,7 +8,6 @@ from .describe import polynomial
 from .plot import brush_picture, law_band
 
 TABLE_ROWS = 6
-WILD = 4.0  # residuals of so many RMSE are named: of normal noise one in ten thousand
 
 
 def report(made) -> str:
@@ -39,9 +38,10 @@ def _law(brush, fitted) -> list[str]:
             "  95 % +- " + ", ".join(f"{half:.2g}" for half in law.half_interval_95) + " (ascending powers)"
         )
     lines += [f"  {remark}" for remark in fitted.remarks]
-    for point, left in zip(fitted.points, fitted.fit.residual_mm, strict=True):
-        if law.rmse_mm and abs(left) > max(WILD * law.rmse_mm, 1e-9):
-            lines.append(f"  {point.where} lies {left:+.2f} mm off the law: measure it again")
+    for k, left in fitted.wild_mm.items():
+        lines.append(
+            f"  {fitted.points[k].where} lies {left:+.2f} mm off the law of the others: measure it again"
+        )
     return lines
 
 

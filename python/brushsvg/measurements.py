@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -38,6 +39,7 @@ EXPECTED = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
 class Row:
     """One measurement at a depth: its numbers by name, series as tuples; where it stands in the file."""
 
+    kind: str
     where: str
     depth_mm: float
     numbers: dict
@@ -78,6 +80,32 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
     return found
 
 
+def read_widths(text: str) -> list[tuple[float, float]]:
+    """(depth, width) pairs in mm of a table with the columns depth_mm and width_mm. Error names the line."""
+    try:
+        return list(_width_rows(csv.DictReader(io.StringIO(text.removeprefix("\ufeff")))))
+    except csv.Error as problem:
+        raise Error(f"this is not a table: {problem}") from None
+
+
+def _width_rows(rows: csv.DictReader) -> Iterator[tuple[float, float]]:
+    columns = [name.strip() for name in rows.fieldnames or ()]
+    if missing := {"depth_mm", "width_mm"} - set(columns):
+        raise Error(
+            f"the table needs a first line with depth_mm,width_mm; it lacks {' and '.join(sorted(missing))}"
+        )
+    rows.fieldnames = columns
+    for row in rows:
+        _refuse_surplus(row, f"line {rows.line_num}")
+        pair = []
+        for name in ("depth_mm", "width_mm"):
+            try:
+                pair.append(float(row[name]))
+            except (TypeError, ValueError):
+                raise Error(f"{row[name] or ''!r} is not a number", f"line {rows.line_num}, {name}") from None
+        yield tuple(pair)
+
+
 def _read_table(text: str) -> Measurements:
     table = csv.DictReader(io.StringIO(text))
     table.fieldnames = [name.strip() for name in table.fieldnames or ()]
@@ -88,6 +116,7 @@ def _read_table(text: str) -> Measurements:
     rows: dict[str, list[Row]] = {}
     for line in table:
         where, kind = f"line {table.line_num}", (line["kind"] or "").strip()
+        _refuse_surplus(line, where)
         if kind not in _TABLE:
             raise Error(
                 f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}", where
@@ -100,6 +129,15 @@ def _read_table(text: str) -> Measurements:
                 raise Error(f"{line[name] or ''!r} is not a number", f"{where}, {name}") from None
         rows.setdefault(kind, []).append(_row(kind, numbers, where))
     return Measurements(rows)
+
+
+def _refuse_surplus(line: dict, where: str) -> None:
+    """Error for a row of csv.DictReader with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
+    if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
+        raise Error(
+            f"{surplus[0]!r} stands beyond the columns of the first line: numbers are written with a point, as in 4.6",
+            where,
+        )
 
 
 def _read_json(text: str) -> Measurements:
@@ -188,7 +226,7 @@ def _row(kind: str, row: dict, where: str) -> Row:
             raise Error(
                 f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
             )
-    return Row(where, depth, numbers)
+    return Row(kind, where, depth, numbers)
 
 
 def _number(value, where: str) -> float:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
-from collections.abc import Iterator
 
-from . import _core, shapes
+from . import _core, plausible, shapes
 from .errors import Error
 
 # The shape of a round brush's footprint in half widths, near what the article's brush has at depths 4 to 10 mm.
@@ -36,6 +33,8 @@ def new_brush(
     """
     need_fits()
     widths = _sound(widths_mm)
+    if lag_mm > 0:
+        plausible.refuse_width(*widths[-1])
     deepest = widths[-1][0] if depth_max_mm is None else depth_max_mm
     if not widths[-1][0] <= deepest <= LONGEST_MM:
         sentence = (
@@ -76,31 +75,6 @@ def need_fits() -> None:
     """Error where the library was built without Ceres."""
     if not hasattr(_core, "fit_law"):
         raise Error("this brushsvg was built without fits; build it with Ceres (libceres-dev)")
-
-
-def read_widths(text: str) -> list[tuple[float, float]]:
-    """(depth, width) pairs in mm of a table with the columns depth_mm and width_mm. Error names the line."""
-    try:
-        return list(_width_rows(csv.DictReader(io.StringIO(text.removeprefix("\ufeff")))))
-    except csv.Error as problem:
-        raise Error(f"this is not a table: {problem}") from None
-
-
-def _width_rows(rows: csv.DictReader) -> Iterator[tuple[float, float]]:
-    columns = [name.strip() for name in rows.fieldnames or ()]
-    if missing := {"depth_mm", "width_mm"} - set(columns):
-        raise Error(
-            f"the table needs a first line with depth_mm,width_mm; it lacks {' and '.join(sorted(missing))}"
-        )
-    rows.fieldnames = columns
-    for row in rows:
-        pair = []
-        for name in ("depth_mm", "width_mm"):
-            try:
-                pair.append(float(row[name]))
-            except (TypeError, ValueError):
-                raise Error(f"{row[name] or ''!r} is not a number", f"line {rows.line_num}, {name}") from None
-        yield tuple(pair)
 
 
 def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -13,6 +13,9 @@ LEAST_ALPHA0_DEG = (
     5.0  # a series that starts nearer to the motion cannot be read; in radians 90 degrees are 1.57
 )
 UNTURNED_DEG = 5.0  # by so much may an angle grow through its noise
+READ_TO_DEG = 6.0  # as the article read its own
+NOT_FROM_START = 0.5  # in lags: a series may seem to begin by so much earlier or later
+WILD = 4.0  # standard deviations of normal noise: one in ten thousand
 SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
 # Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
 LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
@@ -23,8 +26,12 @@ SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in i
 
 def different(depths_mm: list[float]) -> int:
     """How many depths there are, taking those for one that hardly differ."""
-    ordered = np.sort(depths_mm)
-    return 1 + int(np.sum(np.diff(ordered) > SPREAD * ordered[-1]))
+    ordered = np.unique(depths_mm)
+    count, at = 0, 0
+    while at < len(ordered):
+        count += 1
+        at = int(np.searchsorted(ordered, ordered[at] + SPREAD * ordered[-1], "right"))
+    return count
 
 
 def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
@@ -36,6 +43,13 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
             where,
             alpha0_deg,
         )
+    if alpha_deg and max(alpha_deg) < math.pi:
+        raise Error(
+            f"no angle after the first is greater than {max(alpha_deg):.3g} degrees, which nobody can read: are these "
+            "radians?",
+            where,
+            max(alpha_deg),
+        )
     if len(s_mm) == len(alpha_deg) and len(s_mm) > 1:
         first, last = int(np.argmin(s_mm)), int(np.argmax(s_mm))
         if alpha_deg[last] > alpha_deg[first] + UNTURNED_DEG:
@@ -45,6 +59,47 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
                 "order?",
                 where,
             )
+
+
+def refuse_other_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
+    """Angles that fall as a drag's do, but do not begin with the first one at 0 mm: ln tan(alpha/2), which falls by
+    1 per lag, is fitted with a beginning of its own, each reading weighed by what it is sure of."""
+    series = [(s, a) for s, a in zip(s_mm, alpha_deg, strict=True) if s > 0 and 0 < a < alpha0_deg]
+    s, alpha = np.array(series).reshape(-1, 2).T * [[1.0], [math.pi / 180]]
+    if len(np.unique(s)) < 2:
+        return
+    fallen = np.log(np.tan(alpha / 2) / math.tan(math.radians(alpha0_deg) / 2))
+    columns = np.column_stack([np.ones_like(s), s]) * np.sin(alpha)[:, None]
+    found, *_ = np.linalg.lstsq(columns, fallen * np.sin(alpha), rcond=None)
+    left = columns @ found - fallen * np.sin(alpha)
+    noise = max(math.sqrt(left @ left / max(len(s) - 2, 1)), math.radians(READ_TO_DEG))
+    error = noise * math.sqrt(np.linalg.inv(columns.T @ columns)[0, 0])
+    if abs(found[0]) > max(NOT_FROM_START, WILD * error):
+        raise Error(
+            f"the angles fall as if the drag had begun {abs(found[0]):.2g} lags "
+            f"{'before' if found[0] < 0 else 'after'} s_mm = 0, where it was {alpha0_deg:g} degrees: count s_mm from "
+            "where that drag begins, and all angles in degrees",
+            where,
+        )
+
+
+def wild(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> dict[int, float]:
+    """Values that do not belong to the others: their index, and how far they lie off the law of the others [mm].
+
+    free: coefficients that were fitted, the least power powers_from. By studentised residuals of least squares, each
+    against the noise without it; where Student's t would be that of a normal value beyond WILD (D. L. Wallace 1959).
+    """
+    left, depths = np.array(residual_mm), np.array(depths_mm)
+    spare = len(left) - free - 1
+    if spare < 1:
+        return {}
+    columns = np.vander(depths / depths.max(), powers_from + free, increasing=True)[:, powers_from:]
+    apart = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
+    apart = np.maximum(apart, 1e-9)
+    others = np.maximum((left @ left - left**2 / apart) / spare, 1e-18)
+    squared = left**2 / apart / others
+    normal = (8 * spare + 1) / (8 * spare + 3) * np.sqrt(spare * np.log1p(squared / spare))
+    return {int(k): float(left[k] / apart[k]) for k in np.flatnonzero(normal > WILD)}
 
 
 def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:
@@ -93,18 +148,23 @@ def refuse_unexplained(law: str, points, fit) -> None:
         )
 
 
+def refuse_width(depth_mm: float, width_mm: float) -> None:
+    """Of the deepest mark."""
+    if not HALF_PER_DEPTH[0] <= width_mm / 2 / depth_mm <= HALF_PER_DEPTH[1]:
+        raise Error(
+            f"the width is {width_mm:.3g} mm at depth {depth_mm:g} mm: depths and widths both count in millimetres",
+            "half_width",
+            width_mm / 2,
+        )
+
+
 def refuse_brush(brush) -> None:
     """Laws that do not go together: most of them are units mixed up."""
     depth = brush.depth_range_mm[1]
     lag, gap, widest, half = (
         law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     )
-    if not HALF_PER_DEPTH[0] <= half / depth <= HALF_PER_DEPTH[1]:
-        raise Error(
-            f"the width is {2 * half:.3g} mm at depth {depth:g} mm: depths and widths both count in millimetres",
-            "half_width",
-            half,
-        )
+    refuse_width(depth, 2 * half)
     if not LAG_PER_HALF[0] <= lag / half <= LAG_PER_HALF[1]:
         raise Error(
             f"the lag is {lag:.3g} mm and the width {2 * half:.3g} mm at depth {depth:g} mm: all lengths count in "
@@ -143,7 +203,7 @@ def odd(brush, laws) -> list[str]:
             f"the lag is {share:.2g} half widths at depth {depth:g} mm, which is odd: check the units"
         )
     for fitted in laws:
-        if fitted.name != "lag" or fitted.fit is None or len(fitted.points) < 4:
+        if fitted.name != "lag" or fitted.fit is None or len(fitted.points) < 4 or fitted.wild_mm:
             continue
         mean = np.mean([point.value_mm for point in fitted.points])
         rmse = fitted.fit.law.rmse_mm

@@ -22,7 +22,8 @@ def brush():
     def rows(kind, value, noise):
         read = [value(d) + rng.normal(0, noise) for d in depths]
         return [
-            Row(f"{kind}[{i}]", d, {"value_mm": v}) for i, (d, v) in enumerate(zip(depths, read, strict=True))
+            Row(kind, f"{kind}[{i}]", d, {"value_mm": v})
+            for i, (d, v) in enumerate(zip(depths, read, strict=True))
         ]
 
     measured = {

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from brushsvg import _core, find_brush
+from brushsvg import _core, find_brush, plausible
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.measurements import read_measurements
@@ -36,7 +36,7 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
         False,
     ]
     depth = np.arange(1, 8.0)
-    best = np.polyfit(depth, 5 + depth + 0.1 * (-1) ** depth, 4)
+    best = np.polyfit(depth, 5 + depth + 0.1 * (-1) ** depth, 3)  # of 7 values, two for each coefficient
     np.testing.assert_allclose(brush.lag.coefficients, best[::-1], atol=1e-5)
     count = sum(
         len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -224,3 +224,94 @@ def test_the_example_of_the_documents_is_read():
     found = _core.from_angles(np.pi / 2, s, *(np.radians(each) for each in angles))
     assert found["lag_mm"] == pytest.approx(7.4, abs=0.03)
     assert found["tip_gap_mm"] == pytest.approx(1.5, abs=0.03)
+
+
+def table(tmp_path, rows, *flags) -> tuple[int, object]:
+    """calibrate's exit code and the brush's path, of rows (kind, depth, value)."""
+    lines = ["kind,depth_mm,value_mm", *(",".join(map(str, row)) for row in rows)]
+    (tmp_path / "m.csv").write_text("\n".join(lines))
+    out = tmp_path / "b.json"
+    return main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), *flags]), out
+
+
+WIDTHS = [("width", d, d) for d in (2, 4, 6, 8, 10)]
+
+
+def test_side_views_in_a_table_are_side_views(tmp_path):
+    rows = [("lag", d, 3 + 0.8 * d) for d in (2, 4, 6, 8, 10)]
+    rows += [
+        ("side_view", d, 0.8 * d + 0.5 * d) for d in (2, 4, 6, 8, 10)
+    ]  # (18): r + b less the lag at touch
+    code, out = table(tmp_path, rows + WIDTHS)
+    assert code == 0
+    assert find_brush(out).tip_gap(6) == pytest.approx(3.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("columns", ["kind,depth_mm,value_mm", "depth_mm,width_mm"])
+def test_decimal_commas_are_not_read_as_whole_numbers(tmp_path, capsys, columns):
+    row = "lag,4,6,33" if columns.startswith("kind") else "4,6,33"
+    (tmp_path / "m.csv").write_text(f"{columns}\n{row}\n")
+    made = ["calibrate", str(tmp_path / "m.csv"), "-o", str(tmp_path / "b.json")]
+    if columns.startswith("depth"):
+        made = ["brush", "new", str(tmp_path / "b"), "--lag", "5", "--widths", str(tmp_path / "m.csv")]
+    assert main(made) == 1
+    assert "'33' stands beyond the columns of the first line" in capsys.readouterr().err
+    assert not (tmp_path / "b.json").exists()
+
+
+def test_finely_stepped_depths_are_many(tmp_path):
+    fine = np.arange(10, 101) / 10
+    code, out = table(tmp_path, [("lag", d, 3 + 0.8 * d) for d in fine] + [("width", d, d) for d in fine])
+    assert code == 0 and find_brush(out).lag(5) == pytest.approx(7, abs=1e-6)
+    assert plausible.different([*np.linspace(2, 6, 41), 10.0]) > 15
+    assert plausible.different([5.0, 5.1, 5.2, 10.0]) == 2
+
+
+def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):
+    off = (0.3, -0.3, 0.3, -0.3, 0.3)
+    rows = [("lag", d, 3 + 0.8 * d + e) for d, e in zip((2, 4, 6, 8, 10), off, strict=True)]
+    code, out = table(tmp_path, rows + WIDTHS)
+    assert code == 0 and "of degree 2 instead of 4, for there are 5 values" in capsys.readouterr().out
+    brush = find_brush(out)
+    assert max(abs(brush.lag(d) - 3 - 0.8 * d) for d in np.linspace(0.5, 10, 30)) < 0.6  # a quartic: 9 mm
+    assert len(brush.covariance)
+
+
+@pytest.mark.parametrize("norm", ["squares", "absolute"])
+def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
+    rows = [("lag", d, round(3 + 0.8 * d + 0.1 * (-1) ** (d // 2), 2)) for d in range(1, 11)]
+    rows[4] = ("lag", 5, 70.0)
+    table(tmp_path, rows + WIDTHS, "--norm", norm)
+    told = "".join(capsys.readouterr())
+    assert "line 6 lies +" in told and "mm off the law of the others" in told
+    assert "line 5 lies" not in told and "right order" not in told
+
+
+def test_normal_noise_is_seldom_called_wild():
+    rng, depths = np.random.default_rng(1), np.linspace(1, 10, 12)
+    columns = np.vander(depths, 5, increasing=True)
+    off = np.eye(12) - columns @ np.linalg.pinv(columns)
+    named = sum(bool(plausible.wild(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000))
+    assert named <= 6  # one in ten thousand values
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda row: row["s_mm"] + 20, "as if the drag had begun"),
+        (lambda row: np.radians(row["alpha_deg"]), "are these radians"),
+    ],
+    ids=["from-elsewhere", "radians"],
+)
+def test_angles_that_do_not_begin_with_the_first_are_refused(tmp_path, capsys, change, said):
+    rows = []
+    for d in (2, 4, 6, 8, 10):
+        s = np.linspace(1, 1.8 * (3 + 0.8 * d), 6)
+        row = {"s_mm": s, "alpha_deg": np.degrees(2 * np.arctan(np.exp(-s / (3 + 0.8 * d))))}
+        row["s_mm" if said.startswith("as") else "alpha_deg"] = change(row)
+        rows.append({"depth_mm": d, "alpha0_deg": 90, **{key: value.tolist() for key, value in row.items()}})
+    widths = [{"depth_mm": d, "value_mm": width} for _, d, width in WIDTHS]
+    content = {"format": "brushsvg/measurements", "version": 1, "angles": rows, "width": widths}
+    (tmp_path / "m.json").write_text(json.dumps(content))
+    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 1
+    assert said in capsys.readouterr().err

@@ -231,6 +231,12 @@ def test_no_depth_is_rounded_beyond_the_brush(deepest):
     assert max(stroke.depth_mm for stroke in made.strokes) == pytest.approx(deepest, abs=0.01)
 
 
+@pytest.mark.parametrize("sheet", ["9x9", "1x5000"])
+def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
+    assert main(["chart", str(tmp_path / "c.json"), "--sheet", sheet]) == 1
+    assert "too small for the markers in its corners" in capsys.readouterr().err
+
+
 def test_same_chart_each_time():
     texts = [write_chart(chart(find_brush("round-6"), A5)) for _ in range(2)]
     assert len(set(texts)) == 1

@@ -8,7 +8,8 @@ import pytest
 from brushsvg import _core, compensate, find_brush, read_drawing, strokes
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.new_brush import new_brush, read_widths
+from brushsvg.measurements import read_widths
+from brushsvg.new_brush import new_brush
 
 
 @pytest.mark.parametrize(
@@ -142,3 +143,12 @@ def test_a_brush_is_not_written_over(tmp_path, monkeypatch, capsys):
     assert main("brush new mine --lag 5 --width-at 3=2".split()) == 1
     assert "there already" in capsys.readouterr().err
     assert (tmp_path / "mine.json").read_text() == "somebody's"
+
+
+def test_a_brush_without_a_name_or_with_impossible_widths_is_refused(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["brush", "new", "", "--lag", "5", "--width-at", "3=3"]) == 1
+    assert "a brush needs a name" in capsys.readouterr().err
+    assert main(["brush", "new", "odd", "--lag", "5", "--width-at", "0.001=900"]) == 1
+    assert "both count in millimetres" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -31,10 +31,13 @@ def brush_check(args) -> None:
 
 
 def brush_new(args) -> None:
-    from ..new_brush import new_brush, read_widths
+    from ..measurements import read_widths
+    from ..new_brush import new_brush
 
     path = args.name if suffix_of(args.name) == ".json" else f"{args.name}.json"
     name = os.path.splitext(os.path.basename(path))[0]
+    if not os.path.basename(args.name).strip(". "):
+        raise RefusedError([(args.name, "", "a brush needs a name, as in brushsvg brush new mine")])
     check_places(path)
     if os.path.exists(path):
         raise RefusedError([(path, "", "the file is there already: it might be somebody's brush")])
