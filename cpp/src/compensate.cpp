@@ -281,6 +281,8 @@ constexpr double kStepShare = 0.35;
 /// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
 /// little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
+/// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm.
+constexpr double kHairShare = 0.1;
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
@@ -342,9 +344,9 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
             trial.poses_mm.rows() >= Index(kMostSamples))
             break;
     }
-    // a line that cannot be followed to the tolerance: as well as with all poses, then
+    // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
     const bool turns = result.miss.has_turn_in_place;
-    const double limit_mm = std::max(options.tolerance_mm, result.miss.largest_mm);
+    const double limit_mm = std::max(options.tolerance_mm, result.miss.largest_mm + kHairShare * options.tolerance_mm);
     if (options.few_poses)
         thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
     result.miss.has_turn_in_place = turns;

@@ -116,7 +116,10 @@ class Tracer {
 
     template <class Piece, class Motion>
     void sample(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double end) {
-        if (begin > 0.0) row(m.tcp(begin), m.depth(begin), start, begin);  // the event that begins this phase
+        if (law_.rigid && !moved_) take_heading(start);
+        // the event that begins this phase; a pen's turn
+        if (begin > 0.0 || tightens_at_once(start) || turns_at_once(start, m.depth(begin)))
+            row(m.tcp(begin), m.depth(begin), start, begin);
         // straight out from the contact the heading is the direction of motion from the first instant
         LagState<double> from = start;
         if (!from.taut && !from.heading_known && m.length > 0.0) from.heading = m.direction(begin);
@@ -136,6 +139,18 @@ class Tracer {
             a = b;
             ta = tb;
         }
+    }
+
+    /// A landing can end with the lever drawn out to a rounding error: it is dragged from there, not from the next
+    /// pose.
+    bool tightens_at_once(const LagState<double>& start) const {
+        return start.taut && start.heading_known && !law_.rigid && !out_.taut.back();
+    }
+    /// A pen heads along the next move at once: with no second row there the turn would be spread over that move.
+    bool turns_at_once(const LagState<double>& start, double depth) const {
+        if (!law_.rigid || !moved_) return false;
+        const auto [front, half] = extents_.at(depth);
+        return (start.heading - last_heading_).norm() * std::max(front, half) > tolerance_;
     }
 
     template <class Piece, class Motion>
@@ -192,14 +207,19 @@ class Tracer {
         return state.taut || law_.rigid || r <= 0.0 ? 1.0 : std::min(1.0, (q - state.contact).norm() / r);
     }
 
-    void row(const Vec2<double>& q, double depth, const LagState<double>& state, double t) {
-        if ((state.heading_known || state.taut) && !moved_) {
-            // rows since touch-down, or since the pass began, take the first heading there is
+    /// Rows since touch-down, or since the pass began, take the first heading there is. A pen is taut before it has
+    /// one.
+    void take_heading(const LagState<double>& state) {
+        if (!moved_ && (state.heading_known || (state.taut && !law_.rigid))) {
             std::fill(out_.heading_rad.begin() + first_row_, out_.heading_rad.end(),
                       std::atan2(state.heading.y(), state.heading.x()));
             moved_ = moved_once_ = true;
         }
         if (moved_) last_heading_ = state.heading;
+    }
+
+    void row(const Vec2<double>& q, double depth, const LagState<double>& state, double t) {
+        take_heading(state);
         add(t, q, depth, state, pull_of(state, q, depth));
     }
 

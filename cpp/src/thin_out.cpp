@@ -29,6 +29,10 @@ constexpr double kMostTurnRad = 1.0;
 constexpr double kBeside[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
 /// And how much of that in depth, which the brush does not smooth: half the sagitta at a third.
 constexpr double kDeeper = 0.75;
+/// The mark's middle may be so many tolerances ahead of or behind where it was after the same share of the way. Where
+/// poses lie far apart, on straight lines, a mark beside the line is what else it would be next to: other sides of a
+/// triangle, a there with no back.
+constexpr double kSlipShare = 10.0;
 /// The footprint's tip may be off by so many tolerances: it lies inside the mark, its sides are what shows.
 constexpr double kTipShare = 3.0;
 
@@ -175,7 +179,8 @@ class Walk {
             if (turn > kMostTurnRad) return step;
         }
         bool good = true;
-        const Index stride = std::max<Index>(1, (j - i) / kLooks);
+        // a pen smooths nothing: every pose may be a spike of its own
+        const Index stride = law_.rigid ? 1 : std::max<Index>(1, (j - i) / kLooks);
         Index k = i + 1;
         const double from = was_.along[i], length = was_.along[j] - from;
         advance(law_, move, step.state,
@@ -204,6 +209,8 @@ class Walk {
     /// Whether the footprint is where it was about pose k, to the tolerance.
     bool is_near(const LagState<double>& now, double depth, Index k) const {
         const Vector2d middle = now.contact + brush_.lever_to_widest(depth) * now.heading;
+        const double most_slip = kSlipShare * tolerance_;
+        if ((middle - was_.middle.row(k).transpose()).squaredNorm() > most_slip * most_slip) return false;
         double least = 1e300;
         for (Index i = std::max(first_, k - 2); i < std::min(last_, k + 2); ++i) {
             const Vector2d a = was_.middle.row(i).transpose(), d = was_.middle.row(i + 1).transpose() - a;
@@ -283,9 +290,12 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
     const Traced was(pass, brush, marks);
     const Ring middle = widest_points(marks, brush);
     // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
-    for (const double share : {0.95, 0.7, 0.4}) {
+    for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {
         const Pass trial = thinned(pass, brush, was, share * tolerance_mm);
-        if (apart(simulate(trial, brush, exact_mm, false), brush, middle) <= tolerance_mm) return trial;
+        const PassMarks now = simulate(trial, brush, exact_mm, false);
+        // both ways: a mark that lacks a part is nowhere beside what it should be
+        if (apart(now, brush, middle) <= tolerance_mm && apart(marks, brush, widest_points(now, brush)) <= tolerance_mm)
+            return trial;
     }
     return pass;
 }

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
+#include "brushsvg/compensate.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -36,6 +39,21 @@ TEST_CASE("the mean is over the length and not over the rows") {
     CHECK(fine.mean_mm == doctest::Approx(coarse.mean_mm).epsilon(0.01));
     CHECK(fine.mean_mm > 0.1);
     CHECK(std::abs(fine.at_mm[0] - 60.0) < 5.0);  // at the corner
+}
+
+TEST_CASE("a turned line is missed by the same mean, where a landing leaves the brush taut but for rounding") {
+    const Brush brush = shipped("round-6");
+    const Stroke along_x = stroke_of(polyline({V(0, 0), V(80, 0)}), {{0.0, 2.5}});
+    CompensateOptions options;
+    options.method = Compensation::constant;
+    const double mean = compensate(along_x, brush, options).miss.mean_mm;
+    CHECK(mean < 0.5);
+    for (int k = 1; k < 40; ++k) {
+        CAPTURE(k);
+        const V to(80.0 * std::cos(0.1 * k), 80.0 * std::sin(0.1 * k));
+        const Stroke turned = stroke_of(polyline({V(120, 90), V(120, 90) + to}), {{0.0, 2.5}});
+        CHECK(compensate(turned, brush, options).miss.mean_mm == doctest::Approx(mean).epsilon(0.02));
+    }
 }
 
 TEST_CASE("a pass that never pulls the brush tight misses nothing") {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "round6.hpp"
@@ -135,6 +136,19 @@ TEST_CASE("a rigid pen on an arc heads along it") {
         if (m.pose[i] >= 1 && m.pose[i] <= 2)
             CHECK(m.heading_rad[i] == doctest::Approx((m.pose[i] - 1) * 1.5707963267948966).epsilon(1e-9));
     }
+}
+
+TEST_CASE("a pen turns at a corner at once, and heads for its first move from the landing on") {
+    const Brush pen = shipped("rigid");
+    const PassMarks m = simulate(pass_of({{0, 0, 0}, {0, 0, -0.2}, {0, 20, -0.2}, {-9, 20, -0.2}, {-9, 20, 0}}), pen);
+    for (std::size_t i = 0; i < m.pose.size(); ++i) {
+        CAPTURE(m.pose[i]);
+        const double degrees = m.heading_rad[i] * 180.0 / 3.14159265358979;
+        if (m.pose[i] < 2.0) CHECK(degrees == doctest::Approx(90.0));
+        if (m.pose[i] > 2.0) CHECK(degrees == doctest::Approx(180.0));
+    }
+    CHECK(std::count(m.pose.begin(), m.pose.end(), 2.0) == 2);  // before the turn and after it
+    CHECK(std::count(m.pose.begin(), m.pose.end(), 3.0) == 1);
 }
 
 TEST_CASE("an empty pass and a pass of one pose") {

@@ -8,7 +8,8 @@ namespace brushsvg {
 
 /// Forward: what the brush does when the TCP follows a pass. Rows stand at every pose, at every event (loosening,
 /// tightening, touching, lifting) and in between as closely as `tolerance_mm` asks: half way between two
-/// rows no point of the footprint is farther than it from the straight line between them.
+/// rows no point of the footprint is farther than it from the straight line between them. Where a pen turns there are
+/// two at the same pose: it heads for the next one at once.
 /// Throws Error when a pose is deeper than the brush allows or not finite.
 /// `for_outlines` false leaves out the rows that only the footprint's shape needs, not its motion: quick, enough for
 /// widest_points().
