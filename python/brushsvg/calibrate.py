@@ -77,6 +77,8 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     brush = maker.brush(name or measured.name or "measured")
     laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
     plausible.refuse_brush(brush)
+    for law in ("lag", "half_width"):  # what a plan is led by
+        plausible.refuse_open(maker.done[law], brush.depth_range_mm)
     return Calibration(brush, laws, tuple([*remarks, *maker.remarks, *plausible.odd(brush, laws)]))
 
 

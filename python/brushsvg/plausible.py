@@ -15,6 +15,7 @@ LEAST_ALPHA0_DEG = (
 UNTURNED_DEG = 5.0  # by so much may an angle grow through its noise
 READ_TO_DEG = 6.0  # as the article read its own
 NOT_FROM_START = 0.5  # in lags: a series may seem to begin by so much earlier or later
+OPEN_PART = 0.25  # of the depths, at which a law may be nothing at all
 WILD = 4.0  # standard deviations of normal noise: one in ten thousand
 SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
 # Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
@@ -187,6 +188,28 @@ def refuse_brush(brush) -> None:
             "tip_gap",
             gap,
         )
+
+
+def refuse_open(fitted, range_mm: tuple[float, float]) -> None:
+    """A law whose 95 % interval holds 0 over much of its depths; fitted: a calibrate.Fitted."""
+    covariance = np.array(fitted.fit.covariance)
+    if not covariance.size:
+        return
+    depths = np.linspace(*range_mm, 41)[1:]
+    powers = np.vander(depths, len(covariance), increasing=True)
+    half = 1.96 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", powers, covariance, powers), 0.0))
+    values = np.array([fitted.fit.law(depth) for depth in depths])
+    if np.mean(half > values) <= OPEN_PART:
+        return
+    worst = int(np.argmax(half / np.maximum(values, 1e-9)))
+    todo = "measure it at more depths, from shallow to the deepest"
+    for k, off_mm in fitted.wild_mm.items():
+        todo = f"{fitted.points[k].where} lies {off_mm:+.2f} mm off the law of the others: measure it again"
+    raise Error(
+        f"these values leave the {fitted.name} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at depth "
+        f"{depths[worst]:.3g} mm: {todo}",
+        fitted.name,
+    )
 
 
 def odd(brush, laws) -> list[str]:

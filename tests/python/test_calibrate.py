@@ -287,6 +287,14 @@ def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
     assert "line 5 lies" not in told and "right order" not in told
 
 
+def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
+    rows = [("lag", 5.0, 6.11), ("lag", 5.0, 6.16), ("lag", 5.3, 7.0), ("lag", 5.3, 7.35)]
+    code, out = table(tmp_path, rows + WIDTHS[:3] + [("width", 5.3, 5.3)])
+    assert code == 1 and not out.exists()
+    told = capsys.readouterr().err
+    assert "these values leave the lag open" in told and "measure it at more depths" in told
+
+
 def test_normal_noise_is_seldom_called_wild():
     rng, depths = np.random.default_rng(1), np.linspace(1, 10, 12)
     columns = np.vander(depths, 5, increasing=True)
