@@ -346,7 +346,8 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
     }
     // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
     const bool turns = result.miss.has_turn_in_place;
-    const double limit_mm = std::max(options.tolerance_mm, result.miss.largest_mm + kHairShare * options.tolerance_mm);
+    const double missed_mm = result.miss.largest_mm, tolerance_mm = options.tolerance_mm;
+    const double limit_mm = missed_mm <= tolerance_mm ? tolerance_mm : missed_mm + kHairShare * tolerance_mm;
     if (options.few_poses)
         thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
     result.miss.has_turn_in_place = turns;
