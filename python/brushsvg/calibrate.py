@@ -47,6 +47,13 @@ class Fitted:
     remarks: tuple[str, ...] = ()
     wild_mm: dict[int, float] = field(default_factory=dict)
 
+    def wild_told(self) -> list[str]:
+        """A sentence for each wild point, the wildest first."""
+        return [
+            f"{self.points[k].where} lies {off_mm:+.2f} mm off the law of the others: measure it again"
+            for k, off_mm in sorted(self.wild_mm.items(), key=lambda item: -abs(item[1]))
+        ]
+
 
 @dataclass(frozen=True)
 class Calibration:

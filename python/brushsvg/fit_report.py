@@ -38,11 +38,7 @@ def _law(brush, fitted) -> list[str]:
             "  95 % +- " + ", ".join(f"{half:.2g}" for half in law.half_interval_95) + " (ascending powers)"
         )
     lines += [f"  {remark}" for remark in fitted.remarks]
-    for k, left in fitted.wild_mm.items():
-        lines.append(
-            f"  {fitted.points[k].where} lies {left:+.2f} mm off the law of the others: measure it again"
-        )
-    return lines
+    return [*lines, *(f"  {told}" for told in fitted.wild_told())]
 
 
 def _table(brush) -> list[str]:

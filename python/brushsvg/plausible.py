@@ -202,9 +202,7 @@ def refuse_open(fitted, range_mm: tuple[float, float]) -> None:
     if np.mean(half > values) <= OPEN_PART:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))
-    todo = "measure it at more depths, from shallow to the deepest"
-    for k, off_mm in fitted.wild_mm.items():
-        todo = f"{fitted.points[k].where} lies {off_mm:+.2f} mm off the law of the others: measure it again"
+    todo = next(iter(fitted.wild_told()), "measure it at more depths, from shallow to the deepest")
     raise Error(
         f"these values leave the {fitted.name} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at depth "
         f"{depths[worst]:.3g} mm: {todo}",
