@@ -107,6 +107,51 @@ inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
     return out;
 }
 
+/// The flank on the side of a point behind the tip, on and on: its place, the point's foot, lies beyond the tip.
+inline NearestEdge flank_beyond_tip(const Drop& drop, double x, double y) {
+    const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y), length = std::hypot(drop.widest, drop.half);
+    const double t = (x * drop.widest + up * drop.half) / (length * length);
+    return {(up * drop.widest - x * drop.half) / length,
+            t * drop.widest,
+            side * t * drop.half,
+            -drop.half / length,
+            side * drop.widest / length,
+            t,
+            0.0,
+            side * t};
+}
+
+/// The place of a drop's edge that lies farthest in direction (nx, ny), a unit vector in the drop's frame.
+inline NearestEdge farthest_edge(const Drop& drop, double nx, double ny) {
+    const double up = std::abs(ny), side = ny < 0.0 ? -1.0 : 1.0;
+    NearestEdge out{0, 0, 0, nx, ny, 0, 0, 0};
+    const bool ahead = nx > 0.0;
+    if (ahead || drop.round_tail) {
+        const double axis = ahead ? drop.front : drop.widest, ex = axis * nx, ey = drop.half * up;
+        const double length = std::sqrt(ex * ex + ey * ey), c = length > 0.0 ? ex / length : 1.0;
+        out.by_widest = ahead ? 1.0 : 1.0 + c;
+        out.by_front = ahead ? c : 0.0;
+        out.by_half = side * (length > 0.0 ? ey / length : 0.0);
+    } else if (drop.widest * nx + drop.half * up > 0.0) {
+        out.by_widest = 1.0;
+        out.by_half = side;
+    }
+    out.x = out.by_widest * drop.widest + out.by_front * drop.front;
+    out.y = out.by_half * drop.half;
+    return out;
+}
+
+/// Of a line that touches a drop at one place and the drop, an instant later, at another: the place at a share of it.
+inline NearestEdge between(const Drop& drop, const NearestEdge& one, const NearestEdge& other, double share) {
+    NearestEdge out = one;
+    out.by_widest += share * (other.by_widest - one.by_widest);
+    out.by_front += share * (other.by_front - one.by_front);
+    out.by_half += share * (other.by_half - one.by_half);
+    out.x = out.by_widest * drop.widest + out.by_front * drop.front;
+    out.y = out.by_half * drop.half;
+    return out;
+}
+
 /// Where a line runs inside a drop: (x, y) + t (dx, dy) for t in [from, to]; empty where to < from. In the drop's
 /// frame, which flank and front divide into a triangle and half an ellipse.
 struct Span {

@@ -7,7 +7,9 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kNearMm = 0.5;   // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
+constexpr double kNearMm = 0.5;  // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
+constexpr int kStraighter = 3;   // times that a way out is made square to the edge
+constexpr double kSquare = 0.9999;
 constexpr double kGrazing = 0.3;  // cosine below which an edge that is met aslant says nothing more exact
 
 /// The predicted edge beside one point of a painted one.
@@ -19,14 +21,23 @@ struct Beside {
     double aslant;           ///< cosine between the painted edge's normal and the predicted one's
 };
 
-/// Where a footprint's edge passes by, what it sweeps ends along its way: the normal lies across it. Instants are some
-/// tenths of a mm apart, and the nearest one's own normal would tell of when it passes, not where. How much of it is
-/// left is told by its length.
-Eigen::Vector2d swept_normal(const Footprints& footprints, std::size_t row, const NearestEdge& edge) {
-    const Eigen::Vector2d u = footprints[row].heading, left(-u.y(), u.x());
-    const Eigen::Vector2d own = edge.nx * u + edge.ny * left, along = footprints.passing(row, edge);
-    const Eigen::Vector2d across = own - own.dot(along) * along;
-    return across.squaredNorm() > kGrazing * kGrazing ? across : own;
+/// Instants stay where the TCP is while the laws change, and what a footprint's edge sweeps shifts along itself: of an
+/// edge that passes by, only what moves across its way moves the swept edge.
+Eigen::Vector2d across_the_way(const Footprints& footprints, std::size_t row, const SweptEdge& swept) {
+    const Eigen::Vector2d along = footprints.passing(row, swept.edge);
+    const Eigen::Vector2d across = swept.normal - swept.normal.dot(along) * along;
+    return across.squaredNorm() > kGrazing * kGrazing ? across.normalized() : swept.normal;
+}
+
+/// The edge through which the way from x along `out` leaves footprint `row`, `far` off, and its neighbours.
+Beside left_at(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& out, double far,
+               std::size_t row) {
+    const Eigen::Vector2d end = x + far * out, at = footprints[row].in_frame(end);
+    const NearestEdge own = nearest_edge(footprints[row].drop, at.x(), at.y());
+    const SweptEdge swept = footprints.swept(end, row, own);
+    const Eigen::Vector2d across = across_the_way(footprints, row, swept);
+    const double aslant = std::max(kGrazing, across.dot(out));
+    return {swept.edge, row, -far + std::min(0.0, swept.distance) / aslant, across, aslant};
 }
 
 /// From x, inside a footprint, along the painted edge's normal, or another way where that is far: outside it is the
@@ -46,13 +57,36 @@ Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
             row = other;
         }
     }
-    const Instant& last = footprints[row];
-    const Eigen::Vector2d at = last.in_frame(x + far * out);
-    const NearestEdge edge = nearest_edge(last.drop, at.x(), at.y());
-    const Eigen::Vector2d swept = swept_normal(footprints, row, edge).normalized();
-    const double aslant = std::max(kGrazing, swept.dot(out));
-    if (far < kNearMm) far += footprints.nearer_between(x + far * out, row, 0.0) / aslant;
-    return {edge, row, -far, swept, aslant};
+    Beside found = left_at(footprints, x, out, far, row);
+    // a painted normal errs as its edge does; square to the edge that it led to the way is shorter
+    for (int round = 0; round < kStraighter && far < kNearMm && found.aslant < kSquare; ++round) {
+        const Eigen::Vector2d square = found.normal;
+        far = footprints.way_out(x, square, row);
+        const Beside other = left_at(footprints, x, square, far, row);
+        if (!(other.distance_mm > found.distance_mm) || !(other.normal.dot(square) > kGrazing)) break;
+        found = other;
+    }
+    return found;
+}
+
+/// From x, outside all footprints.
+Beside way_in(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal, std::size_t row,
+              const NearestEdge& nearest) {
+    const Instant& here = footprints[row];
+    if (nearest.distance > kNearMm) {
+        const SweptEdge alone{nearest.distance, here.on_paper(nearest), nearest};
+        return {nearest, row, nearest.distance, across_the_way(footprints, row, alone), 1.0};
+    }
+    const bool tip = nearest.by_widest == 0.0 && !here.drop.round_tail;
+    const Eigen::Vector2d at = here.in_frame(x);
+    // off a tip as off its flanks, as on the inside: else edges that err both ways would draw it out
+    SweptEdge swept = footprints.swept(x, row, tip ? flank_beyond_tip(here.drop, at.x(), at.y()) : nearest);
+    if (swept.normal.dot(normal) < -kGrazing) {
+        // what errs inwards by more than a hairline is wide has come out on its other side
+        const SweptEdge across = footprints.swept(x, row, here.farthest(-swept.normal));
+        if (std::abs(across.distance) < kNearMm) swept = across;
+    }
+    return {swept.edge, row, swept.distance, across_the_way(footprints, row, swept), 1.0};
 }
 
 }  // namespace
@@ -75,15 +109,9 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     for (Index k = 0; k < points.rows(); ++k) {
         const Eigen::Vector2d x = points.row(k).transpose();
         const NearestEdge nearest = footprints.nearest(x, row);
-        Beside beside{nearest, row, nearest.distance, Eigen::Vector2d::Zero(), 1.0};
-        if (nearest.distance < 0.0) {
-            beside = way_out(footprints, x, back * painted.outward.row(k).transpose(), row);
-        } else {
-            const Eigen::Vector2d swept = swept_normal(footprints, row, nearest);
-            beside.normal = swept.normalized();
-            beside.distance_mm *= swept.norm();
-            if (nearest.distance < kNearMm) beside.distance_mm -= footprints.nearer_between(x, row, nearest.distance);
-        }
+        const Eigen::Vector2d outward = back * painted.outward.row(k).transpose();
+        const Beside beside = nearest.distance < 0.0 ? way_out(footprints, x, outward, row)
+                                                     : way_in(footprints, x, outward, row, nearest);
         row = beside.row;
         distance_mm[k] = beside.distance_mm;
         if (!by_shared) continue;

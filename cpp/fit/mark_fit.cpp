@@ -57,7 +57,7 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     else
         start(at, marks, options);
     bool converged = false;
-    for (const auto& [loss, tolerance] : {std::pair{Loss::huber, 1e-4}, std::pair{Loss::huber, 1e-5},
+    for (const auto& [loss, tolerance] : {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::cauchy, 1e-5},
                                           std::pair{Loss::tukey, 1e-6}, std::pair{Loss::tukey, 1e-7}}) {
         at.weighing.loss = loss;
         converged = at.solve(options.most_iterations, tolerance);

@@ -13,7 +13,8 @@ namespace {
 // Where a loose brush is passed by its TCP the footprint turns round within tenths of a mm of the way: between instants
 // farther apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
 constexpr double kApartMm = 0.25;
-constexpr int kMostParts = 200, kRounds = 4;
+constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
+constexpr double kLeastCosine = 0.05;
 
 using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
 
@@ -164,20 +165,42 @@ NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) cons
     return best;
 }
 
-double Footprints::nearer_between(const Eigen::Vector2d& x, std::size_t row, double distance_mm) const {
-    if (row == 0 || row + 1 >= rows_.size()) return 0.0;
-    const double come = gone_[row] - gone_[row - 1], go = gone_[row + 1] - gone_[row];
-    // farther apart only where the brush was in the air in between
-    if (!(std::min(come, go) > 1e-9) || std::max(come, go) > 4.0 * kApartMm) return 0.0;
-    const auto farther = [&](std::size_t i) {
-        const Eigen::Vector2d here = rows_[i].in_frame(x);
-        return nearest_edge(rows_[i].drop, here.x(), here.y()).distance - distance_mm;
-    };
-    const double before = farther(row - 1) / come, after = farther(row + 1) / go;
-    if (!(before >= 0.0 && after >= 0.0)) return 0.0;
-    // the least of the parabola through the three distances
-    const double bend = (before + after) / (come + go), slope = (after * come - before * go) / (come + go);
-    return bend > 0.0 ? slope * slope / (4.0 * bend) : 0.0;
+SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const {
+    const Instant& here = rows_[row];
+    const Eigen::Vector2d normal = here.on_paper(own), from = here.place_of(own);
+    SweptEdge best{normal.dot(x - from), normal, own};
+    for (const std::size_t other : {row - 1, row + 1}) {
+        if (other >= rows_.size()) continue;
+        // farther apart only where the brush was in the air in between
+        const double moved = std::abs(gone_[other] - gone_[row]);
+        if (!(moved > 1e-9) || moved > 4.0 * kApartMm) continue;
+        const Instant& there = rows_[other];
+        NearestEdge touched = own, beyond = there.farthest(normal);
+        Eigen::Vector2d n = normal, a = from, b = there.place_of(beyond);
+        if (n.dot(b - a) <= 1e-12) continue;  // the neighbour stays behind the footprint's own tangent
+        // From what both sweep x is as far as from the farthest of the lines that leave both behind.
+        SweptEdge pair{n.dot(x - b), n, own};
+        // the line that touches both: through the farthest places, square to it the farthest ones anew
+        for (int round = 0; round < kTangentRounds; ++round) {
+            const Eigen::Vector2d along = b - a;
+            Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+            if (across.dot(n) < 0.0) across = -across;
+            const bool still = (across - n).squaredNorm() < 1e-10;
+            n = across;
+            if (still) break;
+            touched = here.farthest(n);
+            a = here.place_of(touched);
+            beyond = there.farthest(n);
+            b = there.place_of(beyond);
+        }
+        const double distance = n.dot(x) - std::max(n.dot(a), n.dot(b));
+        if (distance > pair.distance && n.dot(normal) > kLeastCosine) {
+            const double t = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+            pair = {distance, n, between(here.drop, touched, beyond, t)};
+        }
+        if (pair.distance < best.distance) best = pair;
+    }
+    return best;
 }
 
 Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) const {

@@ -36,6 +36,20 @@ struct Instant {
         const double x = edge.by_widest * drop.widest + edge.by_front * drop.front, y = edge.by_half * drop.half;
         return contact + (x - gap) * heading + y * Eigen::Vector2d(-heading.y(), heading.x());
     }
+    Eigen::Vector2d on_paper(const NearestEdge& edge) const {  ///< its normal
+        return edge.nx * heading + edge.ny * Eigen::Vector2d(-heading.y(), heading.x());
+    }
+    /// The place of the edge that lies farthest in a direction on the paper.
+    NearestEdge farthest(const Eigen::Vector2d& n) const {
+        return farthest_edge(drop, n.dot(heading), heading.x() * n.y() - heading.y() * n.x());
+    }
+};
+
+/// A line that touches a footprint and its neighbour, or the footprint alone.
+struct SweptEdge {
+    double distance;         ///< of a point, negative inside
+    Eigen::Vector2d normal;  ///< outwards
+    NearestEdge edge;        ///< where it touches the footprint
 };
 
 class Footprints {
@@ -52,9 +66,9 @@ class Footprints {
     NearestEdge nearest(const Eigen::Vector2d& x, std::size_t& row) const;
     /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
     double way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const;
-    /// How much nearer to x than footprint `row`, `distance_mm` off, comes what it sweeps on the way from and to its
-    /// neighbours: instants are so far apart that their union is scalloped, footprints of 0.3 mm by 0.01 mm.
-    double nearer_between(const Eigen::Vector2d& x, std::size_t row, double distance_mm) const;
+    /// Edge of what footprint `row` and its neighbours sweep, beside a place of the footprint's own edge: instants are
+    /// so far apart that footprints alone would leave scallops of 0.02 mm, and gaps where they are shorter than that.
+    SweptEdge swept(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const;
     /// Direction in which a place of a footprint's edge passes by; none where it rests, turns back, begins or ends.
     Eigen::Vector2d passing(std::size_t row, const NearestEdge& edge) const;
 

@@ -6,14 +6,14 @@
 // What a distance from the predicted edge costs. Inside fit_marks.
 namespace brushsvg::fit {
 
-constexpr double kHuber = 1.345, kTukey = 4.685;  // each 95 % as sharp as least squares on normal noise
+constexpr double kCauchy = 2.385, kTukey = 4.685;  // each 95 % as sharp as least squares on normal noise
 
 /// What a distance costs, in standard deviations z: rho(z), psi = rho'/2, its slope.
 struct Cost {
     double rho, psi, slope;
 };
 
-enum class Loss { huber, tukey };
+enum class Loss { cauchy, tukey };  // from afar whatever is wild pulls, less the farther it is; in the end not at all
 
 inline Cost cost(Loss loss, double z) {
     if (loss == Loss::tukey) {
@@ -21,8 +21,8 @@ inline Cost cost(Loss loss, double z) {
         if (t <= 0.0) return {c2 / 3.0, 0.0, 0.0};
         return {c2 / 3.0 * (1.0 - t * t * t), z * t * t, t * (t - 4.0 * z * z / c2)};
     }
-    if (std::abs(z) <= kHuber) return {z * z, z, 1.0};
-    return {2.0 * kHuber * std::abs(z) - kHuber * kHuber, std::copysign(kHuber, z), 0.0};
+    const double c2 = kCauchy * kCauchy, t = 1.0 + z * z / c2;
+    return {c2 * std::log(t), z / t, (2.0 - t) / (t * t)};
 }
 
 /// How sure distances are and what wild ones cost. Neighbours along an outline err together.
@@ -31,7 +31,7 @@ struct Weighing {
     double repeats = 1.0;               ///< what squares are divided by: so many neighbours tell as much as one
     std::vector<double> together{1.0};  ///< autocovariance of psi along an outline: at 0, 1, 2 ... points
     double slope = 1.0;                 ///< mean slope of psi
-    Loss loss = Loss::huber;
+    Loss loss = Loss::cauchy;
 };
 
 }  // namespace brushsvg::fit

@@ -8,6 +8,7 @@ namespace {
 
 // No picture of paint is surer, and what the laws cannot follow of a very clean one must not count as wild.
 constexpr double kLeastNoiseMm = 0.05;
+constexpr int kScaleRounds = 5;
 constexpr Index kFarthest = 60;  // points along an outline that may err together
 
 /// A mark's distances and their derivatives by all that moves them: the shared unknowns and its displacement.
@@ -101,9 +102,13 @@ Weighing weighed(const MarkProblem& at) {
     std::vector<double> size;
     for (const Seen& mark : marks)
         for (double d : mark.distance_mm) size.push_back(std::abs(d));
-    const auto middle = size.begin() + std::ptrdiff_t(size.size() / 2);
-    std::nth_element(size.begin(), middle, size.end());
-    out.noise_mm = std::max(kLeastNoiseMm, 1.482602218505602 * *middle);
+    std::sort(size.begin(), size.end());
+    auto end = size.end();
+    for (int round = 0; round < kScaleRounds; ++round) {  // over what has a say: a page's border would make all unsure
+        out.noise_mm = std::max(kLeastNoiseMm, 1.482602218505602 * size[std::size_t(end - size.begin()) / 2]);
+        if (out.loss != Loss::tukey) break;
+        end = std::lower_bound(size.begin(), size.end(), kTukey * out.noise_mm);
+    }
     leave_out_wild(marks, out);
 
     double slope = 0.0, counted = 0.0;

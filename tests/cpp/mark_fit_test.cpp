@@ -48,6 +48,39 @@ TEST_CASE("the nearest place on a drop's edge is that of its densely sampled out
             CHECK(out.distance == doctest::Approx(0.01).epsilon(0.05));
             CHECK(least_distance(drop, found.x, found.y) > -0.02);
         }
+        for (int i = 0; i < 50; ++i) {
+            const Eigen::Vector2d n = Eigen::Vector2d(std::cos(i), std::sin(i));
+            double far = -1e9;
+            for (const auto& p : edge) far = std::max(far, n.x() * p.x() + std::abs(n.y()) * p.y());
+            const NearestEdge found = farthest_edge(drop, n.x(), n.y());
+            CHECK(n.x() * found.x + n.y() * found.y == doctest::Approx(far).epsilon(1e-6));
+            CHECK(found.x == doctest::Approx(found.by_widest * drop.widest + found.by_front * drop.front));
+            CHECK(found.y == doctest::Approx(found.by_half * drop.half));
+        }
+    }
+}
+
+TEST_CASE("along a straight stroke the edge is straight, however narrow, and a side stays its own where sides cross") {
+    Poses poses(2, 3);
+    poses << 0, 0, -1, 40, 0, -1;
+    for (const double half : {0.03, 0.1, 0.4, 1.5, 4.0}) {
+        MarkLaws laws;
+        laws.lag = {3.0};
+        laws.tip_gap = {0.0, 0.5};
+        laws.half_width = {0.0, half};
+        for (const double up : {half, half + 0.2, std::max(half - 0.3, -0.1)}) {  // the last: hairlines' sides cross
+            Ring ring(4, 2);
+            ring << 10, -up, 30, -up, 30, up, 10, up;
+            const MarkModel model({PaintedMark{"s", poses, {ring}}}, MarkOptions{});
+            const VectorXd x = model.unknowns(laws);
+            const Eigen::Vector2d still = Eigen::Vector2d::Zero();
+            VectorXd distance;
+            REQUIRE(model.distances(0, x.data(), still.data(), distance, nullptr, nullptr));
+            const Ring placed = model.placed(0, x.data(), still.data());
+            for (Eigen::Index k = 0; k < placed.rows(); ++k)
+                if (placed(k, 0) > 11.0 && placed(k, 0) < 29.0)
+                    CHECK(distance[k] == doctest::Approx(up - half).epsilon(2e-3).scale(0.1));
+        }
     }
 }
 
