@@ -7,10 +7,10 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kNearMm = 0.5;  // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
-constexpr int kStraighter = 3;   // times that a way out is made square to the edge
-constexpr double kSquare = 0.9999;
-constexpr double kGrazing = 0.3;  // cosine below which an edge that is met aslant says nothing more exact
+constexpr double kNearMm = 0.5;     // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
+constexpr int kStraighter = 3;      // times that a way out is made square to the edge
+constexpr double kSquare = 0.9999;  // cosine above which it is
+constexpr double kGrazing = 0.3;    // cosine below which an edge that is met aslant says nothing more exact
 
 /// The predicted edge beside one point of a painted one.
 struct Beside {

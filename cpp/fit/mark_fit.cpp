@@ -72,6 +72,9 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
                   const MarkOptions& options) {
     refuse_what_cannot_be_fitted(marks, options);
     MarkProblem fit(marks, options);
+    Index points = 0;
+    for (Index i = 0; i < fit.model.marks(); ++i) points += fit.model.points(i);
+    if (points == 0) throw Error("there are only specks, no mark");
     MarkFit out;
     if (options.noise_mm)
         expect(fit, from, options);

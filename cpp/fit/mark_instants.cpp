@@ -14,7 +14,7 @@ namespace {
 // farther apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
 constexpr double kApartMm = 0.25;
 constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
-constexpr double kLeastCosine = 0.05;
+constexpr double kLeastCosine = 0.05;  // between a footprint's own normal and that of a line that touches it
 
 using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
 

@@ -48,9 +48,10 @@ class MarkModel {
     VectorXd least() const;
 
     /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
-    /// mark's displacement where asked for. Outside it is that from the nearest footprint. Inside it is negative: how
-    /// far it is out of all footprints along the painted edge's normal, and not how deep it lies in one of them, of
-    /// which slim footprints would make little. False where there is no prediction.
+    /// mark's displacement where asked for. Outside it is that from the nearest footprint and what it sweeps to its
+    /// neighbours. Inside it is negative: how far it is out of all footprints, square to the edge that the painted
+    /// edge's normal leads to, and not how deep it lies in one of them, of which slim footprints would make little.
+    /// False where there is no prediction.
     bool distances(Index mark, const double* shared, const double* displacement, VectorXd& distance_mm,
                    RowMajor* by_shared, RowMajor* by_displacement) const;
     /// The points of a mark in the frame of the plan.

@@ -84,6 +84,15 @@ TEST_CASE("along a straight stroke the edge is straight, however narrow, and a s
     }
 }
 
+TEST_CASE("specks alone are refused") {
+    Poses poses(2, 3);
+    poses << 0, 0, -1, 40, 0, -1;
+    Ring speck(3, 2);
+    speck << 0, 0, 0.1, 0, 0.1, 0.1;
+    CHECK_THROWS_WITH_AS(fit_marks({PaintedMark{"s", poses, {speck}}}, std::nullopt, MarkOptions{}),
+                         doctest::Contains("only specks"), Error);
+}
+
 TEST_CASE("derivatives of edge distances are those of small steps, events and landings included") {
     Poses poses(6, 3);
     poses << 0, 0, 0, 8, 0, -4, 25, 2, -5, 26, 20, -3, 22, 6, -6, 10, 8, -2;
@@ -117,8 +126,7 @@ TEST_CASE("derivatives of edge distances are those of small steps, events and la
         value += step;
         for (Eigen::Index k = 0; k < at.size(); ++k) {
             const double told = i < x.size() ? by(k, i) : own(k, i - x.size());
-            // derivatives are those of what is swept, distances those of instants; midway between two places of the
-            // edge there is a kink
+            // derivatives leave out how the touching lines turn; midway between two places of the edge there is a kink
             if (std::abs((up[k] - down[k]) / (2.0 * step) - told) > 0.1 * (1.0 + std::abs(told))) ++wrong;
         }
     }
