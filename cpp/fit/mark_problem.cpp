@@ -9,6 +9,9 @@
 namespace brushsvg::fit {
 namespace {
 
+constexpr double kFarShare = 0.2;
+constexpr int kMoves = 3;
+
 /// One mark for the solver: residuals whose squares add up to the loss.
 class MarkCost : public ceres::CostFunction {
  public:
@@ -98,6 +101,36 @@ double MarkProblem::loss() const {
         for (double d : distance) sum += cost(weighing.loss, d / weighing.noise_mm).rho;
     }
     return 0.5 * sum / weighing.repeats;
+}
+
+double MarkProblem::loss_of(Index mark, const Eigen::Vector2d& displacement) const {
+    VectorXd distance;
+    if (!model.distances(mark, shared.data(), displacement.data(), distance, nullptr, nullptr)) return INFINITY;
+    double sum = displacement.squaredNorm() / (displacement_mm_ * displacement_mm_) * weighing.repeats;
+    for (double d : distance) sum += cost(weighing.loss, d / weighing.noise_mm).rho;
+    return 0.5 * sum / weighing.repeats;
+}
+
+void MarkProblem::find_displaced() {
+    if (!(displacement_mm_ > 0.0)) return;
+    for (Index i = 0; i < model.marks(); ++i) {
+        Eigen::Vector2d& at = own[std::size_t(i)];
+        VectorXd distance;
+        RowMajor by(model.points(i), shared.size()), by_own(model.points(i), 2);
+        double now = loss_of(i, at);
+        for (int round = 0; round < kMoves; ++round) {
+            if (!model.distances(i, shared.data(), at.data(), distance, &by, &by_own)) break;
+            const auto far = (distance.array().abs() > kTukey * weighing.noise_mm).cast<double>();
+            if (far.sum() < kFarShare * double(distance.size())) break;
+            const RowMajor rows = far.matrix().asDiagonal() * by_own;
+            const Eigen::Matrix2d square = rows.transpose() * rows + 1e-9 * Eigen::Matrix2d::Identity();
+            const Eigen::Vector2d moved = at - square.ldlt().solve(rows.transpose() * distance);
+            const double then = loss_of(i, moved);
+            if (!(then < now)) break;
+            at = moved;
+            now = then;
+        }
+    }
 }
 
 bool MarkProblem::solve(int most_iterations, double tolerance) {

@@ -16,6 +16,9 @@ class MarkProblem {
     void begin(const MarkLaws& laws);
     /// The footprint's shape stays as it is.
     void hold_shape(bool hold);
+    /// Marks of which a part lies far off may have been matched with the wrong edge, the near one of a stroke that is
+    /// displaced by its width: they are moved to where that part lies near, if that costs less.
+    void find_displaced();
     /// Half the loss of all marks; infinite where there is no prediction.
     double loss() const;
     /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
@@ -30,6 +33,9 @@ class MarkProblem {
     int iterations = 0;
 
  private:
+    /// Half the loss of one mark at a displacement, its prior included; infinite where there is no prediction.
+    double loss_of(Index mark, const Eigen::Vector2d& displacement) const;
+
     double displacement_mm_;
     std::vector<Prior> priors_;
     std::vector<bool> held_;

@@ -16,18 +16,24 @@ from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
+ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
+TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
 UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
 
 
 @dataclass(frozen=True)
 class MarkCalibration:
-    """A brush that can be used, the fit it comes from, and the marks."""
+    """A brush that can be used, the fit it comes from, and the marks.
+
+    round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
+    """
 
     brush: _core.Brush
     fit: object
     painted: Painted
     scale: SheetScale | None = None
+    round_tail_gain: float = 0.0
 
 
 def calibrate_marks(
@@ -39,7 +45,8 @@ def calibrate_marks(
 ) -> MarkCalibration:
     """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
 
-    options: sigmas of sheet, displacement and height; depths and numbers per law are set here.
+    Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
+    displacement and height; depths, numbers per law and the tail are set here.
     """
     need_fits()
     least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
@@ -58,7 +65,7 @@ def calibrate_marks(
     options.deepest_mm = deepest
     options.lag_terms = min(LAG_TERMS, painted.depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
-    fit = _core.fit_marks(painted.marks, None, options)
+    fit, gain = _likelier_tail(painted.marks, options)
     scale = _scale(fit, painted)
     refuse_scale(scale)
     _refuse_unlike(fit, painted)
@@ -70,7 +77,21 @@ def calibrate_marks(
         getattr(brush, law).calibrated_mm = (0.0, painted.deepest_mm)
     _refuse_unsure(brush, fit)
     _core.check(brush)
-    return MarkCalibration(brush, fit, painted, scale)
+    return MarkCalibration(brush, fit, painted, scale, gain)
+
+
+def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, float]:
+    """The fit with the tail that fits better, and by how much the round one does."""
+    usual = options.widest_per_half
+    options.round_tail = False
+    pointed = _core.fit_marks(marks, None, options)
+    options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
+    rounded = _core.fit_marks(marks, pointed.laws, options)
+    options.round_tail, options.widest_per_half = False, usual
+    noise = min(pointed.noise_mm, rounded.noise_mm)
+    alike = max(fit.samples / fit.effective_samples for fit in (pointed, rounded))  # points that count as one
+    gain = (pointed.loss_mm2 - rounded.loss_mm2) / (noise**2 * alike)
+    return (rounded if gain > TELLS else pointed), gain
 
 
 def options_for(expected: dict) -> _core.MarkOptions:

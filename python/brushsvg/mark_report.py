@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _core
 from .describe import LAWS, polynomial
+from .mark_calibrate import TELLS
 from .plot import INK, brush_picture_on, encoded, law_band, new_figure
 from .sheet_scale import told
 
@@ -28,11 +29,21 @@ def report(made) -> str:
         lines.append(f"{name} = {polynomial(law.coefficients)}")
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % +- {halves} (ascending powers)")
-    lines += ["", *_table(brush), "", *_moved(made), "", *_stays(made)]
+    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made)]
     remarks = [f"note: {sentence}" for sentence in fit.remarks]
     if not fit.converged:
         remarks.append("note: the fit was still moving when it was stopped: look at the picture")
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+
+
+def _tail(made) -> str:
+    gain = made.round_tail_gain
+    if abs(gain) < TELLS:
+        return "these marks do not tell whether the footprint's tail is pointed or round; it is taken to be pointed"
+    kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
+    return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
+        *kinds, abs(gain)
+    )
 
 
 def _table(brush) -> list[str]:

@@ -20,7 +20,7 @@ CLOSE = (
 
 @dataclass
 class TrueBrush:
-    """A round brush: coefficients in ascending powers of depth, drop-shaped footprints."""
+    """A round brush: coefficients in ascending powers of depth; footprints are drops, or eggs where tails are round."""
 
     deepest: float
     lag: np.ndarray
@@ -28,6 +28,7 @@ class TrueBrush:
     half_width: np.ndarray
     widest_per_half: float
     front_per_half: float
+    round_tail: bool = False
 
     def law(self, name):
         return oracle.Law(getattr(self, name))
@@ -123,6 +124,8 @@ def paint(rng, brush, strokes, faults, vertices=33):
     centre = np.mean(np.concatenate([poses[:, :2] for _, poses in strokes]), axis=0)
     sheet = Sheet(height=height)
     for (name, poses), plan, contact in zip(strokes, plans, contacts, strict=True):
+        if not _down(plan, contact).any():
+            continue  # the paper lies too low for it
         region = _painted(brush, plan, contact, vertices)
         moved = rng.normal(0, faults.displacement, 2)
         rings = [_noisy(rng, np.array(ring.coords)[:-1], faults) for ring in _rings(region)]
@@ -163,8 +166,12 @@ def _closer(plan, contact, longest):
     return np.column_stack([np.interp(at, np.arange(len(plan)), plan[:, i]) for i in range(3)])
 
 
+def _down(plan, contact):
+    return ~np.isnan(contact[:, 0]) & (plan[:, 2] <= 0)
+
+
 def _painted(brush, plan, contact, vertices):
-    down = ~np.isnan(contact[:, 0]) & (plan[:, 2] <= 0)
+    down = _down(plan, contact)
     tcp, contact, depth = plan[down, :2], contact[down], -plan[down, 2]
     lever = tcp - contact
     reach = np.hypot(*lever.T)
@@ -177,10 +184,12 @@ def _painted(brush, plan, contact, vertices):
             u[k] = u[k - 1]
     half, gap = brush.law("half_width")(depth), brush.law("tip_gap")(depth)
     angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
+    behind = np.linspace(np.pi / 2, 3 * np.pi / 2, vertices)[1:-1] if brush.round_tail else np.array([np.pi])
+    ahead = brush.widest_per_half + brush.front_per_half * np.cos(angle)
     unit = np.column_stack(
         [
-            [0.0, *(brush.widest_per_half + brush.front_per_half * np.cos(angle))],
-            [0.0, *np.sin(angle)],
+            [*ahead, *(brush.widest_per_half * (1 + np.cos(behind)))],
+            [*np.sin(angle), *(np.sin(behind) if brush.round_tail else [0.0])],
         ]
     )
     outlines = []

@@ -14,6 +14,7 @@ if not hasattr(core, "fit_marks"):
 
 from brushsvg.errors import Error  # noqa: E402
 from brushsvg.mark_calibrate import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
+from brushsvg.mark_report import report  # noqa: E402
 from brushsvg.painted import read_painted  # noqa: E402
 from brushsvg.plot import law_band  # noqa: E402
 
@@ -21,9 +22,11 @@ DEPTHS = np.linspace(0.2, 1.0, 5)
 
 
 @cache
-def sheet(seed, depths=3, **faults):
+def sheet(seed, depths=3, round_tail=False, **faults):
     rng = np.random.default_rng(seed)
     brush = painter.random_brush(rng)
+    if round_tail:
+        brush.round_tail, brush.widest_per_half = True, brush.widest_per_half - 0.8
     strokes = painter.chart_strokes(brush.deepest, depths)
     return brush, strokes, painter.paint(rng, brush, strokes, painter.Faults(**faults))
 
@@ -67,6 +70,21 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
     assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # 1.2 is what was known before
     assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
     assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
+    assert made.round_tail_gain < -40 and not made.fit.laws.round_tail
+
+
+@pytest.mark.parametrize("seed", [2, 5])
+def test_a_round_tail_is_seen_in_the_marks(seed):
+    """Taken for a pointed one it left lag or width off by more than two standard deviations."""
+    brush, _, made = calibrated(seed, round_tail=True)
+    assert made.round_tail_gain > 40 and made.fit.laws.round_tail
+    assert made.fit.laws.widest_per_half == pytest.approx(brush.widest_per_half, abs=0.15)
+    assert made.fit.laws.front_per_half == pytest.approx(brush.front_per_half, abs=0.15)
+    for depth in DEPTHS * brush.deepest:
+        assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
+    outline = np.array(made.brush.footprints.dragged[-1].outline_mm)
+    assert np.sum(outline[:, 0] < 0.3 * made.brush.tip_to_widest(brush.deepest)) > 10, "an egg, no drop"
+    assert "with a round tail fit these marks" in report(made)
 
 
 def test_a_sheet_scanned_at_another_scale_is_refused():
@@ -87,6 +105,20 @@ def test_displacements_come_back():
     off = found - np.array(painted.displacements)
     off -= off.mean(axis=0)  # which the sheet's own shift may take
     assert np.sqrt(np.mean(off**2)) < 0.15 < np.sqrt(np.mean(np.square(painted.displacements)))
+
+
+@pytest.mark.parametrize("widths", [1.0, 1.3])
+def test_a_mark_that_lies_its_width_aside_is_found(widths):
+    """Once its near edge was taken for the far one, and half of the mark had no say."""
+    brush, strokes, painted = sheet(5)
+    plan, marks = as_file(strokes, painted)
+    k = [name for name, _ in strokes].index("straight-3")
+    aside = np.array([0.0, 2 * widths * brush.law("half_width")(brush.deepest)])
+    marks[k]["outline_mm"] = [(np.array(ring) + aside).tolist() for ring in marks[k]["outline_mm"]]
+    made = calibrate_marks(read_painted(plan, marks, None), "b")
+    found = np.array(made.fit.marks[k].displacement_mm)
+    np.testing.assert_allclose(found, painted.displacements[k] + aside, atol=0.7)
+    assert made.fit.left_aside < 0.002
 
 
 def test_blots_and_gaps_have_no_say():
