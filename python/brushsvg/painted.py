@@ -60,6 +60,7 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
     if not found:
         raise Error("there is no mark in it", "marks")
     _refuse_other_frames(found)
+    _refuse_foreign_rings(found)
     _refuse_what_tells_nothing(found)
     painted = [_core.PaintedMark(stroke, poses, _oriented(rings)) for stroke, poses, rings in found]
     deepest = max(float(-poses[:, 2].min()) for _, poses, _ in found)
@@ -212,6 +213,20 @@ def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
             "corner of the plan's sheet",
             "marks",
         )
+
+
+def _refuse_foreign_rings(found: list) -> None:
+    """A page's border would pass for paint that has no say, and the fit would take minutes to find that out."""
+    for i, (stroke, poses, rings) in enumerate(found):
+        least, most = poses[:, :2].min(axis=0), poses[:, :2].max(axis=0)
+        for k, ring in enumerate(rings):
+            beyond = float(np.maximum(least - ring, ring - most).max())
+            if beyond > FARTHEST_MM:
+                raise Error(
+                    f"a ring of the mark of stroke {stroke!r} reaches {beyond:.0f} mm beyond it, more than "
+                    f"{FARTHEST_MM:g} mm: leave out what is not its paint, such as the border of the page",
+                    f"marks[{i}].outline_mm[{k}]",
+                )
 
 
 def depths_painted(ways: list[np.ndarray]) -> int:

@@ -125,6 +125,12 @@ def bent(mark, **changes):
             "marks[1].outline_mm[0]",
             "is not a finite number",
         ),
+        (
+            plan(),
+            bent(1, outline_mm=[around(strokes()[1][1]), around(strokes()[1][1], 100.0)]),
+            "marks[1].outline_mm[1]",
+            "reaches 100 mm beyond it, more than 60 mm: leave out what is not its paint",
+        ),
         (plan(), bent(1, colour="red"), "marks[1].colour", "this is not known here"),
         (plan(), [], "marks", "there is no mark in it"),
         (None, marks(), "plan", 'marks need "plan"'),
