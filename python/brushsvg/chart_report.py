@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from . import _core
+from .bands import law_band
 from .describe import LAWS
 from .mark_calibrate import expected_brush
-from .plot import law_band
 
 ROWS = 4
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from .bands import law_band
 from .describe import polynomial
-from .plot import brush_picture, law_band
+from .plot import brush_picture
 
 TABLE_ROWS = 6
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import _core, shapes
+from .bands import LIKELY, half_interval_mm, places
 from .errors import Error
 from .new_brush import need_fits, outlines_assumed
 from .painted import Painted, depths_painted, middle
@@ -192,12 +193,9 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     if covariance is not None:
         whole = _over_brush(laws, covariance)
         brush.covariance = whole.tolist()
-        sure, first = 1.96 * np.sqrt(np.maximum(np.diag(whole), 0.0)), 0
-        for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
-            profile = getattr(brush, law)
-            count = len(profile.coefficients)
-            profile.half_interval_95 = sure[first : first + count].tolist()
-            first += count
+        sure = LIKELY * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        for law, place in places(brush).items():
+            getattr(brush, law).half_interval_95 = sure[place].tolist()
     return brush
 
 
@@ -243,17 +241,10 @@ def _refuse_unlike(fit, painted: Painted) -> None:
 
 def _refuse_unsure(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
-    first = 0
-    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
-        profile = getattr(brush, law)
-        count = len(profile.coefficients)
-        block = np.array(brush.covariance)[first : first + count, first : first + count]
-        first += count
-        if law not in ("lag", "half_width"):  # the others are not what a plan is led by
-            continue
-        powers = np.vander(depths, count, increasing=True)
-        half = 1.96 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", powers, block, powers), 0.0))
-        values = np.array([profile(d) for d in depths])
+    covariance, at = np.array(brush.covariance), places(brush)
+    for law in ("lag", "half_width"):  # the others are not what a plan is led by
+        half = half_interval_mm(covariance[at[law], at[law]], depths)
+        values = np.array([getattr(brush, law)(d) for d in depths])
         unsure = (half > UNSURE * values) & (half > UNSURE_MM)
         if unsure.mean() > UNSURE_PART:
             worst = int(np.argmax(np.where(unsure, half / np.maximum(values, 1e-9), 0.0)))

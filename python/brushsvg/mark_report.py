@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from . import _core
+from .bands import law_band
 from .describe import LAWS, polynomial
 from .mark_calibrate import TELLS
-from .plot import INK, brush_picture_on, encoded, law_band, new_figure
+from .plot import INK, brush_picture_on, encoded, new_figure
 from .sheet_scale import told
 
 TABLE_ROWS = 6

@@ -7,7 +7,9 @@ import math
 
 import numpy as np
 
+from .bands import half_interval_mm
 from .errors import Error
+from .student import as_normal
 
 LEAST_ALPHA0_DEG = (
     5.0  # a series that starts nearer to the motion cannot be read; in radians 90 degrees are 1.57
@@ -88,7 +90,7 @@ def wild(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> di
     """Values that do not belong to the others: their index, and how far they lie off the law of the others [mm].
 
     free: coefficients that were fitted, the least power powers_from. By studentised residuals of least squares, each
-    against the noise without it; where Student's t would be that of a normal value beyond WILD (D. L. Wallace 1959).
+    against the noise without it, where as unlikely as a normal value beyond WILD.
     """
     left, depths = np.array(residual_mm), np.array(depths_mm)
     spare = len(left) - free - 1
@@ -98,9 +100,8 @@ def wild(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> di
     apart = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
     apart = np.maximum(apart, 1e-9)
     others = np.maximum((left @ left - left**2 / apart) / spare, 1e-18)
-    squared = left**2 / apart / others
-    normal = (8 * spare + 1) / (8 * spare + 3) * np.sqrt(spare * np.log1p(squared / spare))
-    return {int(k): float(left[k] / apart[k]) for k in np.flatnonzero(normal > WILD)}
+    studentised = left / np.sqrt(apart * others)
+    return {int(k): float(left[k] / apart[k]) for k in np.flatnonzero(as_normal(studentised, spare) > WILD)}
 
 
 def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:
@@ -196,8 +197,7 @@ def refuse_open(fitted, range_mm: tuple[float, float]) -> None:
     if not covariance.size:
         return
     depths = np.linspace(*range_mm, 41)[1:]
-    powers = np.vander(depths, len(covariance), increasing=True)
-    half = 1.96 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", powers, covariance, powers), 0.0))
+    half = half_interval_mm(covariance, depths)
     values = np.array([fitted.fit.law(depth) for depth in depths])
     if np.mean(half > values) <= OPEN_PART:
         return

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from . import _core
+from .bands import law_band
 from .describe import LAWS
 from .errors import Error
 
@@ -36,30 +37,6 @@ def brush_picture_on(figure, brush, data: dict | None = None) -> None:
             axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6)
     _footprints(figure.add_subplot(grid[:, 2]), brush)
     figure.suptitle(_plain(brush.name))
-
-
-def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
-    """Half height [mm] of a law's band at depths, and what it is; None where nothing is known.
-
-    From the covariance: 1.96 sqrt(x^T C x) with x the powers of depth. Else the RMSE; the intervals of single
-    coefficients make no band, for these depend on each other.
-    """
-    law = getattr(brush, name)
-    if len(brush.covariance):
-        first = 0
-        for other, _ in LAWS:
-            count = len(getattr(brush, other).coefficients)
-            if other == name:
-                break
-            first += count
-        block = np.array(brush.covariance)[first : first + count, first : first + count]
-        powers = np.vander(depths, count, increasing=True)
-        squared = np.einsum("ij,jk,ik->i", powers, block, powers)
-        if np.any(block):
-            return 1.96 * np.sqrt(np.maximum(squared, 0)), "95 % of the law"
-    if law.rmse_mm is not None:
-        return np.full_like(depths, law.rmse_mm), "RMSE of the data, not of the law"
-    return None
 
 
 def _law(axes, depths, name, meaning, law, band) -> None:

@@ -8,24 +8,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import Error
+from .student import as_normal
 
 LEAST_MARKS = 8  # of fewer the scatter of the displacements is not known
-CERTAIN_SE = 4.0  # standard errors that do not come about by chance
+CERTAIN = 4.0  # standard deviations of a normal value that do not come about by chance
 LEAST_SCALE = 0.003  # a scan is as good; lag and width are then off by as much at most
 
 
 @dataclass(frozen=True)
 class SheetScale:
-    """By which share marks lie farther apart than planned, in x, in y and on the whole, each (share, standard error);
-    and how many standard errors do not come about by chance."""
+    """By which share marks lie farther apart than planned, in x, in y and on the whole, each (share, standard error),
+    with so many degrees of freedom."""
 
     x: tuple[float, float]
     y: tuple[float, float]
     both: tuple[float, float]
-    certain_se: float
+    freedom: int
 
     def is_off(self, share: tuple[float, float]) -> bool:
-        return abs(share[0]) > max(LEAST_SCALE, self.certain_se * share[1])
+        size, error = abs(share[0]), max(share[1], 1e-12)
+        return size > LEAST_SCALE and as_normal(size / error, self.freedom) > CERTAIN
 
 
 def sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> SheetScale | None:
@@ -47,7 +49,7 @@ def sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> SheetSc
         (x, math.sqrt(inverse[1, 1])),
         (y, math.sqrt(inverse[2, 2])),
         ((x + y) / 2, math.sqrt(inverse[1, 1] + inverse[2, 2]) / 2),
-        _certain(freedom),
+        freedom,
     )
 
 
@@ -74,10 +76,3 @@ def told(share: tuple[float, float]) -> str:
     """A share with its 95 % interval."""
     size = "larger" if share[0] >= 0 else "smaller"
     return f"{100 * abs(share[0]):.2f} +- {196 * share[1]:.2f} % {size}"
-
-
-def _certain(freedom: int) -> float:
-    """CERTAIN_SE of a normal distribution in Student's: z + (z^3 + z) / 4n + (5 z^5 + 16 z^3 + 3 z) / 96 n^2, of
-    Cornish and Fisher."""
-    z = CERTAIN_SE
-    return z + (z**3 + z) / (4 * freedom) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * freedom**2)

@@ -7,15 +7,13 @@ enter in closed form: m = p + (x_w - b) u, tip = p - b u, width 2 h.
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from . import _core
+from .bands import LAWS, LIKELY, places
 
-LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
-LIKELY = 1.96  # standard deviations of 95 %
 ROWS = 160  # of a stroke that a band is made from: beyond, it only takes longer
 COVARIANCE, RMSE = "covariance", "RMSE"
 
@@ -87,13 +85,7 @@ def in_words(brush) -> str:
 
 def _counts(brush, law: str) -> bool:
     """Whether anything is known of how sure a law is."""
-    return bool(np.any(np.diag(covariance_of(brush))[_places(brush)[law]]))
-
-
-def _places(brush) -> dict[str, slice]:
-    """Where each law's coefficients lie among all."""
-    ends = np.cumsum([0, *(len(getattr(brush, law).coefficients) for law in LAWS)]).tolist()
-    return {law: slice(*pair) for law, pair in zip(LAWS, itertools.pairwise(ends), strict=True)}
+    return bool(np.any(np.diag(covariance_of(brush))[places(brush)[law]]))
 
 
 def uncertainty(plan, brush, marks) -> Uncertainty | None:
@@ -130,13 +122,10 @@ def covariance_of(brush) -> np.ndarray:
 
 
 def _all_effects(plan, brush, marks):
-    places = _places(brush)
-    lag = places["lag"]
+    at = places(brush)
+    lag = at["lag"]
     scale = np.concatenate(  # of a coefficient by what it changes at the greatest depth: all in mm
-        [
-            brush.depth_range_mm[1] ** np.arange(part.stop - part.start, dtype=float)
-            for part in places.values()
-        ]
+        [brush.depth_range_mm[1] ** np.arange(part.stop - part.start, dtype=float) for part in at.values()]
     )
     covariance = scale[:, None] * covariance_of(brush) * scale
     factor, steps = _factor(covariance), _factor(covariance[lag, lag])
@@ -144,7 +133,7 @@ def _all_effects(plan, brush, marks):
     runs = [_both_sides(plan, brush, step / scale[lag]) for step in steps.T]
     # once: every look at the passes copies the list
     runs = [(up.passes, down.passes, part) for up, down, part in runs]
-    parts = {law: (factor / scale[:, None])[place] for law, place in places.items()}
+    parts = {law: (factor / scale[:, None])[place] for law, place in at.items()}
     for k, trace in enumerate(marks.passes):
         lag_runs = [(up[k], down[k], part) for up, down, part in runs]
         yield _effects(brush, trace, parts, lag_runs, mixing)
