@@ -102,7 +102,7 @@ and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, s
     py::class_<MarkFit>(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-front_per_half, height, shift x and y, turn. loss_mm2: the sum of squares of all distances, of wild ones less.)")
+front_per_half, height, shift x and y, turn.)")
         .def_readonly("laws", &MarkFit::laws)
         .def_readonly("covariance", &MarkFit::covariance)
         .def_readonly("height_mm", &MarkFit::height_mm)
@@ -111,7 +111,6 @@ front_per_half, height, shift x and y, turn. loss_mm2: the sum of squares of all
         .def_readonly("centre_mm", &MarkFit::centre_mm)
         .def_readonly("marks", &MarkFit::marks)
         .def_readonly("noise_mm", &MarkFit::noise_mm)
-        .def_readonly("loss_mm2", &MarkFit::loss_mm2)
         .def_readonly("samples", &MarkFit::samples)
         .def_readonly("effective_samples", &MarkFit::effective_samples)
         .def_readonly("left_aside", &MarkFit::left_aside)

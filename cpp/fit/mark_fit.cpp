@@ -106,14 +106,12 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         miss.distance_mm.assign(distance.data(), distance.data() + distance.size());
         miss.displacement_mm = {own.x(), own.y()};
         miss.rms_mm = std::sqrt(distance.squaredNorm() / double(std::max<Index>(1, distance.size())));
-        for (double d : distance) out.loss_mm2 += cost(fit.weighing.loss, d / out.noise_mm).rho;
         const double wild = double((distance.array().abs() > kTukey * out.noise_mm).count());
         miss.outlier = wild > 0.5 * double(distance.size());
         aside += wild;
         out.samples += double(distance.size());
         out.marks.push_back(std::move(miss));
     }
-    out.loss_mm2 *= out.noise_mm * out.noise_mm;
     out.left_aside = aside / std::max(1.0, out.samples);
     // repeats divide squares, of which the loss lets through the slope's share
     out.effective_samples = std::min(out.samples, (out.samples - aside) * fit.weighing.slope / fit.weighing.repeats);

@@ -70,7 +70,6 @@ struct MarkFit {
     std::array<double, 2> centre_mm{0.0, 0.0};  ///< about which the sheet is turned
     std::vector<MarkMiss> marks;
     double noise_mm = 0.0;             ///< robust standard deviation of the distances
-    double loss_mm2 = 0.0;             ///< of all distances: squares of those that have a whole say
     double samples = 0.0;              ///< points compared
     double effective_samples = 0.0;    ///< as many independent ones tell as much
     double left_aside = 0.0;           ///< share of the points that the loss gives no say

@@ -18,6 +18,8 @@ from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
+WILD = 4.7  # standard deviations beyond which a point has no say
+FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
 UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
@@ -91,7 +93,12 @@ def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, flo
     options.round_tail, options.widest_per_half = False, usual
     noise = min(pointed.noise_mm, rounded.noise_mm)
     alike = max(fit.samples / fit.effective_samples for fit in (pointed, rounded))  # points that count as one
-    gain = (pointed.loss_mm2 - rounded.loss_mm2) / (noise**2 * alike)
+    gain = 0.0
+    for one, other in zip(pointed.marks, rounded.marks, strict=True):
+        off = np.abs([one.distance_mm, other.distance_mm]) / noise
+        if np.mean(off > WILD) < FOREIGN:
+            squares = np.minimum(off, WILD) ** 2
+            gain += float(squares[0].sum() - squares[1].sum()) / alike
     return (rounded if gain > TELLS else pointed), gain
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from . import _core
 from .bands import law_band
 from .describe import LAWS, polynomial
-from .mark_calibrate import TELLS
+from .mark_calibrate import LAG_TERMS, TELLS
 from .plot import INK, brush_picture_on, encoded, new_figure
 from .sheet_scale import told
 
@@ -31,7 +31,7 @@ def report(made) -> str:
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % +- {halves} (ascending powers)")
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made)]
-    remarks = [f"note: {sentence}" for sentence in fit.remarks]
+    remarks = [f"note: {sentence}" for sentence in [*_few_depths(made), *fit.remarks]]
     if not fit.converged:
         remarks.append("note: the fit was still moving when it was stopped: look at the picture")
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
@@ -45,6 +45,16 @@ def _tail(made) -> str:
     return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
         *kinds, abs(gain)
     )
+
+
+def _few_depths(made) -> list[str]:
+    terms = len(made.brush.lag.coefficients)
+    if terms >= LAG_TERMS:
+        return []
+    return [
+        f"the lag is of degree {terms - 1} instead of {LAG_TERMS - 1}, for {made.painted.depths} depths were painted: "
+        "between them it may be off by more than its interval says"
+    ]
 
 
 def _table(brush) -> list[str]:
@@ -115,6 +125,9 @@ def overlaps(made) -> tuple[float, float]:
 
 def report_picture(made, suffix: str) -> bytes:
     """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
     figure = new_figure((11, 11))
     laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
     brush_picture_on(laws, made.brush)
@@ -123,8 +136,11 @@ def report_picture(made, suffix: str) -> bytes:
     predicted = _predicted(made, [int(k) for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
         mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
-        for ring in _home(made, mark.outline_mm, miss.displacement_mm):
-            axes.fill(*ring.T, color=PAINT)
+        closed = [
+            Path(np.vstack([ring, ring[:1]]), closed=True)
+            for ring in _home(made, mark.outline_mm, miss.displacement_mm)
+        ]
+        axes.add_patch(PathPatch(Path.make_compound_path(*closed), color=PAINT, linewidth=0))
         for ring in rings:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
         axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)

@@ -13,6 +13,8 @@ from . import _core
 from .errors import Error
 
 FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
+WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
+LEAST_MM2 = 0.1
 STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that a displacement would not
 PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
@@ -60,7 +62,7 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
     if not found:
         raise Error("there is no mark in it", "marks")
     _refuse_other_frames(found)
-    _refuse_foreign_rings(found)
+    _refuse_what_is_no_paint(found)
     _refuse_what_tells_nothing(found)
     painted = [_core.PaintedMark(stroke, poses, _oriented(rings)) for stroke, poses, rings in found]
     deepest = max(float(-poses[:, 2].min()) for _, poses, _ in found)
@@ -114,7 +116,8 @@ def _listed(marks, read) -> list[tuple[str, list]]:
 
 def _ring(points, where: str) -> np.ndarray:
     try:
-        ring = np.array(points, dtype=float)
+        ring = np.array(points)
+        ring = ring.astype(float) if ring.dtype.kind in "iuf" else np.zeros(0)
     except (TypeError, ValueError):
         ring = np.zeros(0)
     if ring.ndim != 2 or ring.shape[0] < 3 or ring.shape[1] != 2:
@@ -215,16 +218,22 @@ def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
         )
 
 
-def _refuse_foreign_rings(found: list) -> None:
+def _refuse_what_is_no_paint(found: list) -> None:
     """A page's border would pass for paint that has no say, and the fit would take minutes to find that out."""
     for i, (stroke, poses, rings) in enumerate(found):
-        least, most = poses[:, :2].min(axis=0), poses[:, :2].max(axis=0)
+        if (area := _core.area(_oriented(rings))) < LEAST_MM2:
+            raise Error(
+                f"the mark of stroke {stroke!r} has an area of {area:.2g} mm^2, less than {LEAST_MM2:g}: leave out "
+                "what was not painted",
+                f"marks[{i}]",
+            )
+        way = np.ptp(poses[:, :2], axis=0)
         for k, ring in enumerate(rings):
-            beyond = float(np.maximum(least - ring, ring - most).max())
-            if beyond > FARTHEST_MM:
+            larger = float(np.max(np.ptp(ring, axis=0) - way))
+            if larger > WIDEST_MM:
                 raise Error(
-                    f"a ring of the mark of stroke {stroke!r} reaches {beyond:.0f} mm beyond it, more than "
-                    f"{FARTHEST_MM:g} mm: leave out what is not its paint, such as the border of the page",
+                    f"a ring of the mark of stroke {stroke!r} is {larger:.0f} mm wider than its stroke, more than "
+                    f"{WIDEST_MM:g} mm: leave out what is not its paint, such as the border of the page",
                     f"marks[{i}].outline_mm[{k}]",
                 )
 

@@ -212,6 +212,7 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     frame = np.array([[-30, -30], [30, -30], [30, 30], [-30, 30]]) + np.mean(strokes[5][1][:, :2], axis=0)
     marks[5]["outline_mm"].append(frame.tolist())
     framed = calibrate_marks(read_painted(plan, marks, None), "b")
+    assert max(framed.round_tail_gain, alone.round_tail_gain) < -40
     assert framed.fit.left_aside > 0.1
     for law in ("lag", "tip_gap", "half_width"):
         np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
