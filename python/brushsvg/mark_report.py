@@ -10,7 +10,7 @@ from . import _core
 from .bands import law_band
 from .describe import LAWS, polynomial
 from .mark_calibrate import LAG_TERMS, TELLS
-from .plot import INK, brush_picture_on, encoded, new_figure
+from .plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from .sheet_scale import told
 
 TABLE_ROWS = 6
@@ -125,9 +125,6 @@ def overlaps(made) -> tuple[float, float]:
 
 def report_picture(made, suffix: str) -> bytes:
     """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
     figure = new_figure((11, 11))
     laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
     brush_picture_on(laws, made.brush)
@@ -136,11 +133,7 @@ def report_picture(made, suffix: str) -> bytes:
     predicted = _predicted(made, [int(k) for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
         mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
-        closed = [
-            Path(np.vstack([ring, ring[:1]]), closed=True)
-            for ring in _home(made, mark.outline_mm, miss.displacement_mm)
-        ]
-        axes.add_patch(PathPatch(Path.make_compound_path(*closed), color=PAINT, linewidth=0))
+        fill_rings(axes, _home(made, mark.outline_mm, miss.displacement_mm), PAINT)
         for ring in rings:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
         axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)

@@ -39,6 +39,15 @@ def brush_picture_on(figure, brush, data: dict | None = None) -> None:
     figure.suptitle(_plain(brush.name))
 
 
+def fill_rings(axes, rings: list, colour: str) -> None:
+    """Rings (n, 2) as one shape, holes clockwise."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    closed = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
+    axes.add_patch(PathPatch(Path.make_compound_path(*closed), color=colour, linewidth=0))
+
+
 def _law(axes, depths, name, meaning, law, band) -> None:
     values = np.array([law(depth) for depth in depths])
     if band:
