@@ -9,7 +9,7 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kFarShare = 0.2;
+constexpr double kFarShare = 0.2;  // of a mark's points, wild: it may be matched with the wrong edge
 constexpr int kMoves = 3;
 
 /// One mark for the solver: residuals whose squares add up to the loss.

@@ -92,7 +92,8 @@ def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, flo
     rounded = _core.fit_marks(marks, pointed.laws, options)
     options.round_tail, options.widest_per_half = False, usual
     noise = min(pointed.noise_mm, rounded.noise_mm)
-    alike = max(fit.samples / fit.effective_samples for fit in (pointed, rounded))  # points that count as one
+    # points that count as one
+    alike = max(fit.samples / max(fit.effective_samples, 1.0) for fit in (pointed, rounded))
     gain = 0.0
     for one, other in zip(pointed.marks, rounded.marks, strict=True):
         off = np.abs([one.distance_mm, other.distance_mm]) / noise
