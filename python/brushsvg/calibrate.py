@@ -75,6 +75,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     maker.fit("half_width", points)
     if "half_width" not in maker.done:
         raise Error("no width was measured: add half_width or width, one row per depth", "half_width")
+    plausible.refuse_halves_as_widths(measured.rows, maker.done["half_width"].fit.law)
     maker.fit("tip_to_widest", points)
     maker.fit("tip_gap", points)
     maker.fit("lag", points)
@@ -200,6 +201,8 @@ class _Maker:
                 points[0].where,
             )
         plausible.refuse_range(law, max(depths), self.range_mm, points[0].where)
+        if law == "lag":
+            plausible.refuse_no_lag(points)
         if law in ("lag", "half_width"):
             plausible.refuse_falling(law, points)
         # two values for each coefficient, or the law would follow their noise

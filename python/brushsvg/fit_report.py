@@ -9,6 +9,7 @@ from .describe import polynomial
 from .plot import brush_picture
 
 TABLE_ROWS = 6
+EXACT = 1e-9  # an interval below comes from rounding
 
 
 def report(made) -> str:
@@ -36,7 +37,9 @@ def _law(brush, fitted) -> list[str]:
     lines.append(f"  {known}")
     if law.half_interval_95:
         lines.append(
-            "  95 % +- " + ", ".join(f"{half:.2g}" for half in law.half_interval_95) + " (ascending powers)"
+            "  95 % +- "
+            + ", ".join(f"{half if half > EXACT else 0:.2g}" for half in law.half_interval_95)
+            + " (ascending powers)"
         )
     lines += [f"  {remark}" for remark in fitted.remarks]
     return [*lines, *(f"  {told}" for told in fitted.wild_told())]

@@ -22,6 +22,7 @@ WILD = 4.0  # standard deviations of normal noise: one in ten thousand
 SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
 # Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
 LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
+APART = 1.4  # half widths and widths that differ by more do not belong to one brush; one mistaken for the other by 2
 HALF_PER_DEPTH = (0.01, 20.0)  # 0.42 with round-6
 BEYOND = 1.5  # of the deepest measurement: a law of fourth degree says nothing there
 SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in inches
@@ -111,6 +112,31 @@ def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], whe
             f"{law} was measured to a depth of {deepest_mm:g} mm, the brush is to be pressed {range_mm[1]:g} mm: "
             f'measure it deeper, or give "depth_range_mm": [{range_mm[0]:g}, {deepest_mm:g}]',
             where,
+        )
+
+
+def refuse_no_lag(points) -> None:
+    """A pen is not calibrated."""
+    if not any(point.value_mm for point in points):
+        raise Error(
+            "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new with --lag 0",
+            points[0].where,
+        )
+
+
+def refuse_halves_as_widths(rows: dict, law) -> None:
+    """Widths that stand as half widths in some rows. rows: kind to measurements.Row; law: fitted to both kinds."""
+    halves, widths = rows.get("half_width", []), rows.get("width", [])
+    if not halves or not widths:
+        return
+    ratio = np.median([row.numbers["value_mm"] / law(row.depth_mm) for row in halves]) / np.median(
+        [row.numbers["value_mm"] / 2 / law(row.depth_mm) for row in widths]
+    )
+    if not 1 / APART <= ratio <= APART:
+        raise Error(
+            f"by these rows the brush is {max(ratio, 1 / ratio):.2g} times as {'wide' if ratio > 1 else 'narrow'} as "
+            "by those of width: half_width counts from the middle to one edge, width from edge to edge",
+            halves[0].where,
         )
 
 

@@ -118,8 +118,18 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
         ({"lag": values(LAG / 1000), **WIDTH}, "lag", "all lengths count in millimetres"),
         (
             {"lag": values(0 * LAG), **WIDTH},
-            "lag",
-            "for a pen that does not trail take brushsvg brush new --lag 0",
+            "lag[0]",
+            "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new with --lag 0",
+        ),
+        (
+            {"lag": values(LAG), "half_width": values(HALF[1:] * 2, DEPTHS[1:]), **WIDTH},
+            "half_width[0]",
+            "by these rows the brush is 2 times as wide as by those of width",
+        ),
+        (
+            {"lag": values(LAG), "half_width": values(HALF), "width": values(HALF)},
+            "half_width[0]",
+            "times as wide as by those of width: half_width counts from the middle to one edge",
         ),
         (
             {"lag": values(LAG / 1000), "width": values(HALF / 500)},
@@ -265,6 +275,13 @@ def test_finely_stepped_depths_are_many(tmp_path):
     assert code == 0 and find_brush(out).lag(5) == pytest.approx(7, abs=1e-6)
     assert plausible.different([*np.linspace(2, 6, 41), 10.0]) > 15
     assert plausible.different([5.0, 5.1, 5.2, 10.0]) == 2
+
+
+def test_of_exact_values_no_rounding_is_told(tmp_path, capsys):
+    rows = {"lag": values(2 + 0.5 * DEPTHS), "width": values(DEPTHS)}
+    (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
+    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
+    assert "95 % +- 0, 0, 0 (ascending powers)" in capsys.readouterr().out
 
 
 def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):
