@@ -114,6 +114,7 @@ front_per_half, height, shift x and y, turn.)")
         .def_readonly("samples", &MarkFit::samples)
         .def_readonly("effective_samples", &MarkFit::effective_samples)
         .def_readonly("left_aside", &MarkFit::left_aside)
+        .def_readonly("slim", &MarkFit::slim)
         .def_readonly("remarks", &MarkFit::remarks)
         .def_readonly("iterations", &MarkFit::iterations)
         .def_readonly("converged", &MarkFit::converged);

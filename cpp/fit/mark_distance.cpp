@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -89,6 +90,13 @@ Beside way_in(const Footprints& footprints, const Eigen::Vector2d& x, const Eige
     return {swept.edge, row, swept.distance, across_the_way(footprints, row, swept), 1.0};
 }
 
+/// normal: the painted edge's, outwards. The search begins at `row`.
+Beside beside_of(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal,
+                 std::size_t row) {
+    const NearestEdge nearest = footprints.nearest(x, row);
+    return nearest.distance < 0.0 ? way_out(footprints, x, normal, row) : way_in(footprints, x, normal, row, nearest);
+}
+
 }  // namespace
 
 bool MarkModel::distances(Index mark, const double* shared_data, const double* displacement, VectorXd& distance_mm,
@@ -108,10 +116,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     std::size_t row = 0;
     for (Index k = 0; k < points.rows(); ++k) {
         const Eigen::Vector2d x = points.row(k).transpose();
-        const NearestEdge nearest = footprints.nearest(x, row);
-        const Eigen::Vector2d outward = back * painted.outward.row(k).transpose();
-        const Beside beside = nearest.distance < 0.0 ? way_out(footprints, x, outward, row)
-                                                     : way_in(footprints, x, outward, row, nearest);
+        const Beside beside = beside_of(footprints, x, back * painted.outward.row(k).transpose(), row);
         row = beside.row;
         distance_mm[k] = beside.distance_mm;
         if (!by_shared) continue;
@@ -124,6 +129,28 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
         if (by_displacement) by_displacement->row(k) = -normal / beside.aslant;
     }
     return true;
+}
+
+VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* displacement) const {
+    constexpr double kWithinMm = 1e-3;
+    const Painted& painted = painted_[std::size_t(mark)];
+    const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
+    VectorXd out = VectorXd::Zero(painted.point_mm.rows());
+    thread_local Footprints footprints;
+    if (!footprints.follow(painted.poses_mm, painted.at, laws(shared), nullptr, shared[layout_.height()], deepest_))
+        return out;
+    const Ring points = placed(mark, shared_data, displacement);
+    const Eigen::Rotation2Dd back(-shared[layout_.turn()]);
+    std::size_t row = 0;
+    for (Index k = 0; k < points.rows(); ++k) {
+        const Beside beside =
+            beside_of(footprints, points.row(k).transpose(), back * painted.outward.row(k).transpose(), row);
+        row = beside.row;
+        const Eigen::Vector2d edge = footprints[row].place_of(beside.edge);
+        std::size_t last = row;
+        out[k] = footprints.way_out(edge - kWithinMm * beside.normal, -beside.normal, last);
+    }
+    return out;
 }
 
 void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,

@@ -35,17 +35,20 @@ double along(const MatrixXd& information, const VectorXd& direction) {
 
 }  // namespace
 
-std::vector<std::string> doubts(const MarkModel& model, const VectorXd& shared,
-                                const std::vector<Eigen::Vector2d>& displacement, double noise_mm) {
+std::vector<std::string> doubts(const MarkProblem& fit) {
+    const MarkModel& model = fit.model;
+    const VectorXd& shared = fit.shared;
     const Layout& at = model.layout();
+    const double noise_mm = fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats);  // of one independent sample
     const Index n = at.shift();  // where the sheet lies cannot be told from displacements, and need not be
     MatrixXd still = MatrixXd::Zero(n, n), moving = still;  // marks that stay, marks that may lie anywhere
     for (Index i = 0; i < model.marks(); ++i) {
         RowMajor by(model.points(i), at.size()), own(model.points(i), 2);
         VectorXd distance;
-        if (!model.distances(i, shared.data(), displacement[std::size_t(i)].data(), distance, &by, &own)) continue;
-        const MatrixXd laws = by.leftCols(n) / noise_mm;
-        const MatrixXd place = own / noise_mm, between = place.transpose() * laws;
+        if (!model.distances(i, shared.data(), fit.own[std::size_t(i)].data(), distance, &by, &own)) continue;
+        const VectorXd weight = fit.says[std::size_t(i)] / noise_mm;
+        const MatrixXd laws = weight.asDiagonal() * by.leftCols(n), place = weight.asDiagonal() * own;
+        const MatrixXd between = place.transpose() * laws;
         still += laws.transpose() * laws;
         moving += laws.transpose() * laws -
                   between.transpose() * (place.transpose() * place).completeOrthogonalDecomposition().solve(between);

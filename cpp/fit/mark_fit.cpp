@@ -47,6 +47,7 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
     const double kept = std::exp(-options.spacing_mm / std::max(1e-6, options.noise_length_mm));
     at.weighing.repeats = (1.0 + kept) / (1.0 - kept);
     for (double c = kept; c > 1e-3 && at.weighing.together.size() < 60; c *= kept) at.weighing.together.push_back(c);
+    at.leave_slim_aside();
 }
 
 /// Whether it converged. How sure the distances are is found on the way, wild ones lose their say.
@@ -57,14 +58,33 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     else
         start(at, marks, options);
     bool converged = false;
+    constexpr double kLast = 1e-7;
     for (const auto& [loss, tolerance] : {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::cauchy, 1e-5},
-                                          std::pair{Loss::tukey, 1e-6}, std::pair{Loss::tukey, 1e-7}}) {
+                                          std::pair{Loss::tukey, 1e-6}, std::pair{Loss::tukey, kLast}}) {
         at.weighing.loss = loss;
         converged = at.solve(options.most_iterations, tolerance);
         at.weighing = weighed(at);
         if (loss == Loss::cauchy) at.find_displaced();
+        if (tolerance > kLast) at.leave_slim_aside();
     }
     return converged;
+}
+
+/// Strokes that land on a slope from height 0 begin the farther on the lower the paper lies, and where they did if it
+/// lies higher: of a height found just below 0 the marks tell less than its own derivatives say. There it is the mean
+/// of both sides' covariances, by how likely the paper lies above.
+MatrixXd covariance_at_touch(const MarkProblem& fit) {
+    constexpr double kAboveMm = 1e-3, kUnlikely = 1e-3;
+    const int height = fit.model.layout().height();
+    MatrixXd out = covariance(fit);
+    if (fit.shared[height] > 0.0) return out;
+    const double above = 0.5 * std::erfc(-fit.shared[height] / std::sqrt(2.0 * out(height, height)));
+    if (above < kUnlikely) return out;
+    MarkProblem higher = fit;
+    higher.shared[height] = kAboveMm;
+    const MatrixXd there = covariance(higher);
+    if (there(height, height) > out(height, height)) out += above * (there - out);
+    return out;
 }
 
 }  // namespace
@@ -83,7 +103,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         out.converged = solve(fit, from, marks, options);
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
-    const MatrixXd whole = to * covariance(fit) * to.transpose();
+    const MatrixXd whole = to * covariance_at_touch(fit) * to.transpose();
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());
@@ -95,7 +115,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     out.centre_mm = fit.model.centre_mm();
     out.noise_mm = fit.weighing.noise_mm;
     out.iterations = fit.iterations;
-    double aside = 0.0;
+    double aside = 0.0, slim = 0.0;
     for (Index i = 0; i < fit.model.marks(); ++i) {
         const Eigen::Vector2d& own = fit.own[std::size_t(i)];
         VectorXd distance;
@@ -106,16 +126,20 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         miss.distance_mm.assign(distance.data(), distance.data() + distance.size());
         miss.displacement_mm = {own.x(), own.y()};
         miss.rms_mm = std::sqrt(distance.squaredNorm() / double(std::max<Index>(1, distance.size())));
-        const double wild = double((distance.array().abs() > kTukey * out.noise_mm).count());
-        miss.outlier = wild > 0.5 * double(distance.size());
-        aside += wild;
+        const Eigen::ArrayXd wild = (distance.array().abs() > kTukey * out.noise_mm).cast<double>();
+        const Eigen::ArrayXd says = fit.says[std::size_t(i)].array();
+        miss.outlier = wild.sum() > 0.5 * double(distance.size());
+        aside += (says * wild).sum();
+        slim += (1.0 - says).sum();
         out.samples += double(distance.size());
         out.marks.push_back(std::move(miss));
     }
     out.left_aside = aside / std::max(1.0, out.samples);
+    out.slim = slim / std::max(1.0, out.samples);
     // repeats divide squares, of which the loss lets through the slope's share
-    out.effective_samples = std::min(out.samples, (out.samples - aside) * fit.weighing.slope / fit.weighing.repeats);
-    out.remarks = doubts(fit.model, fit.shared, fit.own, fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats));
+    out.effective_samples =
+        std::min(out.samples, (out.samples - aside - slim) * fit.weighing.slope / fit.weighing.repeats);
+    out.remarks = doubts(fit);
     return out;
 }
 

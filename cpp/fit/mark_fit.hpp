@@ -72,7 +72,8 @@ struct MarkFit {
     double noise_mm = 0.0;             ///< robust standard deviation of the distances
     double samples = 0.0;              ///< points compared
     double effective_samples = 0.0;    ///< as many independent ones tell as much
-    double left_aside = 0.0;           ///< share of the points that the loss gives no say
+    double left_aside = 0.0;           ///< share of the points that lie so far off that they have no say
+    double slim = 0.0;                 ///< share of those that have none beside ends narrower than the noise
     std::vector<std::string> remarks;  ///< what these marks cannot tell apart, and what to paint instead
     int iterations = 0;
     bool converged = false;
@@ -83,7 +84,8 @@ struct MarkFit {
 /// instant shifts does not matter), under Tukey's loss, so that blots and gaps have no say.
 ///
 /// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
-/// other and count as fewer, by the integral of their autocorrelation. Throws Error: no mark, numbers that are not
+/// other and count as fewer, by the integral of their autocorrelation. Points beside ends narrower than three times the
+/// noise have no say. Throws Error: no mark, numbers that are not
 /// finite or no millimetres, marks that lie far from their strokes.
 MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& start,
                   const MarkOptions& options);

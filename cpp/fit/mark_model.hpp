@@ -54,6 +54,8 @@ class MarkModel {
     /// False where there is no prediction.
     bool distances(Index mark, const double* shared, const double* displacement, VectorXd& distance_mm,
                    RowMajor* by_shared, RowMajor* by_displacement) const;
+    /// How far it is [mm] from the predicted edge beside every point of a mark across to the other one; 0 beyond a tip.
+    VectorXd widths(Index mark, const double* shared, const double* displacement) const;
     /// The points of a mark in the frame of the plan.
     Ring placed(Index mark, const double* shared, const double* displacement) const;
 

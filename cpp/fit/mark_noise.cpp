@@ -15,6 +15,7 @@ constexpr Index kFarthest = 60;  // points along an outline that may err togethe
 struct Seen {
     VectorXd distance_mm;
     MatrixXd by;
+    VectorXd says;
 };
 std::vector<Seen> look(const MarkProblem& at) {
     std::vector<Seen> out;
@@ -25,6 +26,8 @@ std::vector<Seen> look(const MarkProblem& at) {
         at.model.distances(i, at.shared.data(), at.own[std::size_t(i)].data(), seen.distance_mm, &by, &own);
         seen.by.resize(by.rows(), g + 2);
         seen.by << by, own;
+        seen.says = at.says[std::size_t(i)];
+        seen.by = seen.says.asDiagonal() * seen.by;
         out.push_back(std::move(seen));
     }
     return out;
@@ -35,7 +38,10 @@ void leave_out_wild(std::vector<Seen>& marks, const Weighing& weighing) {
     if (weighing.loss != Loss::tukey) return;
     for (Seen& mark : marks)
         for (Index k = 0; k < mark.by.rows(); ++k)
-            if (std::abs(mark.distance_mm[k]) >= kTukey * weighing.noise_mm) mark.by.row(k).setZero();
+            if (std::abs(mark.distance_mm[k]) >= kTukey * weighing.noise_mm) {
+                mark.by.row(k).setZero();
+                mark.says[k] = 0.0;
+            }
 }
 
 /// A mark's square over its unknowns into one over all.
@@ -101,7 +107,8 @@ Weighing weighed(const MarkProblem& at) {
     std::vector<Seen> marks = look(at);
     std::vector<double> size;
     for (const Seen& mark : marks)
-        for (double d : mark.distance_mm) size.push_back(std::abs(d));
+        for (Index k = 0; k < mark.distance_mm.size(); ++k)
+            if (mark.says[k] > 0.0) size.push_back(std::abs(mark.distance_mm[k]));
     std::sort(size.begin(), size.end());
     auto end = size.end();
     for (int round = 0; round < kScaleRounds; ++round) {  // over what has a say: a page's border would make all unsure
@@ -113,11 +120,9 @@ Weighing weighed(const MarkProblem& at) {
 
     double slope = 0.0, counted = 0.0;
     for (const Seen& mark : marks)
-        for (double d : mark.distance_mm) {
-            const double z = d / out.noise_mm;
-            if (out.loss == Loss::tukey && std::abs(z) >= kTukey) continue;
-            slope += cost(out.loss, z).slope;
-            counted += 1.0;
+        for (Index k = 0; k < mark.distance_mm.size(); ++k) {
+            slope += mark.says[k] * cost(out.loss, mark.distance_mm[k] / out.noise_mm).slope;
+            counted += mark.says[k];
         }
     out.slope = std::max(0.1, slope / std::max(1.0, counted));
 
@@ -132,9 +137,7 @@ Weighing weighed(const MarkProblem& at) {
             (mark.distance_mm / out.noise_mm).unaryExpr([&](double z) { return cost(out.loss, z).psi; });
         const MatrixXd made = weight * mark.by * part_of(inverse, i, at.shared.size());
         // a page's border has no say: if it counted, the noise of the marks would be spread over it
-        const auto says = [&](Index k) {
-            return out.loss != Loss::tukey || std::abs(mark.distance_mm[k]) < kTukey * out.noise_mm;
-        };
+        const auto says = [&](Index k) { return mark.says[k] > 0.0; };
         for (std::size_t r = 0; r < at.model.rings(i); ++r) {
             const Index begin = at.model.ring_begin(i, r), end = at.model.ring_begin(i, r + 1);
             left.add(begin, end, says, [&](Index a, Index b) { return psi[a] * psi[b]; });

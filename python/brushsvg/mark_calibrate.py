@@ -27,7 +27,7 @@ UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
 
 @dataclass(frozen=True)
 class MarkCalibration:
-    """A brush that can be used, the fit it comes from, and the marks.
+    """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
     """
@@ -35,6 +35,7 @@ class MarkCalibration:
     brush: _core.Brush
     fit: object
     painted: Painted
+    expected: _core.MarkOptions
     scale: SheetScale | None = None
     round_tail_gain: float = 0.0
 
@@ -80,7 +81,7 @@ def calibrate_marks(
         getattr(brush, law).calibrated_mm = (0.0, painted.deepest_mm)
     _refuse_unsure(brush, fit)
     _core.check(brush)
-    return MarkCalibration(brush, fit, painted, scale, gain)
+    return MarkCalibration(brush, fit, painted, options, scale, gain)
 
 
 def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, float]:

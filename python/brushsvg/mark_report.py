@@ -14,6 +14,7 @@ from .plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from .sheet_scale import told
 
 TABLE_ROWS = 6
+UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
@@ -31,7 +32,7 @@ def report(made) -> str:
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % +- {halves} (ascending powers)")
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made)]
-    remarks = [f"note: {sentence}" for sentence in [*_few_depths(made), *fit.remarks]]
+    remarks = [f"note: {sentence}" for sentence in [*_few_depths(made), *_unexpected(made), *fit.remarks]]
     if not fit.converged:
         remarks.append("note: the fit was still moving when it was stopped: look at the picture")
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
@@ -54,6 +55,24 @@ def _few_depths(made) -> list[str]:
     return [
         f"the lag is of degree {terms - 1} instead of {LAG_TERMS - 1}, for {made.painted.depths} depths were painted: "
         "between them it may be off by more than its interval says"
+    ]
+
+
+def _unexpected(made) -> list[str]:
+    """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
+    fit, expected = made.fit, made.expected
+    displaced = math.sqrt(np.mean(np.square([miss.displacement_mm for miss in fit.marks])))
+    found = (
+        ("displacement_mm", displaced, expected.displacement_mm, UNLIKELY_RMS),
+        ("placement_mm", max(map(abs, fit.shift_mm)), expected.placement_mm, UNLIKELY),
+        ("height_mm", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
+        ("turn_deg", math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad), UNLIKELY),
+    )
+    return [
+        f'{key} is {size:.2g} where {sigma:.2g} was expected, which pulls at the laws: give "expected": '
+        f'{{"{key}": {size:.1g}}} if the sheet was painted and read so roughly'
+        for key, size, sigma, times in found
+        if size > times * sigma > 0
     ]
 
 
@@ -104,6 +123,12 @@ def _stays(made) -> list[str]:
     ]
     if fit.left_aside > 0.01:
         lines.append(f"{100 * fit.left_aside:.0f} % of the points lie so far off that they have no say")
+    if fit.slim > 0.01:
+        lines.append(
+            f"{100 * fit.slim:.0f} % of the points, beside ends hardly wider than that, have no say either"
+            if fit.left_aside > 0.01
+            else f"{100 * fit.slim:.0f} % of the points lie beside ends hardly wider than that and have no say"
+        )
     wild = [mark.stroke for mark, miss in zip(made.painted.marks, fit.marks, strict=True) if miss.outlier]
     if wild:
         lines.append(

@@ -7,7 +7,10 @@
 
 #include "brushsvg/error.hpp"
 #include "drop.hpp"
+#include "mark_doubts.hpp"
 #include "mark_model.hpp"
+#include "mark_noise.hpp"
+#include "mark_problem.hpp"
 
 using namespace brushsvg;
 using namespace brushsvg::fit;
@@ -77,11 +80,44 @@ TEST_CASE("along a straight stroke the edge is straight, however narrow, and a s
             VectorXd distance;
             REQUIRE(model.distances(0, x.data(), still.data(), distance, nullptr, nullptr));
             const Ring placed = model.placed(0, x.data(), still.data());
-            for (Eigen::Index k = 0; k < placed.rows(); ++k)
-                if (placed(k, 0) > 11.0 && placed(k, 0) < 29.0)
-                    CHECK(distance[k] == doctest::Approx(up - half).epsilon(2e-3).scale(0.1));
+            const VectorXd width = model.widths(0, x.data(), still.data());
+            for (Eigen::Index k = 0; k < placed.rows(); ++k) {
+                if (!(placed(k, 0) > 11.0 && placed(k, 0) < 29.0)) continue;
+                CHECK(distance[k] == doctest::Approx(up - half).epsilon(2e-3).scale(0.1));
+                CHECK(width[k] == doctest::Approx(2.0 * half).epsilon(0.01).scale(0.1));
+            }
         }
     }
+}
+
+TEST_CASE("points without a say are as if they were not there") {
+    Poses along(2, 3), up(3, 3);
+    along << 0, 0, -1, 40, 0, -2;
+    up << 60, 0, -1, 60, 30, -2, 75, 30, -2;
+    Ring ring(8, 2), other(4, 2);
+    ring << -4, -1.5, 10, -1.2, 30, -2, 37, -2.1, 38, 0, 37, 2, 30, 1.8, 10, 1.3;
+    other << 57, 0, 63, 1, 62, 25, 58, 25;
+    MarkOptions options;
+    options.turn_rad = options.placement_mm = 0.0;
+    MarkLaws laws;
+    laws.lag = {3.0, 0.2};
+    laws.tip_gap = {0.0, 0.5};
+    laws.half_width = {0.0, 0.8};
+    MarkProblem alone({{"s", along, {ring}}}, options), both({{"s", along, {ring}}, {"t", up, {other}}}, options);
+    both.says[1].setZero();
+    for (MarkProblem* fit : {&alone, &both}) {
+        fit->begin(laws);
+        fit->find_displaced();
+        fit->solve(10, 1e-9);
+        fit->weighing = weighed(*fit);
+    }
+    CHECK((both.shared - alone.shared).cwiseAbs().maxCoeff() < 1e-6);
+    CHECK((both.own[0] - alone.own[0]).norm() < 1e-6);
+    CHECK(both.loss() == doctest::Approx(alone.loss()));
+    CHECK(both.weighing.noise_mm == doctest::Approx(alone.weighing.noise_mm));
+    CHECK(both.weighing.repeats == doctest::Approx(alone.weighing.repeats));
+    CHECK(covariance(both).isApprox(covariance(alone), 1e-4));
+    CHECK(doubts(both) == doubts(alone));
 }
 
 TEST_CASE("specks alone are refused") {
