@@ -70,12 +70,12 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     Raises Error where the measurements leave a law open, or give a brush that cannot be used.
     """
     need_fits()
+    plausible.refuse_halves_as_widths(measured.rows)
     maker = _Maker(measured, absolute)
     points, remarks = _direct(measured, total)
     maker.fit("half_width", points)
     if "half_width" not in maker.done:
         raise Error("no width was measured: add half_width or width, one row per depth", "half_width")
-    plausible.refuse_halves_as_widths(measured.rows, maker.done["half_width"].fit.law)
     maker.fit("tip_to_widest", points)
     maker.fit("tip_gap", points)
     maker.fit("lag", points)

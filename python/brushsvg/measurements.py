@@ -89,7 +89,7 @@ def read_widths(text: str) -> list[tuple[float, float]]:
 
 
 def _width_rows(rows: csv.DictReader) -> Iterator[tuple[float, float]]:
-    columns = [name.strip() for name in rows.fieldnames or ()]
+    columns = _columns(rows)
     if missing := {"depth_mm", "width_mm"} - set(columns):
         raise Error(
             f"the table needs a first line with depth_mm,width_mm; it lacks {' and '.join(sorted(missing))}"
@@ -99,16 +99,27 @@ def _width_rows(rows: csv.DictReader) -> Iterator[tuple[float, float]]:
         _refuse_surplus(row, f"line {rows.line_num}")
         pair = []
         for name in ("depth_mm", "width_mm"):
+            where = f"line {rows.line_num}, {name}"
             try:
                 pair.append(float(row[name]))
             except (TypeError, ValueError):
-                raise Error(f"{row[name] or ''!r} is not a number", f"line {rows.line_num}, {name}") from None
+                raise Error(f"{row[name] or ''!r} is not a number", where) from None
+            if not 0 < pair[-1] <= LONGEST_MM:
+                raise Error(f"{pair[-1]:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, pair[-1])
         yield tuple(pair)
+
+
+def _columns(table: csv.DictReader) -> list[str]:
+    """Names in the first line; Error for one that stands twice, of which the first would be lost."""
+    columns = [name.strip() for name in table.fieldnames or ()]
+    if twice := [name for name in columns if name and columns.count(name) > 1]:
+        raise Error(f"the column {twice[0]} stands twice", "line 1")
+    return columns
 
 
 def _read_table(text: str) -> Measurements:
     table = csv.DictReader(io.StringIO(text))
-    table.fieldnames = [name.strip() for name in table.fieldnames or ()]
+    table.fieldnames = _columns(table)
     if missing := [name for name in ("kind", "depth_mm", "value_mm") if name not in table.fieldnames]:
         raise Error(
             f"the table needs a first line with kind,depth_mm,value_mm; it lacks {' and '.join(missing)}"

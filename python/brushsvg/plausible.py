@@ -22,7 +22,8 @@ WILD = 4.0  # standard deviations of normal noise: one in ten thousand
 SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
 # Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
 LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
-APART = 1.4  # half widths and widths that differ by more do not belong to one brush; one mistaken for the other by 2
+APART = 0.15  # share of their size by which half widths and widths contradict each other
+MISTAKEN = 3.0  # times closer they go together if one was taken for the other
 HALF_PER_DEPTH = (0.01, 20.0)  # 0.42 with round-6
 BEYOND = 1.5  # of the deepest measurement: a law of fourth degree says nothing there
 SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in inches
@@ -124,18 +125,26 @@ def refuse_no_lag(points) -> None:
         )
 
 
-def refuse_halves_as_widths(rows: dict, law) -> None:
-    """Widths that stand as half widths in some rows. rows: kind to measurements.Row; law: fitted to both kinds."""
+def refuse_halves_as_widths(rows: dict) -> None:
+    """Widths that stand as half widths, or half widths as widths: with the half widths halved a law through 0 meets all
+    rows far closer. rows: kind to measurements.Row."""
     halves, widths = rows.get("half_width", []), rows.get("width", [])
-    if not halves or not widths:
+    if min(len(halves), len(widths)) < 2 or len(halves) + len(widths) < 5:
         return
-    ratio = np.median([row.numbers["value_mm"] / law(row.depth_mm) for row in halves]) / np.median(
-        [row.numbers["value_mm"] / 2 / law(row.depth_mm) for row in widths]
-    )
-    if not 1 / APART <= ratio <= APART:
+    depths = np.array([row.depth_mm for row in [*halves, *widths]])
+    columns = np.column_stack([depths, depths**2])
+
+    def off(times: float) -> float:
+        """As a share of the values."""
+        values = [times * row.numbers["value_mm"] for row in halves]
+        values = np.array([*values, *(row.numbers["value_mm"] / 2 for row in widths)])
+        found, *_ = np.linalg.lstsq(columns, values, rcond=None)
+        return float(np.linalg.norm(columns @ found - values) / max(np.linalg.norm(values), 1e-12))
+
+    if off(1.0) > max(APART, MISTAKEN * off(0.5)):
         raise Error(
-            f"by these rows the brush is {max(ratio, 1 / ratio):.2g} times as {'wide' if ratio > 1 else 'narrow'} as "
-            "by those of width: half_width counts from the middle to one edge, width from edge to edge",
+            "these rows are twice what those of width say: half_width counts from the middle to one edge, width from "
+            "edge to edge",
             halves[0].where,
         )
 

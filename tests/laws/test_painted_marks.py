@@ -13,6 +13,7 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
+from brushsvg import mark_report  # noqa: E402
 from brushsvg.bands import law_band  # noqa: E402
 from brushsvg.errors import Error  # noqa: E402
 from brushsvg.mark_calibrate import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
@@ -111,12 +112,47 @@ def test_displacements_come_back():
 
 def test_more_displacement_than_expected_is_said():
     _, strokes, painted = sheet(3, displacement=2.5)
-    made = calibrate_marks(read_painted(*as_file(strokes, painted), None), "b")
-    assert re.search(
-        r'displacement_mm is 2\.\d where 1 was expected.*\{"displacement_mm": [23]\}', report(made)
-    )
+    told = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
+    assert re.search(r'displacement_mm is 2\.\d in x.* where 1 was expected.*\{"displacement_mm": 3\}', told)
     _, _, usual = calibrated(3)
     assert "expected" not in report(usual)
+
+
+def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
+    """What a report is made of, as far as it tells what was not expected."""
+    marks = [SimpleNamespace(displacement_mm=moved) for moved in displacements or [(0.1, 0.0)] * 4]
+    fit = SimpleNamespace(marks=marks, shift_mm=shift, height_mm=height, turn_rad=turn)
+    painted = SimpleNamespace(marks=[SimpleNamespace(stroke=f"s{k}") for k in range(len(marks))])
+    return SimpleNamespace(fit=fit, painted=painted, expected=core.MarkOptions())
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (found(), ""),
+        (found([(1.2, -1.2)] * 4), ""),
+        (
+            found([(0.1, 0.0)] * 3 + [(9.0, 4.0)]),
+            "s3 lies 9.8 mm aside, alone: is that the mark of this stroke?",
+        ),
+        (
+            found(shift=(1.0, -7.0)),
+            'placement_mm is 7 where 2 was expected, which pulls at the laws: give "expected": ',
+        ),
+        (found(height=-1.31), '{"height_mm": 2} if the sheet was painted and read so roughly'),
+        (found(turn=0.11), "turn_deg is 6.3 where 1.1 was expected"),
+    ],
+)
+def test_what_lies_far_beyond_what_was_expected_is_said(made, said):
+    assert said in "".join(mark_report._unexpected(made))
+    assert bool(said) == bool(mark_report._unexpected(made))
+
+
+def test_marks_unlike_their_predictions_are_said(monkeypatch):
+    _, _, made = calibrated(3)
+    assert "do not look like" not in report(made)
+    monkeypatch.setattr(mark_report, "overlaps", lambda _: (0.3, 0.36))
+    assert "marks that overlap by 0.36 do not look like their predictions" in report(made)
 
 
 @pytest.mark.parametrize("widths", [1.0, 1.3])

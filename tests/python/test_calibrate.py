@@ -9,7 +9,7 @@ import pytest
 from brushsvg import _core, find_brush, plausible
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.measurements import read_measurements
+from brushsvg.measurements import Row, read_measurements
 
 ROOT = Path(__file__).parents[2]
 TABLE = "kind,depth_mm,value_mm\n" + "".join(
@@ -124,12 +124,12 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
         (
             {"lag": values(LAG), "half_width": values(HALF[1:] * 2, DEPTHS[1:]), **WIDTH},
             "half_width[0]",
-            "by these rows the brush is 2 times as wide as by those of width",
+            "these rows are twice what those of width say: half_width counts from the middle",
         ),
         (
             {"lag": values(LAG), "half_width": values(HALF), "width": values(HALF)},
             "half_width[0]",
-            "times as wide as by those of width: half_width counts from the middle to one edge",
+            "these rows are twice what those of width say",
         ),
         (
             {"lag": values(LAG / 1000), "width": values(HALF / 500)},
@@ -275,6 +275,54 @@ def test_finely_stepped_depths_are_many(tmp_path):
     assert code == 0 and find_brush(out).lag(5) == pytest.approx(7, abs=1e-6)
     assert plausible.different([*np.linspace(2, 6, 41), 10.0]) > 15
     assert plausible.different([5.0, 5.1, 5.2, 10.0]) == 2
+
+
+@pytest.mark.parametrize(
+    "touch", [{"half_width": values([0.0, 0.1], [0.2, 0.5])}, {"half_width": values([0.3], [0.5])}]
+)
+def test_few_half_widths_near_touch_do_not_contradict_widths(touch, tmp_path, capsys):
+    rows = {"lag": values(LAG), "width": values(2 * HALF[4:], DEPTHS[4:]), **touch}
+    (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
+    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
+    assert "Warning" not in capsys.readouterr().err
+
+
+def test_half_widths_and_widths_with_noise_go_together():
+    """Also where a law that bends could pass through either halved."""
+    rng = np.random.default_rng(1)
+
+    def rows(kind, depths, times):
+        halves = (0.1 + 0.03 * depths) * depths * rng.normal(1, 0.15, len(depths))
+        return {
+            kind: [
+                Row(kind, "", *row)
+                for row in zip(depths, ({"value_mm": times * h} for h in halves), strict=True)
+            ]
+        }
+
+    for _ in range(200):
+        plausible.refuse_halves_as_widths(
+            rows("half_width", np.array([1.0, 2.0]), 1) | rows("width", np.array([6.0, 7.0, 8.0, 9.0]), 2)
+        )
+        plausible.refuse_halves_as_widths(
+            rows("half_width", np.array([8.0, 9.0]), 1) | rows("width", np.array([1.0, 2.0, 4.0, 6.0]), 2)
+        )
+
+
+def test_a_column_that_stands_twice_is_refused(tmp_path, capsys):
+    (tmp_path / "m.csv").write_text("kind,depth_mm,depth_mm,value_mm\nlag,1,2,3\n")
+    assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(tmp_path / "b.json")]) == 1
+    assert "m.csv: line 1: the column depth_mm stands twice" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("line", "said"), [("nan,3", "nan mm"), ("3,-2", "-2 mm"), ("0,2", "0 mm")])
+def test_a_width_that_none_can_have_is_refused_with_its_line(line, said, tmp_path, capsys):
+    (tmp_path / "w.csv").write_text(f"depth_mm,width_mm\n{line}\n")
+    assert main(["brush", "new", str(tmp_path / "b"), "--lag", "5", "--widths", str(tmp_path / "w.csv")]) == 1
+    assert (
+        f"w.csv: line 2, {'width_mm' if said == '-2 mm' else 'depth_mm'}: {said} is"
+        in capsys.readouterr().err
+    )
 
 
 def test_of_exact_values_no_rounding_is_told(tmp_path, capsys):
