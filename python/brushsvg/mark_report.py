@@ -14,6 +14,7 @@ from .plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from .sheet_scale import told
 
 TABLE_ROWS = 6
+FOREIGN = 0.1  # of all points, without a say: more than blots and gaps
 ALIKE = 0.5  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
 UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
@@ -88,11 +89,18 @@ def _unexpected(made) -> list[str]:
 
 
 def _unlike(made) -> list[str]:
+    out = []
+    if made.fit.left_aside > FOREIGN:
+        out.append(
+            f"{100 * made.fit.left_aside:.0f} % of the edges are not what this brush paints: the choice of the tail "
+            "and the intervals may be wrong, clean the outlines of blots, borders and slits"
+        )
     _, moved = overlaps(made)
     if moved > ALIKE:
-        return []
+        return out
     return [
-        f"marks that overlap by {moved:.2f} do not look like their predictions: look at the picture before use"
+        *out,
+        f"marks that overlap by {moved:.2f} do not look like their predictions: look at the picture before use",
     ]
 
 

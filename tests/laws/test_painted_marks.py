@@ -303,6 +303,8 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     framed = calibrate_marks(read_painted(plan, marks, None), "b")
     assert max(framed.round_tail_gain, alone.round_tail_gain) < -40
     assert framed.fit.left_aside > 0.1
+    assert "of the edges are not what this brush paints" in report(framed)
+    assert "of the edges are not" not in report(alone)
     for law in ("lag", "tip_gap", "half_width"):
         np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
     np.testing.assert_allclose(framed.fit.laws.lag, alone.fit.laws.lag, atol=0.05)
