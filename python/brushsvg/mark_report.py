@@ -33,10 +33,11 @@ def report(made) -> str:
         lines.append(f"{name} = {polynomial(law.coefficients)}")
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % +- {halves} (ascending powers)")
-    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made)]
+    overlap = overlaps(made)
+    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     remarks = [
         f"note: {sentence}"
-        for sentence in [*_few_depths(made), *_unexpected(made), *_unlike(made), *fit.remarks]
+        for sentence in [*_few_depths(made), *_unexpected(made), *_unlike(fit, overlap[1]), *fit.remarks]
     ]
     if not fit.converged:
         remarks.append("note: the fit was still moving when it was stopped: look at the picture")
@@ -65,22 +66,23 @@ def _few_depths(made) -> list[str]:
 
 def _unexpected(made) -> list[str]:
     """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
-    fit, expected = made.fit, made.expected
+    fit, expected, out = made.fit, made.expected, []
     aside = np.array([miss.displacement_mm for miss in fit.marks])
     far = int(np.argmax(np.hypot(*aside.T)))
     others, limit = np.delete(aside, far, axis=0), UNLIKELY_RMS * expected.displacement_mm
     if limit > 0 and len(others) > 2 and _rms(aside) > limit > _rms(others):
         stroke = made.painted.marks[far].stroke
-        return [
+        out.append(
             f"{stroke} lies {np.hypot(*aside[far]):.1f} mm aside, alone: is that the mark of this stroke?"
-        ]
+        )
+        aside = others
     found = (
         ("displacement_mm", "in x and in y (rms)", _rms(aside), expected.displacement_mm, UNLIKELY_RMS),
         ("placement_mm", "", max(map(abs, fit.shift_mm)), expected.placement_mm, UNLIKELY),
         ("height_mm", "", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
         ("turn_deg", "", math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad), UNLIKELY),
     )
-    return [
+    return out + [
         f"{key} is {size:.2g}{which and ' ' + which} where {sigma:.2g} was expected, which pulls at the laws: give "
         f'"expected": {{"{key}": {_rounded_up(size):g}}} if the sheet was painted and read so roughly'
         for key, which, size, sigma, times in found
@@ -88,20 +90,19 @@ def _unexpected(made) -> list[str]:
     ]
 
 
-def _unlike(made) -> list[str]:
+def _unlike(fit, moved: float) -> list[str]:
+    """moved: overlap without the displacements."""
     out = []
-    if made.fit.left_aside > FOREIGN:
+    if fit.left_aside > FOREIGN:
         out.append(
-            f"{100 * made.fit.left_aside:.0f} % of the edges are not what this brush paints: the choice of the tail "
+            f"{100 * fit.left_aside:.0f} % of the edges are not what this brush paints: the choice of the tail "
             "and the intervals may be wrong, clean the outlines of blots, borders and slits"
         )
-    _, moved = overlaps(made)
-    if moved > ALIKE:
-        return out
-    return [
-        *out,
-        f"marks that overlap by {moved:.2f} do not look like their predictions: look at the picture before use",
-    ]
+    if moved <= ALIKE:
+        out.append(
+            f"marks that overlap by {moved:.2f} do not look like their predictions: look at the picture before use"
+        )
+    return out
 
 
 def _rms(values: np.ndarray) -> float:
@@ -148,10 +149,10 @@ def _moved(made) -> list[str]:
     return lines
 
 
-def _stays(made) -> list[str]:
+def _stays(made, lying: float, moved: float) -> list[str]:
+    """lying, moved: overlap with and without the displacements."""
     fit = made.fit
     worst = int(np.argmax([miss.rms_mm for miss in fit.marks]))
-    lying, moved = overlaps(made)
     lines = [
         f"painted edges lie {fit.noise_mm:.2f} mm off the predicted ones (standard deviation); {fit.samples:.0f} "
         f"points compared, as good as {fit.effective_samples:.0f} independent ones",

@@ -140,6 +140,7 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
             'placement_mm is 7 where 2 was expected, which pulls at the laws: give "expected": ',
         ),
         (found(height=-1.31), '{"height_mm": 2} if the sheet was painted and read so roughly'),
+        (found([(0.1, 0.0)] * 3 + [(9.0, 4.0)], height=2.0), "height_mm is 2 where 0.3 was expected"),
         (found(turn=0.11), "turn_deg is 6.3 where 1.1 was expected"),
     ],
 )
