@@ -15,11 +15,11 @@ from .cell import Cell, robot_from_paper
 from .cell_file import find_cell
 from .errors import Error
 from .files import write_files
-from .limits import beyond_edges, broken_limits
+from .limits import beyond_edges
 from .moves import Program, duration_s, in_robot_frame
 from .paint import in_loads, painted_mm, visits
 from .posts import POSTS, Post
-from .program import WHOLE_JOB, Job, program, unchecked_program
+from .program import WHOLE_JOB, Job, forbidden, program, unchecked_program
 from .report import clock
 from .written import as_written
 
@@ -30,7 +30,7 @@ def problems(
     plan, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB
 ) -> list[tuple[str, str]]:
     """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
-    found = broken_limits(plan, brush, cell, job.z_offset_mm) + off_sheet(marks, brush, plan.sheet_mm)
+    found = forbidden(plan, brush, cell, job) + off_sheet(marks, brush, plan.sheet_mm)
     return found or shifted_by_blends(plan, brush, cell, tolerance_mm)
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .blends import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .cell import Cell, Station, robot_from_paper
 from .errors import Error
-from .limits import broken_limits
+from .limits import broken_limits, height_astray, walked_astray
 from .moves import Arc, Move, Program, Section, Wait, rise_over
+from .posts import POSTS
 from .written import Written, as_written
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
@@ -37,11 +38,33 @@ def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WH
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    for where, sentence in broken_limits(plan, brush, cell, job.z_offset_mm):
+    for where, sentence in forbidden(plan, brush, cell, job):
         raise Error(sentence, where=where)
     if not 1 <= job.first_stroke <= len(plan.passes):
         raise Error(f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job")
     return unchecked_program(plan, brush, cell, header, job)
+
+
+def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[tuple[str, str]]:
+    """(stroke or station, sentence) for each limit that is broken anywhere on the way of the whole job, whichever
+    stroke it begins with, or on that of a visit to any station; empty when the robot may run it."""
+    found = broken_limits(plan, brush, cell)
+    if not all(np.isfinite(a_pass.poses_mm).all() for a_pass in plan.passes):
+        return found
+    made = unchecked_program(plan, brush, cell, (), replace(job, first_stroke=1))
+    found += astray_in(made, plan.sheet_mm)
+    for station in cell.stations:
+        found += walked_astray([visit(station, brush, cell)], made.robot_from_frame, cell, plan.sheet_mm)
+    return list(dict.fromkeys(found))
+
+
+def astray_in(made: Program, sheet_mm) -> list[tuple[str, str]]:
+    """The sentences for a program's ways, its rise before the first move included."""
+    found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
+    post = POSTS.get(made.cell.language)
+    if post and post.in_robot_frame:  # else it rises to the safe height over the paper
+        found += [("", said) for said in height_astray(made.rise_in_robot_mm, made.cell)]
+    return found
 
 
 def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:

@@ -336,7 +336,7 @@ CHANGED = {
         ),
         (
             edited(r"(?m)^(\(stroke 2.*\n)", r"\1G1 X700.000 Y90.000 S800\n"),
-            "549.99 mm beyond the right edge",
+            "550.00 mm beyond the right edge",
         ),
         (edited(r"(?m)^(\(stroke 2.*\n)", r"\1M0\n"), "would write"),
         (lambda text: re.sub(r"(?s)\(stroke 2.*(?=\(end)", "", text), "hook .1.: the program does not paint"),
