@@ -155,6 +155,12 @@ def _check_servo(cell: Cell) -> None:
             "would be off by half of it",
             where="servo.table",
         )
+    if cell.heights.clearance_mm < 2 * value:
+        raise Error(
+            f"clearance_mm {cell.heights.clearance_mm:g} is outside the range [{2 * value:.2g}, "
+            f"{cell.heights.safe_mm:g}] mm: one value of the servo changes the height by {value:.2g} mm",
+            where="heights.clearance_mm",
+        )
 
 
 def _check_paint(cell: Cell) -> None:

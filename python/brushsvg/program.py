@@ -101,8 +101,9 @@ def visit(station: Station, brush, cell: Cell) -> Section:
     steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
     if station.by_hand:
         return Section(f"paint: {station.name}", (*steps, Wait(None, f"dip the brush: {station.name}")))
-    rim = station.rim_mm + cell.heights.clearance_mm
-    press_mm_s = min(speeds.press_mm_s, brush.max_speed_mm_s)
+    # a vessel may stand lower than the paper, under which nothing is fast
+    rim = max(station.rim_mm, 0.0) + cell.heights.clearance_mm
+    press_mm_s = min(speeds.press_mm_s, speeds.paint_mm_s, brush.max_speed_mm_s)
     steps += [
         Move("approach", over(station.place_mm, rim), approach_mm_s(brush, cell)),
         Move("dip", over(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),
@@ -114,6 +115,8 @@ def visit(station: Station, brush, cell: Cell) -> Section:
     if station.wipe_mm:
         steps.append(Move("wipe", np.array(station.wipe_mm, dtype=float), press_mm_s))
         last = station.wipe_mm[-1]
+        if last[2] < rim:
+            steps.append(Move("dip", over(last, rim), press_mm_s))
     steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
     return Section(f"paint: {station.name}", tuple(steps))
 

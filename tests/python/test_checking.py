@@ -317,7 +317,7 @@ CHANGED = {
             "the height changes by .* mm at once while the brush touches",
         ),
         (
-            edited(r"G4 P0\.017", "G4 P0.001", 0),
+            edited(r"G4 P0\.0\d\d", "G4 P0.001", 0),
             "mm/s while the brush touches, limit 25.0 mm/s",
         ),
         (edited(r"(?m)^G4 P0\.150\n", "", 0), "for these strokes and this cell brushsvg would write 'M3"),
