@@ -129,3 +129,9 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
         share = np.clip(((place - starts) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
         away = np.linalg.norm(place - (starts + share[:, None] * along), axis=1).min()
         assert away <= 2 * tolerance_mm + 1e-9
+
+
+def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
+    half = ways([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
+    assert place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
+    assert place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
