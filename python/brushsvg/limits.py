@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from .cell import Cell, Station
+from .cell import Cell
 from .moves import Move, Section
 from .ways import Ways, bounds, from_origin, place_inside, ways, ways_in
 
@@ -36,11 +36,15 @@ def broken_limits(plan, brush, cell: Cell) -> list[tuple[str, str]]:
             sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
         problems += [(a_pass.stroke, sentence) for sentence in sentences]
     for station in cell.stations:
-        points = _station_points(station, cell)
+        if station.by_hand:
+            continue  # at the safe height
         width, height = plan.sheet_mm
-        inside = (points[:, :2] > 0).all(axis=1) & (points[:, :2] < (width, height)).all(axis=1)
-        if inside.any() and not station.by_hand:
+        on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
+        path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
+        if any(place_inside(ways([[point]]), *on_sheet) is not None for point in path):
             problems.append((station.name, f"its place lies on the sheet of {width:g} x {height:g} mm"))
+        elif place_inside(ways([path]), *on_sheet) is not None:
+            problems.append((station.name, f"its wipe goes over the sheet of {width:g} x {height:g} mm"))
     return problems
 
 
@@ -54,26 +58,55 @@ def walked_astray(
     """
     problems: list[tuple[str, str]] = []
     here = None
-    for section in sections:
-        moves = section.moves
-        if not moves:
-            continue
-        said = astray(_own_ways(moves), frame, cell, sheet_mm)
-        first = moves[0].points_mm[0]
-        if here is not None:
-            said = astray_between(here, first, frame, cell) + said
-        problems += [(section.name, sentence) for sentence in said]
-        here = moves[-1].points_mm[-1]
+    for some in _groups(section for section in sections if section.moves):
+        # most keep every limit: all together are asked first, ways between them included
+        if astray(
+            _ways_of([move for section in some for move in section.moves], here), frame, cell, sheet_mm
+        ):
+            problems += _one_by_one(some, here, frame, cell, sheet_mm)
+        here = some[-1].moves[-1].points_mm[-1]
     return list(dict.fromkeys(problems))
 
 
-def _own_ways(moves: tuple[Move, ...]) -> Ways:
-    """From the first place on. A circle is also looked at along its chords, which some languages run instead."""
-    points = np.vstack([move.points_mm for move in moves])
-    ends = np.cumsum([len(move.points_mm) for move in moves])
+MOVES_AT_ONCE = 10_000  # bounds the memory; less is slower
+
+
+def _groups(sections: Iterable[Section]) -> Iterator[list[Section]]:
+    group, moves = [], 0
+    for section in sections:
+        group.append(section)
+        moves += sum(len(move.points_mm) for move in section.moves)
+        if moves >= MOVES_AT_ONCE:
+            yield group
+            group, moves = [], 0
+    if group:
+        yield group
+
+
+def _one_by_one(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iterator[tuple[str, str]]:
+    for section in sections:
+        moves = section.moves
+        said = [] if here is None else astray_between(here, moves[0].points_mm[0], frame, cell)
+        said += astray(_ways_of(moves, None), frame, cell, sheet_mm)
+        yield from ((section.name, sentence) for sentence in said)
+        here = moves[-1].points_mm[-1]
+
+
+def _ways_of(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
+    """From where the tool is, or else from the first place on. A circle is also looked at along its chords, which some
+    languages run instead."""
+    paths = (
+        [move.points_mm for move in moves] if here is None else [here, *(move.points_mm for move in moves)]
+    )
+    points = np.vstack(paths)
+    ends = (
+        len(points)
+        - sum(len(move.points_mm) for move in moves)
+        + np.cumsum([len(m.points_mm) for m in moves])
+    )
     circles = [
         (points[last - len(move.points_mm) - 1], points[last - 1], (*move.arc.centre_mm, move.arc.turn))
-        for move, last in zip(moves, ends, strict=True)
+        for move, last in zip(moves, ends.tolist(), strict=True)
         if move.arc is not None and last > len(move.points_mm)
     ]
     return ways([points], circles)
@@ -115,15 +148,6 @@ def height_astray(height_mm: float, cell: Cell, slack_mm: float = ROUNDING_MM) -
         f"before the first move the tool goes to z {_told(away, low, high)} mm, outside the range "
         f"[{low:g}, {high:g}] mm of the box of cell {cell.name}"
     ]
-
-
-def _station_points(station: Station, cell: Cell) -> np.ndarray:
-    """(n, 3) where a visit to a station takes the tool."""
-    lowest = cell.heights.safe_mm if station.by_hand else station.surface_mm - station.depth_mm
-    return np.array(
-        [(*station.place_mm, cell.heights.safe_mm), (*station.place_mm, lowest), *station.wipe_mm],
-        dtype=float,
-    )
 
 
 def _heights(poses: np.ndarray, cell: Cell) -> Iterator[str]:

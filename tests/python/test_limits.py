@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from programs import call
 
-from brushsvg import _core
+from brushsvg import _core, limits
 from brushsvg.brushes import find_brush
 from brushsvg.cell import Reload, Station
 from brushsvg.cell_file import find_cell, read_cell, write_cell
@@ -223,3 +223,27 @@ def test_jobs_before_the_first_stroke_ask_their_whole_way():
         border((20.0, 20.0, 580.0, 180.0), BRUSH, cell, SHEET)
     assert len(list(border((20.0, 20.0, 280.0, 180.0), BRUSH, cell, SHEET).sections())) == 1
     assert len(list(paper_height(BRUSH, cell, SHEET, 1.0, -1.0, 0.1).sections())) == 21
+
+
+def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
+    """Vessel and wipe lie beside it, and the tip, full of paint, went across at the height of the rim."""
+    ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-10.0, 40.0, 5.0), (-10.0, 80.0, 5.0)))
+    cell = replace(find_cell(), stations=(ink,), reload=Reload("stroke"))
+    assert forbidden(plan_of(ROUND), BRUSH, cell) == []
+    across = replace(ink, wipe_mm=((50.0, -10.0, 5.0), (80.0, -10.0, 5.0)))
+    found = forbidden(plan_of(ROUND), BRUSH, replace(cell, stations=(across,)))
+    assert found == [("ink", "its wipe goes over the sheet of 600 x 200 mm")]
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 10_000])
+def test_ways_are_asked_whichever_are_asked_together(monkeypatch, at_once):
+    """Strokes on both sides of the robot, each way from one side to the other through it."""
+    monkeypatch.setattr(limits, "MOVES_AT_ONCE", at_once)
+    sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
+    passes = [
+        _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0)
+        for k, x in enumerate(sides)
+    ]
+    told = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
+    assert [where for where, _ in told] == ["s2", "s4", "s5"]
+    assert all(sentence.startswith("on the way there") for _, sentence in told)
