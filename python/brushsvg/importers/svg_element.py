@@ -13,8 +13,9 @@ from ..errors import Error
 from ..units import MM_PER
 from . import svg_shapes
 from .svg_context import Context, Notes
+from .svg_paint import Paints
 from .svg_path_effect import PowerStroke, drawn_line, with_widths
-from .svg_style import paint, unread
+from .svg_style import MARKERS
 from .svg_trace import LARGEST_MM, trace
 from .svg_transform import scales
 
@@ -28,9 +29,10 @@ _MOST_DATA = 10_000_000  # characters of path data
 class Painted:
     """elements: those of the drawing in the order painted."""
 
-    def __init__(self, by_id: dict[str, ET.Element], notes: Notes):
+    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints):
         self.elements: list[Element] = []
         self.by_id = by_id
+        self.paints = paints
         self.notes = notes
         self.nameless = self.data = 0
         self.dashes_left = _MOST_DASHES
@@ -38,8 +40,8 @@ class Painted:
     def add(self, node: ET.Element, tag: str, context: Context) -> None:
         """Take a shape in, as far as it is sound."""
         properties = context.style.inherited
-        stroke, stroke_problem = paint(properties, "stroke", self.by_id)
-        fill, fill_problem = paint(properties, "fill", self.by_id) if tag != "line" else ("none", None)
+        stroke, of_stroke = self.paints.of(properties, "stroke")
+        fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
         power, sentences = drawn_line(node, self.by_id) if tag == "path" else (None, [])
         greatest, least = scales(context.matrix)
@@ -52,12 +54,12 @@ class Painted:
             width_mm *= MM_PER["px"] / mm_per_user
         if power:
             attributes = {**attributes, "d": power.d}
-            stroke, stroke_problem = (fill, fill_problem) if fill != "none" else (stroke, stroke_problem)
-            fill, fill_problem = "none", None
+            stroke, of_stroke = (fill, of_fill) if fill != "none" else (stroke, of_stroke)
+            fill = "none"
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
             if stroke == "none" and fill == "none":  # a shape stays a shape
-                stroke = properties["color"]
+                stroke = properties["color"][:7]
         if power is None and width_mm == 0:
             stroke = "none"
         if stroke == "none" and fill == "none":
@@ -71,12 +73,13 @@ class Painted:
         subpaths = self._drawn(node, tag, attributes, context, power, stroke != "none")
         if not subpaths:
             return
-        of = "fill" if stroke == "none" else "stroke"
-        if of == "stroke" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
+        if stroke != "none" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence)
-        problem = fill_problem if of == "fill" else stroke_problem
-        for sentence in [problem] * bool(problem) + sentences + unread(properties, of, tag in _WITH_MARKERS):
+        sentences += of_fill * (fill != "none") + of_stroke * (stroke != "none")
+        if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
+            sentences.append("markers are not read: left out")
+        for sentence in sentences:
             self.notes.add(node, context, sentence)
         self.elements.append(
             Element(

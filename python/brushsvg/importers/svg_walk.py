@@ -13,9 +13,10 @@ from .svg_context import Context, Notes, local
 from .svg_element import Painted
 from .svg_frame import Page, box_of, nested_viewport, overlap
 from .svg_layers import layer_names
+from .svg_paint import UNSEEN, Paints
 from .svg_rules import Rules
 from .svg_settings import own_settings
-from .svg_style import INITIAL, Style, cascade, is_zero, unread_own
+from .svg_style import INITIAL, Style, cascade, unread_own
 from .svg_transform import Matrix, about_origin, multiply, parse_transform
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -44,7 +45,7 @@ class Walk:
         for node in root.iter():
             self.by_id.setdefault(node.get("id", ""), node)
         self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
-        self.painted = Painted(self.by_id, self.notes)
+        self.painted = Painted(self.by_id, self.notes, Paints(self.by_id, self.rules.of))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
         self.left_out: dict[str, int] = {}  # without a notice, by reason
@@ -135,7 +136,7 @@ class Walk:
         """What a node hands to what it holds; None if nothing of it can be painted."""
         settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
-        if is_zero(style.own["opacity"]):
+        if float(style.own["opacity"]) < UNSEEN:
             self.notes.add(node, context, "it is fully transparent: left out")
             return None
         for sentence, damaged in [*problems, *((sentence, True) for sentence in invalid)]:
