@@ -558,7 +558,7 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         ('<text id="t">x</text>', "t", "inkscape --export-text-to-path"),
         ('<image id="i"/>', "i", "image is not read"),
         ("<foreignObject/>", "foreignObject 1", "foreignObject is not read"),
-        ("<animate/>", "animate 1", "animate is not read"),
+        ("<g><set/><animate/></g>", "svg", "animations are not read: 2 left out"),
         ('<path id="p" d="M0 0H5" stroke="none"/>', "p", "it has neither stroke nor fill"),
         ('<path id="p" d="M0 0H5" stroke-opacity="0"/>', "p", "it has neither stroke nor fill"),
         ('<path id="p" d="M0 0H5" stroke-width="0"/>', "p", "it has neither stroke nor fill"),

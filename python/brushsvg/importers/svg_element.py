@@ -10,14 +10,15 @@ import numpy as np
 
 from ..design import Element, SubPath, extremes
 from ..errors import Error
-from ..units import MM_PER
+from ..units import MM_PER, number
 from . import svg_shapes
-from .svg_context import Context, Notes
+from .arc_length import knots
+from .svg_context import Context, Notes, local
 from .svg_paint import Paints
 from .svg_path_effect import PowerStroke, drawn_line, with_widths
 from .svg_style import MARKERS
 from .svg_trace import LARGEST_MM, trace
-from .svg_transform import scales
+from .svg_transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
@@ -93,6 +94,20 @@ class Painted:
             )
         )
 
+    def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
+        """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""
+        attributes = {**node.attrib, **context.style.geometry}
+        try:
+            commands = svg_shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
+        except svg_shapes.DamageError:
+            return None
+        line = trace(commands, IDENTITY, 1.0)
+        if line.beyond is not None or not line.subpaths:
+            return None
+        points = np.concatenate([extremes(subpath.cubics) for subpath in line.subpaths])
+        (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
+        return x, y, width, height
+
     def _named(self, node: ET.Element, context: Context, told: int) -> str:
         """A painted element's name; what was told about one without an id is told about its name as well."""
         if name := context.name(node):
@@ -145,17 +160,18 @@ class Painted:
             return subpaths
         from .svg_dashes import dashed
 
-        words = properties["stroke-dasharray"].replace(",", " ").split()
+        words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
-            pattern = [context.length(word, context.diagonal) * mm_per_user for word in words]
-            offset = context.length(properties["stroke-dashoffset"], context.diagonal) * mm_per_user
+            scale = mm_per_user * self._path_scale(node, context, subpaths, mm_per_user)
+            pattern = [context.length(word, context.diagonal) * scale for word in words]
+            offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
             self.notes.add(node, context, f"stroke-dasharray: {error}: the line counts as solid")
             return subpaths
         if min(pattern, default=0.0) < 0:
             self.notes.add(node, context, "stroke-dasharray has a negative length: the line counts as solid")
             return subpaths
-        if sum(pattern) == 0:
+        if not 0 < sum(pattern) < math.inf:
             return subpaths
         if subpaths[0].widths is not None:
             self.notes.add(node, context, "its dashes are not read: its width varies")
@@ -169,6 +185,21 @@ class Painted:
         self.dashes_left -= len(pieces)
         self.notes.add(node, context, f"it is dashed: {len(pieces)} strokes, one for each dash")
         return tuple(pieces)
+
+    def _path_scale(self, node, context: Context, subpaths, mm_per_user: float) -> float:
+        """What a unit of the dashes is, in user units: less or more where pathLength says how long the path is."""
+        text = (node.get("pathLength") or "").strip()
+        if not text:
+            return 1.0
+        try:
+            said = number(text)
+        except Error as error:
+            self.notes.add(node, context, f"pathLength: {error}; it counts as not given")
+            return 1.0
+        if said < 0:
+            return 1.0
+        length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
+        return length_mm / mm_per_user / said if said else math.inf
 
     def _shown(self, node, context: Context, subpaths) -> tuple[SubPath, ...]:
         """What a nested viewport shows of it: all, or nothing. A line is not cut."""

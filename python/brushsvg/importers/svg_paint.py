@@ -54,7 +54,7 @@ class Paints:
                 return stops[0] if stops else "none", []
         elif tag == "pattern":
             if not self._tiles(server):
-                return "none", []
+                return spare, []
         elif tag not in _NOT_IN_BROWSERS:
             return spare, []
         colour = spare[:7] if spare.startswith("#") else "#000000"

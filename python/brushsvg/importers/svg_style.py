@@ -40,10 +40,29 @@ OWN = {
     "filter": "none",
     "overflow": "",
 }
+# What CSS alone says and nobody here reads, with the value that changes nothing.
+_CSS_ALONE = {
+    "mask-image": "none",
+    "mix-blend-mode": "normal",
+    "backdrop-filter": "none",
+    "offset-path": "none",
+    "animation": "none",
+    "animation-name": "none",
+    "content-visibility": "visible",
+    "all": "",
+}
+_UNREAD = ("clip-path", "mask", "filter", *_CSS_ALONE)
+OWN |= _CSS_ALONE
 # Attributes that CSS may set as well; CSS wins.
-_GEOMETRY = frozenset("transform transform-origin d x y width height cx cy r rx ry".split())
-_PRESENTED = (*INHERITED, *OWN)  # as attributes, in the order of what is told about them
-_READ = frozenset(_PRESENTED) | _GEOMETRY
+_GEOMETRY = frozenset(
+    "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
+)
+_OLD_PREFIX = "-webkit-"  # still means the same where nothing else does
+_PREFIXED = frozenset(
+    "transform transform-origin clip-path mask mask-image filter animation animation-name".split()
+)
+_PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)  # as attributes
+_READ = frozenset((*INHERITED, *OWN)) | _GEOMETRY
 _LENGTHS = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
 _OPACITIES = frozenset(("opacity", "stroke-opacity", "fill-opacity"))
 _SHARE = re.compile(rf"{NUMBER}%?")
@@ -87,10 +106,14 @@ def cascade(
     rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
     """
     inline = declarations(attributes["style"]) if "style" in attributes else ()
-    said: dict[str, list[str]] = {name: [attributes[name]] for name in _PRESENTED if name in attributes}
+    said: dict[str, list[str]] = {
+        name: [attributes[name]] for name in _PRESENTED if name in attributes and attributes[name].strip()
+    }
     if not (said or rules or inline):
         return Style(parent.inherited, OWN, {}), []
     for name, value, _ in sorted((*rules, *inline), key=itemgetter(2)):
+        if name.startswith(_OLD_PREFIX) and name.removeprefix(_OLD_PREFIX) in _PREFIXED:
+            name = name.removeprefix(_OLD_PREFIX)
         for each in MARKERS if name == "marker" else (name,):
             if each in _READ or each.startswith("--"):
                 said.setdefault(each, []).append(value)
@@ -109,8 +132,16 @@ def cascade(
                     if name != "font-size":
                         problems.append((sentence, name == "stroke-width" or name in _GEOMETRY))
                     break
+            if name == "d":
+                if (text := _path_text(value)) is not None:
+                    geometry[name] = text
+                    break
+                continue
             if name in _GEOMETRY:
-                geometry[name] = _path_text(value) if name == "d" else value
+                geometry[name] = value
+                break
+            if name == "all":
+                own[name] = value
                 break
             target, initial = (inherited, INHERITED) if name in INHERITED else (own, OWN)
             keyword = value.lower()
@@ -203,18 +234,21 @@ def _substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
     return at(0, value), problem
 
 
-def _path_text(value: str) -> str:
-    """The text in d: path("...")."""
-    for token in tinycss2.parse_component_value_list(value):
-        if token.type == "function" and token.lower_name == "path":
-            return next((each.value for each in token.arguments if each.type == "string"), "")
-    return value
+def _path_text(value: str) -> str | None:
+    """The text in d: path("..."), "" for none; None if it is neither."""
+    if value.lower() == "none":
+        return ""
+    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
+    if others or token.type != "function" or token.lower_name != "path":
+        return None
+    told = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    return told[0].value if len(told) == 1 and told[0].type == "string" else None
 
 
 def unread_own(own: dict[str, str]) -> list[str]:
     """Sentences about properties of an element or group that apply to all it holds and are not read."""
-    effects = [name for name in ("clip-path", "mask", "filter") if own[name] != "none"]
-    sentences = [f"{name} is not read: it counts as none" for name in effects]
+    effects = [name for name in _UNREAD if own[name] != OWN[name]]
+    sentences = [f"{name} is not read: it counts as {OWN[name] or 'not given'}" for name in effects]
     if own["opacity"] != "1":
         sentences.append("opacity is not read: it counts as 1")
     return sentences
