@@ -28,12 +28,13 @@ _MOST_DATA = 10_000_000  # characters of path data
 
 
 class Painted:
-    """elements: those of the drawing in the order painted."""
+    """elements: those of the drawing in the order painted. bent: what lies in path effects of groups."""
 
-    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints):
+    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
         self.elements: list[Element] = []
         self.by_id = by_id
         self.paints = paints
+        self.bent = bent
         self.notes = notes
         self.nameless = self.data = 0
         self.dashes_left = _MOST_DASHES
@@ -44,7 +45,7 @@ class Painted:
         stroke, of_stroke = self.paints.of(properties, "stroke")
         fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
-        power, sentences = drawn_line(node, self.by_id) if tag == "path" else (None, [])
+        power, sentences = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
             self.notes.add(node, context, "its transforms flatten it to nothing: left out")

@@ -15,6 +15,7 @@ from .svg_element import Painted
 from .svg_frame import Page, box_of, nested_viewport, overlap
 from .svg_layers import layer_names
 from .svg_paint import UNSEEN, Paints
+from .svg_path_effect import in_effects_of_groups
 from .svg_rules import Rules
 from .svg_settings import own_settings
 from .svg_style import INITIAL, Style, cascade, unread_own
@@ -53,7 +54,8 @@ class Walk:
             sentence = f"animations are not read: {animations} left out, what they move or show counts as without them"
             notices = [*notices, Notice("svg", sentence)]
         self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
-        self.painted = Painted(self.by_id, self.notes, Paints(self.by_id, self.rules.of))
+        paints = Paints(self.by_id, self.rules.of)
+        self.painted = Painted(self.by_id, self.notes, paints, in_effects_of_groups(root))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
         self.left_out: dict[str, int] = {}  # without a notice, by reason
