@@ -233,10 +233,11 @@ def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
     found = [box for element in read(document).elements if element.fill_rule for box in boxes(element)]
     *above, below = found
     assert len({round(box[1]) for box in above}) <= 3 and below[3] < min(box[1] for box in above)
-    middle = (min(box[0] for box in above) + max(box[2] for box in above)) / 2
-    assert (below[0] + below[2]) / 2 == pytest.approx(middle, abs=2.5), (
-        "within the space beside a letter, and an indent"
+    left, right = min(box[0] for box in above), max(box[2] for box in above)
+    assert left == pytest.approx(10, abs=2.5), (
+        "where the text was set, but for an indent or a letter's own space"
     )
+    assert (below[0] + below[2]) / 2 == pytest.approx((left + right) / 2, abs=2.5)
 
 
 @pytest.mark.parametrize(
