@@ -15,8 +15,8 @@ from .animation import animation
 from .brushes import find_brush
 from .cell import Cell
 from .design import Notice
+from .documents import read_plan
 from .errors import Error
-from .files import read_bytes
 from .machine import DEFAULT_TOLERANCE_MM, as_exact_as, problems, time_s, whole_program
 from .paint import in_loads as in_loads_of
 from .paint import is_later_part
@@ -212,11 +212,7 @@ def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
 
 
 def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
-    try:
-        text = read_bytes(path).decode("utf-8")
-    except UnicodeDecodeError:
-        raise Error("the file is not a plan: it is not text in UTF-8") from None
-    plan = _core.read_plan(text)
+    plan = read_plan(path)
     brush = options.brush or find_brush(plan.brush)
     notices = []
     if brush.name != plan.brush:
