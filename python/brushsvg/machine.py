@@ -12,7 +12,7 @@ import numpy as np
 from . import _core
 from .blends import blend_radii, blended
 from .cell import Cell, robot_from_paper
-from .cell_file import find_cell
+from .cell_file import cell_names, find_cell
 from .errors import Error
 from .files import write_files
 from .limits import beyond_edges, broken_limits
@@ -176,11 +176,19 @@ def post_for(suffix: str, cell: Cell) -> Post:
             where="language",
         )
     if suffix not in post.extensions:
+        other = cells_for(suffix)
         raise Error(
             f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
             f"{post.title}, which cell {cell.name} speaks"
+            + (f"; for {suffix} give --cell {' or '.join(other)}" if other else "")
         )
     return post
+
+
+def cells_for(suffix: str) -> list[str]:
+    """Names of the cells that come along whose programs have this extension."""
+    languages = {name for name, post in POSTS.items() if suffix in post.extensions}
+    return [name for name in cell_names() if find_cell(name).language in languages]
 
 
 def encode(

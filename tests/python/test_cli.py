@@ -329,6 +329,25 @@ def test_wrong_usage(desk, capsys, words):
     assert listing(desk) == before
 
 
+@pytest.mark.parametrize("command", ["convert a.svg", "border a.svg", "height", "chart"])
+@pytest.mark.parametrize(
+    ("out", "flags", "cells"),
+    [
+        ("x.script", "", "ur5e"),
+        ("x.nc", "--cell ur5e", "grbl-3axis or grbl-servo or linuxcnc-3axis"),
+        ("X.SCRIPT", "--cell grbl-servo", "ur5e"),
+    ],
+)
+def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
+    status, _, err = run(capsys, *command.split(), out, *flags.split())
+    assert (status, len(err)) == (1, 1)
+    suffix = Path(out).suffix.lower()
+    assert f"extension '{suffix}' is neither .json" in err[0]
+    assert err[0].endswith(f"; for {suffix} give --cell {cells}")
+    for cell in cells.split(" or "):  # which is true of each
+        assert run(capsys, "height", out, "--cell", cell)[0] == 0
+
+
 def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
     (desk / "folder.png").mkdir()
     for words, reason in (
