@@ -104,7 +104,7 @@ class Run:
         shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, *words],
+                [self.program, *words, "--quiet"],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,

@@ -455,8 +455,12 @@ def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
     return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
-def report_text(
-    suffix: str,
+def report_text(suffix: str, *measured, **told) -> str:
+    """The report as text (.txt) or JSON (.json); the rest as for `reported`."""
+    return report.as_text(suffix, reported(*measured, **told))
+
+
+def reported(
     work: Work,
     marks,
     cell: Cell,
@@ -465,8 +469,8 @@ def report_text(
     drawn=None,
     seconds=None,
     advice="",
-) -> str:
-    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; forbidden:
+) -> report.Report:
+    """The figures of a work. warnings: (where, sentence), None for those of the work; forbidden:
     those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
     that is known better than from the plan; advice: on the size."""
     known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
@@ -480,7 +484,7 @@ def report_text(
         drawn,
         work.options.compensation,
     )
-    result = report.Report(
+    return report.Report(
         title=work.title,
         brush=work.plan.brush,
         compensation=work.options.compensation if is_drawing else "",
@@ -495,4 +499,3 @@ def report_text(
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
     )
-    return report.to_json(result) if suffix == ".json" else report.to_text(result)

@@ -254,14 +254,15 @@ def text_of(post: Post, made: Program) -> Iterator[str]:
     return post.write(in_robot_frame(made) if post.in_robot_frame else made)
 
 
-def whole_program(plan, brush, cell: Cell) -> Program:
+def whole_program(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
-    return unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell)))
+    job = replace(job, visits=visits(plan, cell, job.first_stroke))
+    return unchecked_program(plan, brush, cell, (), job)
 
 
-def time_s(plan, brush, cell: Cell) -> float:
-    """Estimated time of the whole plan, paint included; limits are not looked at."""
-    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell))
+def time_s(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+    """Estimated time of the plan, paint included; limits are not looked at."""
+    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell, job))
 
 
 def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:

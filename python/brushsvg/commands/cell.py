@@ -59,5 +59,5 @@ def cell_new(args) -> None:
         )
         text = cell_text(replace(cell, name=name, paper=paper))
         made = parse_cell(text)
-    write({args.output: text})
     warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
+    write(args, {args.output: text})
