@@ -4,6 +4,7 @@ import inspect
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,18 @@ def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monke
     with pytest.raises(brushsvg.Error) as refused:
         write(tmp_path / "no" / name, nouns()[name])
     assert refused.value.file == str(tmp_path / "no" / name)
+
+
+def test_what_is_set_up_has_the_extras_that_its_commands_need():
+    root = Path(__file__).parents[2]
+    extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    asked = re.findall(
+        r'lacking\("[^"]*", (.*)\)', "".join(map(Path.read_text, root.glob("python/brushsvg/**/*.py")))
+    )
+    named = {name for each in asked for name in re.findall('"(.*?)"', each)}
+    assert named == {re.split("[<>=]", each)[0] for name in ("text", "plot") for each in extras[name]}
+    (installs,) = re.findall(r"-e (\S*)$", (root / "Makefile").read_text().split("$(VENV)/.dev:")[0], re.M)
+    assert installs.strip("\"'") == ".[text,plot]"
 
 
 def test_importing_the_package_loads_nothing():
