@@ -24,18 +24,15 @@ if TYPE_CHECKING:  # what the table below resolves to
         coverage,
         flatten,
         overlap,
-        read_marks,
-        read_plan,
         simulate,
         trace_outlines,
         unite,
         wanted_outline,
-        write_marks,
-        write_plan,
     )
-    from .brushes import brush_names, find_brush
+    from .brushes import brush_names, find_brush, read_brush, write_brush
     from .cell import Cell
     from .cell_file import cell_names, find_cell, read_cell, write_cell
+    from .documents import read_marks, read_plan, write_marks, write_plan
     from .errors import Error
     from .importers import ReadOptions, read_drawing
     from .machine import write_program
@@ -60,6 +57,12 @@ _HOME = {
     "read_cell": "cell_file",
     "write_cell": "cell_file",
     "find_brush": "brushes",
+    "read_brush": "brushes",
+    "write_brush": "brushes",
+    "read_marks": "documents",
+    "read_plan": "documents",
+    "write_marks": "documents",
+    "write_plan": "documents",
     "write_program": "machine",
     "within_reach": "reach",
     "marks_png": "render",
@@ -78,14 +81,10 @@ _HOME = {
         "coverage",
         "flatten",
         "overlap",
-        "read_marks",
-        "read_plan",
         "simulate",
         "trace_outlines",
         "unite",
         "wanted_outline",
-        "write_marks",
-        "write_plan",
     ],
     "_core",
 )
@@ -113,6 +112,7 @@ __all__ = [
     "marks_png",
     "marks_svg",
     "overlap",
+    "read_brush",
     "read_cell",
     "read_drawing",
     "read_marks",
@@ -124,6 +124,7 @@ __all__ = [
     "unite",
     "wanted_outline",
     "within_reach",
+    "write_brush",
     "write_cell",
     "write_marks",
     "write_plan",

@@ -13,7 +13,7 @@ from pathlib import Path
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
 from .cell_check import check
 from .errors import Error
-from .files import find_file, names_in, read_bytes
+from .files import find_file, names_in, read_bytes, write_files
 
 SHIPPED = Path(__file__).parent / "data" / "cells"
 DEFAULT_CELL = "linuxcnc-3axis"
@@ -31,10 +31,14 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
     Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
     file in `file`, the last the key in `where`.
     """
-    path = find_file("cell", SHIPPED, ".toml", name_or_path)
+    return read_cell(find_file("cell", SHIPPED, ".toml", name_or_path))
+
+
+def read_cell(path: str | os.PathLike) -> Cell:
+    """The cell in a cell.toml. Error, with the path in `file` and the key in `where`, when it is refused."""
     data = read_bytes(path)
     try:
-        return read_cell(data.decode("utf-8"))
+        return parse_cell(data.decode("utf-8"))
     except UnicodeDecodeError:
         raise Error("the file is not a cell: it is not text in UTF-8", file=str(path)) from None
     except Error as refusal:
@@ -42,7 +46,7 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
         raise
 
 
-def read_cell(text: str) -> Cell:
+def parse_cell(text: str) -> Cell:
     """The cell that a TOML text describes. Error naming the key that is missing, unknown or out of range."""
     try:
         document = tomllib.loads(text)
@@ -72,8 +76,15 @@ def read_cell(text: str) -> Cell:
     return cell
 
 
-def write_cell(cell: Cell) -> str:
-    """The cell as TOML that read_cell reads back, each key with a word on its meaning."""
+def write_cell(path: str | os.PathLike, cell: Cell) -> None:
+    """Write a cell as .toml, whole or not at all. Error when the cell is refused or the place cannot be written."""
+    text = cell_text(cell)
+    parse_cell(text)
+    write_files({path: text})
+
+
+def cell_text(cell: Cell) -> str:
+    """The cell as TOML that parse_cell reads back, each key with a word on its meaning."""
     lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_lines(cell)]
     for name, table in tables_of(cell).items():
         lines += ["", *_comment(type(table).__doc__), f"[{name}]", *_lines(table)]

@@ -131,4 +131,4 @@ def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
     assert main(["convert", "d.svg", "x.json"]) == 0
-    assert [each.settings for each in read_plan((desk / "x.json").read_text()).passes] == ["{}", "{}"]
+    assert [each.settings for each in read_plan(desk / "x.json").passes] == ["{}", "{}"]

@@ -39,5 +39,5 @@ def chart_file(args) -> None:
     if args.chart:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)
-    write(files)
+    write(args, files, len(made.plan.passes), machine.time_s(made.plan, brush, cell, job))
     tell(chart_report(made, brush, args.noise))
