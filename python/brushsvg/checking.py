@@ -62,6 +62,9 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
         for on in found if stroke else ():
             poses, radii, speed, arcs = _pass(section, track, on, cell)
+            deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
+            just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
+            poses[just_over, 2] = -deepest_mm
             joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
             cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])

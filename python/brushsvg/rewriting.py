@@ -47,6 +47,7 @@ class Told:
 def _without(a_pass, lines: np.ndarray):
     """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone."""
     poses = np.asarray(a_pass.poses_mm)[np.r_[lines[1:] != lines[:-1], True]]
+    poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
     steps = np.diff(poses, axis=0)
     still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
     inner = np.zeros(len(poses), dtype=bool)
@@ -88,25 +89,37 @@ def _body(text: str) -> list[tuple[int, str]]:
     return [(number, line) for number, line in enumerate(text.splitlines(), 1) if line]
 
 
-_WAY = re.compile(r"(G1 X\S+ Y\S+) S\d+")
+_FEED = re.compile(r"F\d+\.\d")
+_WAY = re.compile(r"(G1 X\S+ Y\S+) S(\d+)")
 _LIFT = re.compile(r"M3 S(\d+)|G4 P(\d+\.\d+)")
 LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits
 
 
 def _folded(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """A servo's lines: ways that follow each other as the last one, lifts and waits as the last with the sum."""
+    """A servo's lines: ways that follow each other as the last one, lifts one way with their waits as the last with the
+    sum. Of feeds those that something is run with; ways to where the tool is are none."""
     out: list[tuple[int, str]] = []
-    last, value, waited_s = "", "", 0.0
+    last, value, rises, waited_s, here, feed, told_feed = "", 0, 0, 0.0, "", None, ""
     for number, line in lines:
-        if way := _WAY.fullmatch(line):
-            kind, told = "way", way[1]
-        elif lift := _LIFT.fullmatch(line):
+        if _FEED.fullmatch(line):
+            feed = (number, line) if line != told_feed else None
+            continue
+        way, lift = _WAY.fullmatch(line), _LIFT.fullmatch(line)
+        if way and (way[1], int(way[2])) == (here, value):
+            continue
+        if feed:
+            out.append(feed)
+            last, told_feed, feed = "", feed[1], None
+        kind, told = "", line
+        if way:
+            kind, told, here, value = "way", way[1], way[1], int(way[2])
+        elif lift:
             kind = "lift"
-            value, waited_s = (value, waited_s) if last == kind else ("", 0.0)
-            value, waited_s = lift[1] or value, waited_s + float(lift[2] or 0)
-            told = f"M3 S{value or 0} G4 P{waited_s:.3f}"
-        else:
-            kind, told = "", line
+            change = int(lift[1]) - value if lift[1] else 0
+            if last != kind or change * rises < 0:
+                last, rises, waited_s = "", 0, 0.0
+            value, rises, waited_s = value + change, change or rises, waited_s + float(lift[2] or 0)
+            told = f"M3 S{value} G4 P{waited_s:.3f}"
         if kind and kind == last:
             out[-1] = (out[-1][0], told)
         else:
