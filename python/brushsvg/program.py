@@ -13,6 +13,7 @@ from .errors import Error
 from .limits import broken_limits, height_astray, walked_astray
 from .moves import Arc, Move, Program, Section, Wait, rise_over
 from .posts import POSTS
+from .posts.text import told_apart
 from .written import Written, as_written
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
@@ -95,12 +96,19 @@ def approach_mm_s(brush, cell: Cell) -> float:
     return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
 
 
+def names_of_stations(cell: Cell) -> dict[Station, str]:
+    """What a program calls each: no two alike."""
+    names = told_apart([station.name for station in cell.stations])
+    return dict(zip(cell.stations, names, strict=True))
+
+
 def visit(station: Station, brush, cell: Cell) -> Section:
     """To the paint and back up to safe height; a person does the rest where the station is served by hand."""
+    name = names_of_stations(cell).get(station, station.name)
     safe, speeds = cell.heights.safe_mm, cell.speeds
     steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
     if station.by_hand:
-        return Section(f"paint: {station.name}", (*steps, Wait(None, f"dip the brush: {station.name}")))
+        return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
     # a vessel may stand lower than the paper, under which nothing is fast
     rim = max(station.rim_mm, 0.0) + cell.heights.clearance_mm
     press_mm_s = min(speeds.press_mm_s, speeds.paint_mm_s, brush.max_speed_mm_s)
@@ -118,7 +126,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
         if last[2] < rim:
             steps.append(Move("dip", over(last, rim), press_mm_s))
     steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
-    return Section(f"paint: {station.name}", tuple(steps))
+    return Section(f"paint: {name}", tuple(steps))
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
