@@ -28,11 +28,13 @@ if TYPE_CHECKING:  # what the table below resolves to
         trace_outlines,
         unite,
         wanted_outline,
+        write_marks,
+        write_plan,
     )
-    from .brushes import brush_names, find_brush, read_brush, write_brush
+    from .brushes import brush_names, find_brush
     from .cell import Cell
     from .cell_file import cell_names, find_cell, read_cell, write_cell
-    from .documents import read_marks, read_plan, write_marks, write_plan
+    from .documents import read_marks, read_plan
     from .errors import Error
     from .importers import ReadOptions, read_drawing
     from .machine import write_program
@@ -57,12 +59,8 @@ _HOME = {
     "read_cell": "cell_file",
     "write_cell": "cell_file",
     "find_brush": "brushes",
-    "read_brush": "brushes",
-    "write_brush": "brushes",
     "read_marks": "documents",
     "read_plan": "documents",
-    "write_marks": "documents",
-    "write_plan": "documents",
     "write_program": "machine",
     "within_reach": "reach",
     "marks_png": "render",
@@ -85,6 +83,8 @@ _HOME = {
         "trace_outlines",
         "unite",
         "wanted_outline",
+        "write_marks",
+        "write_plan",
     ],
     "_core",
 )
@@ -112,7 +112,6 @@ __all__ = [
     "marks_png",
     "marks_svg",
     "overlap",
-    "read_brush",
     "read_cell",
     "read_drawing",
     "read_marks",
@@ -124,7 +123,6 @@ __all__ = [
     "unite",
     "wanted_outline",
     "within_reach",
-    "write_brush",
     "write_cell",
     "write_marks",
     "write_plan",

@@ -24,12 +24,7 @@ def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
     Raises Error for an unknown name, a file that cannot be read and a brush that is refused; the latter two
     have the file in `file`, the last the key in `where`.
     """
-    return read_brush(find_file("brush", SHIPPED, ".json", name_or_path))
-
-
-def read_brush(path: str | os.PathLike) -> _core.Brush:
-    """The brush in a brush.json, checked, with the sha256 of its bytes. Error, with the path in `file` and the key in
-    `where`, when it is refused."""
+    path = find_file("brush", SHIPPED, ".json", name_or_path)
     data = read_bytes(path)
     try:
         brush = _core.read_brush(data)
@@ -41,7 +36,7 @@ def read_brush(path: str | os.PathLike) -> _core.Brush:
     return brush
 
 
-def write_brush(path: str | os.PathLike, brush: _core.Brush) -> None:
+def save_brush(brush: _core.Brush, path: str | os.PathLike) -> None:
     """Write a brush as .json, whole or not at all.
 
     Raises Error when the brush is refused or the place cannot be written.

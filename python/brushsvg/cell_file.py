@@ -13,7 +13,7 @@ from pathlib import Path
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
 from .cell_check import check
 from .errors import Error
-from .files import find_file, names_in, read_bytes, write_files
+from .files import find_file, names_in, read_bytes
 
 SHIPPED = Path(__file__).parent / "data" / "cells"
 DEFAULT_CELL = "linuxcnc-3axis"
@@ -76,14 +76,7 @@ def parse_cell(text: str) -> Cell:
     return cell
 
 
-def write_cell(path: str | os.PathLike, cell: Cell) -> None:
-    """Write a cell as .toml, whole or not at all. Error when the cell is refused or the place cannot be written."""
-    text = cell_text(cell)
-    parse_cell(text)
-    write_files({path: text})
-
-
-def cell_text(cell: Cell) -> str:
+def write_cell(cell: Cell) -> str:
     """The cell as TOML that parse_cell reads back, each key with a word on its meaning."""
     lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_lines(cell)]
     for name, table in tables_of(cell).items():

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from brushsvg import _core
-from brushsvg.brushes import SHIPPED, brush_names, find_brush, write_brush
+from brushsvg.brushes import SHIPPED, brush_names, find_brush, save_brush
 from brushsvg.errors import Error
 
 ROOT = Path(__file__).parents[2]
@@ -244,7 +244,7 @@ def test_unknown_keys_come_back(changed, tmp_path):
         content["footprints"]["dragged"][2]["photo"] = "3.jpg"
 
     brush = find_brush(changed(add))
-    write_brush(tmp_path / "again.json", brush)
+    save_brush(brush, tmp_path / "again.json")
     again = json.loads((tmp_path / "again.json").read_text())
     assert again == json.loads((tmp_path / "changed.json").read_text())
 
@@ -252,7 +252,7 @@ def test_unknown_keys_come_back(changed, tmp_path):
 def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
     brush = find_brush("round-6")
     path = tmp_path / "mine.json"
-    write_brush(path, brush)
+    save_brush(brush, path)
     before = path.read_bytes()
     assert before == (SHIPPED / "round-6.json").read_bytes()
 
@@ -261,15 +261,15 @@ def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
         brush.max_speed_mm_s = speed
         brush.lag.coefficients = coefficients
         with pytest.raises(Error):
-            write_brush(path, brush)
+            save_brush(brush, path)
     brush.lag.coefficients = lag
     with monkeypatch.context() as patch:
         patch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
         with pytest.raises(Error, match="cannot be written: no space left") as refusal:
-            write_brush(path, brush)
+            save_brush(brush, path)
         assert refusal.value.file == str(path)
     assert path.read_bytes() == before
     assert os.listdir(tmp_path) == ["mine.json"]
 
-    write_brush(path, brush)
+    save_brush(brush, path)
     assert find_brush(path).max_speed_mm_s == 10

@@ -7,7 +7,7 @@ import pytest
 
 from brushsvg.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
 from brushsvg.cell_check import out_of_reach, remarks
-from brushsvg.cell_file import SHIPPED, cell_names, cell_text, find_cell, parse_cell
+from brushsvg.cell_file import SHIPPED, cell_names, find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.frame import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
 from brushsvg.posts import POSTS
@@ -19,7 +19,7 @@ TEXT = (SHIPPED / "linuxcnc-3axis.toml").read_text(encoding="utf-8")
 def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
     cell = find_cell(name)
     assert cell.name == name
-    assert cell_text(cell) == (SHIPPED / f"{name}.toml").read_text(encoding="utf-8")
+    assert write_cell(cell) == (SHIPPED / f"{name}.toml").read_text(encoding="utf-8")
     assert (cell.language in POSTS) == (name != "jaka-zu3")
     assert cell.paper.example == (cell.tool is not None), "a robot's paper must be taught"
 
@@ -123,12 +123,12 @@ FULL = replace(
 )
 def test_a_station_that_the_tool_cannot_visit_is_refused(station, words):
     with pytest.raises(Error) as refusal:
-        parse_cell(cell_text(replace(FULL, stations=(station,), reload=Reload("stroke"))))
+        parse_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
     assert words in str(refusal.value)
 
 
 def test_what_is_written_is_read_back():
-    assert parse_cell(cell_text(FULL)) == FULL
+    assert parse_cell(write_cell(FULL)) == FULL
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_what_is_written_is_read_back():
 )
 def test_what_no_single_key_tells_is_refused_too(change, where, words):
     with pytest.raises(Error) as refusal:
-        parse_cell(cell_text(replace(FULL, **change)))
+        parse_cell(write_cell(replace(FULL, **change)))
     assert (refusal.value.where, words in str(refusal.value)) == (where, True), str(refusal.value)
 
 
@@ -300,7 +300,7 @@ def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
 def test_badly_taught_points_are_refused(points, words):
     cell = replace(find_cell(), paper=Paper(taught_mm=tuple(tuple(map(float, point)) for point in points)))
     with pytest.raises(Error) as refusal:
-        parse_cell(cell_text(cell))
+        parse_cell(write_cell(cell))
     assert words in str(refusal.value)
 
 

@@ -41,39 +41,31 @@ def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
     python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")
 
 
-def test_whatever_reads_or_writes_a_file_is_given_its_path_first():
-    readers = [name for name in brushsvg.__all__ if name.startswith(("read_", "write_"))]
-    assert {f"{does}_{kind}" for does in ("read", "write") for kind in ("brush", "cell", "plan", "marks")} < {
-        *readers
-    }
-    for name in readers:
+def test_whatever_reads_a_file_is_given_its_path():
+    for name in (name for name in brushsvg.__all__ if name.startswith("read_")):
         assert next(iter(inspect.signature(getattr(brushsvg, name)).parameters)) == "path", name
 
 
-def nouns():
-    brush, cell = brushsvg.find_brush("round-6"), brushsvg.find_cell("ur5e")
-    plan = plan_of(SOUND)
-    marks = brushsvg.simulate(plan, brush)
-    return {"brush.json": brush, "cell.toml": cell, "plan.json": plan, "marks.json": marks}
-
-
-@pytest.mark.parametrize("name", ["brush.json", "cell.toml", "plan.json", "marks.json"])
+@pytest.mark.parametrize("name", ["cell.toml", "plan.json", "marks.json"])
 def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
-    read, write = (getattr(brushsvg, f"{does}_{name.split('.')[0]}") for does in ("read", "write"))
-    write(name, nouns()[name])
-    write(tmp_path / f"again-{name}", read(name))  # a str without a slash is a path too
-    assert (tmp_path / f"again-{name}").read_bytes() == (tmp_path / name).read_bytes()
-    for data in (None, b"\xff\xfe", b"moo", (tmp_path / name).read_bytes()[:40]):
+    kind = name.split(".")[0]
+    read, write = (getattr(brushsvg, f"{does}_{kind}") for does in ("read", "write"))
+    brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
+    text = write(
+        {"cell": brushsvg.find_cell("ur5e"), "plan": plan, "marks": brushsvg.simulate(plan, brush)}[kind]
+    )
+    Path(name).write_text(text, encoding="utf-8")
+    assert write(read(name)) == write(read(tmp_path / name)) == text  # a str without a slash is a path too
+    if kind != "cell":
+        assert write(read(text)) == text
+    for data in (None, b"\xff\xfe", b"moo", text.encode()[:40]):
         path = tmp_path / f"faulty-{name}"
         if data is not None:
             path.write_bytes(data)
         with pytest.raises(brushsvg.Error) as refused:
             read(path)
         assert refused.value.file == str(path)
-    with pytest.raises(brushsvg.Error) as refused:
-        write(tmp_path / "no" / name, nouns()[name])
-    assert refused.value.file == str(tmp_path / "no" / name)
 
 
 def test_what_is_set_up_has_the_extras_that_its_commands_need():

@@ -12,7 +12,7 @@ from programs import call
 from test_gcode import TWO, text_of
 
 from brushsvg.cell import Reload, Servo, Station
-from brushsvg.cell_file import find_cell, read_cell, write_cell
+from brushsvg.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.jobs import border
 from brushsvg.posts.gcode_servo import grbl_servo, value_at
@@ -112,7 +112,7 @@ def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
     with pytest.raises(
         Error, match=r"clearance_mm 0\.5 is outside the range \[0\.6, 5\] mm: one value"
     ) as refusal:
-        read_cell(write_cell(coarse))
+        parse_cell(write_cell(coarse))
     assert refusal.value.where == "heights.clearance_mm"
 
 

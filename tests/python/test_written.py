@@ -11,7 +11,7 @@ from programs import LANGUAGES, call
 from brushsvg import _core, checking, rewriting
 from brushsvg.brushes import find_brush
 from brushsvg.cell import Paper, robot_from_paper
-from brushsvg.cell_file import cell_text, find_cell
+from brushsvg.cell_file import find_cell, write_cell
 from brushsvg.machine import text_of
 from brushsvg.posts import POSTS
 from brushsvg.program import unchecked_program
@@ -122,7 +122,7 @@ def test_check_allows_whatever_convert_writes(seed, tmp_path, capsys):
     chance = random.Random(seed)
     name = chance.choice(["linuxcnc-3axis", "grbl-3axis", "ur5e"])
     cell, source, program = tmp_path / "c.toml", tmp_path / "a.svg", tmp_path / f"a{LANGUAGES[name]}"
-    cell.write_text(cell_text(cell_of(name, chance.randrange(3, 7))), encoding="utf-8")
+    cell.write_text(write_cell(cell_of(name, chance.randrange(3, 7))), encoding="utf-8")
     source.write_text(drawing(chance), encoding="ascii")
     words = ("--wide", "passes", "--cell", str(cell))
     status, _, told = call(capsys, "convert", str(source), str(program), *words)

@@ -6,7 +6,7 @@ import os
 from dataclasses import replace
 
 from .. import cell_check as cell_checks
-from ..cell_file import DEFAULT_CELL, cell_names, cell_text, find_cell, parse_cell
+from ..cell_file import DEFAULT_CELL, cell_names, find_cell, parse_cell, write_cell
 from ..console import RefusedError, about, say, tell, warn
 from ..describe import cell_page
 from ..posts import POSTS
@@ -57,7 +57,7 @@ def cell_new(args) -> None:
             if args.taught
             else cell.paper
         )
-        text = cell_text(replace(cell, name=name, paper=paper))
+        text = write_cell(replace(cell, name=name, paper=paper))
         made = parse_cell(text)
     warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
     write(args, {args.output: text})
