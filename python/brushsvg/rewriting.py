@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import re
 from types import SimpleNamespace
 
 import numpy as np
 
 from . import _core
-from .cell import Cell
+from .cell import Cell, Servo
 from .checking import Ran
 from .machine import text_of
 from .moves import Program
 from .posts import POSTS
+from .posts.gcode_servo import height_at
 from .program import Job, unchecked_program
 
 
@@ -46,7 +48,7 @@ def differing_line(text: str, program: Program, cell: Cell) -> str | None:
     """
     ours, theirs = _body(text), _body("".join(text_of(POSTS[cell.language], program)))
     if cell.servo:
-        ours, theirs = _folded(ours), _folded(theirs)
+        ours, theirs = _folded(ours, cell.servo), _folded(theirs, cell.servo)
     for k in range(max(len(ours), len(theirs))):
         number, line = ours[k] if k < len(ours) else (0, "")
         expected = theirs[k][1] if k < len(theirs) else ""
@@ -78,25 +80,31 @@ def _body(text: str) -> list[tuple[int, str]]:
     ]
 
 
-_WAY = re.compile(r"(G1 X\S+ Y\S+) S\d+")
+_WAY = re.compile(r"(G1 X\S+ Y\S+) S(\d+)")
 _LIFT = re.compile(r"M3 S(\d+)|G4 P(\d+\.\d+)")
-LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits
+_FEED = re.compile(r"(?:G1 )?F(\d+\.\d)")
+LIFTS_S = 0.05  # what rounding each step's wait up to a millisecond makes of a lift's
 
 
-def _folded(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """A servo's lines: ways that follow each other as the last one, lifts and waits as the last with the sum."""
+def _folded(lines: list[tuple[int, str]], servo: Servo) -> list[tuple[int, str]]:
+    """A servo's lines: ways that follow each other as the last one; lifts and waits as the last value, with what they
+    wait beyond the time that the way between their values takes at the feed. Where a lift begins, rounded heights do
+    not tell to the value."""
     out: list[tuple[int, str]] = []
-    last, value, waited_s = "", "", 0.0
+    last, value, waited_s, feed_mm_s = "", "", 0.0, math.inf
     for number, line in lines:
+        kind, told = "", line
         if way := _WAY.fullmatch(line):
-            kind, told = "way", way[1]
+            kind, told, value = "way", way[1], way[2]
         elif lift := _LIFT.fullmatch(line):
             kind = "lift"
-            value, waited_s = (value, waited_s) if last == kind else ("", 0.0)
-            value, waited_s = lift[1] or value, waited_s + float(lift[2] or 0)
+            waited_s = (waited_s if last == kind else 0.0) + float(lift[2] or 0)
+            if lift[1] and value:
+                waited_s -= abs(height_at(servo, float(lift[1])) - height_at(servo, float(value))) / feed_mm_s
+            value = lift[1] or value
             told = f"M3 S{value or 0} G4 P{waited_s:.3f}"
-        else:
-            kind, told = "", line
+        elif feed := _FEED.fullmatch(line):
+            feed_mm_s = max(float(feed[1]), 0.1) / 60
         if kind and kind == last:
             out[-1] = (out[-1][0], told)
         else:
