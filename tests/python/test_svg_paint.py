@@ -97,3 +97,11 @@ def test_opacities_are_named_for_what_is_painted():
 def test_a_visibility_that_is_none_counts_as_not_given():
     assert len(painted("red", "blue", 'visibility="x"').elements) == 2
     assert len(painted("red", "blue", 'visibility="HIDDEN"').elements) == 1
+
+
+def test_white_is_told():
+    """What it hides is painted, too: paint is not cut off by what lies on top."""
+    for fill, stroke in (("white", "blue"), ("white", "none"), ("blue", "#fff")):
+        (sentence,) = told(painted(fill, stroke))
+        assert sentence.startswith("it is white, and painted like any colour")
+    assert told(painted("#fefefe", "none")) == []

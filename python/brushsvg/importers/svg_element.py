@@ -21,6 +21,7 @@ from .svg_trace import LARGEST_MM, trace
 from .svg_transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
+_WHITE = "#ffffff"
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
 # A page of text has a hundredth of each.
 _MOST_DASHES = 100_000
@@ -79,6 +80,10 @@ class Painted:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence)
         sentences += of_fill * (fill != "none") + of_stroke * (stroke != "none")
+        if _WHITE in (fill, stroke):
+            sentences.append(
+                "it is white, and painted like any colour: what it hides in the drawing is painted, too"
+            )
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             sentences.append("markers are not read: left out")
         for sentence in sentences:

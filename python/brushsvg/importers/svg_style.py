@@ -249,6 +249,8 @@ def unread_own(own: dict[str, str]) -> list[str]:
     """Sentences about properties of an element or group that apply to all it holds and are not read."""
     effects = [name for name in _UNREAD if own[name] != OWN[name]]
     sentences = [f"{name} is not read: it counts as {OWN[name] or 'not given'}" for name in effects]
+    if own["display"] == "contents":
+        sentences.append("display: contents is not read: it counts as inline")
     if own["opacity"] != "1":
         sentences.append("opacity is not read: it counts as 1")
     return sentences
