@@ -12,11 +12,12 @@ SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev
 TEST_PACKAGES := doctest-dev cppcheck clang
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench asan clean FORCE
+.PHONY: plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
+	@echo "make quick        what is tested in less than a minute, for every save: all but the laws and C++"
 	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, Chromium, real lettering (installs them)"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
@@ -105,8 +106,15 @@ asan: test-system
 	cmake --build --preset asan --target brushsvg_tests
 	ctest --preset asan -R '^cpp$$'
 
+# on all processors; who is done takes from who is not
+PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
+
 python-test: $(VENV)/.dev
-	@$(BIN)/python -m pytest
+	@$(PYTEST)
+
+quick: $(VENV)/.dev
+	@$(BIN)/ruff check -q .
+	$(PYTEST) tests/python
 
 integration: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
