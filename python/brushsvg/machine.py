@@ -12,14 +12,14 @@ import numpy as np
 from . import _core
 from .blends import blend_radii, blended
 from .cell import Cell, robot_from_paper
-from .cell_file import find_cell
+from .cell_file import cell_names, find_cell
 from .errors import Error
 from .files import write_files
-from .limits import beyond_edges, broken_limits
+from .limits import beyond_edges
 from .moves import Program, duration_s, in_robot_frame, painting_mm
 from .paint import in_loads, visits
 from .posts import POSTS, Post
-from .program import WHOLE_JOB, Job, program, unchecked_program
+from .program import WHOLE_JOB, Job, forbidden, program, unchecked_program
 from .report import clock
 from .written import as_written
 
@@ -30,7 +30,7 @@ def problems(
     plan, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB
 ) -> list[tuple[str, str]]:
     """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
-    found = broken_limits(plan, brush, cell, job.z_offset_mm) + off_sheet(marks, brush, plan.sheet_mm)
+    found = forbidden(plan, brush, cell, job) + off_sheet(marks, brush, plan.sheet_mm)
     return found or shifted_by_blends(plan, brush, cell, tolerance_mm)
 
 
@@ -157,13 +157,21 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
 
 def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
     """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
-    taut = np.asarray(run.taut, dtype=bool)
+    ran, planned = _under_way(run), _under_way(meant)
+    taut = np.asarray(run.taut, dtype=bool)[ran]
     if not taut.any():
         return 0.0
-    pose = np.interp(np.asarray(run.pose)[taut], np.arange(len(at)), at)
-    planned = _core.widest_points(meant, brush)
-    there = np.column_stack([np.interp(pose, meant.pose, planned[:, axis]) for axis in (0, 1)])
-    return float(np.linalg.norm(_core.widest_points(run, brush)[taut] - there, axis=1).max())
+    pose = np.interp(np.asarray(run.pose)[ran][taut], np.arange(len(at)), at)
+    widest = _core.widest_points(meant, brush)[planned]
+    there = np.column_stack([np.interp(pose, np.asarray(meant.pose)[planned], axis) for axis in widest.T])
+    return float(np.linalg.norm(_core.widest_points(run, brush)[ran][taut] - there, axis=1).max())
+
+
+def _under_way(trace) -> slice:
+    """The rows from where the brush was set down to where it is lifted: all rows of a landing or lift on the spot are
+    of one pose, by which no place can be found."""
+    pose = np.asarray(trace.pose)
+    return slice(int(np.searchsorted(pose, pose[0], "right")) - 1, int(np.searchsorted(pose, pose[-1])) + 1)
 
 
 def post_for(suffix: str, cell: Cell) -> Post:
@@ -176,11 +184,19 @@ def post_for(suffix: str, cell: Cell) -> Post:
             where="language",
         )
     if suffix not in post.extensions:
+        other = cells_for(suffix)
         raise Error(
             f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
             f"{post.title}, which cell {cell.name} speaks"
+            + (f"; for {suffix} give --cell {' or '.join(other)}" if other else "")
         )
     return post
+
+
+def cells_for(suffix: str) -> list[str]:
+    """Names of the cells that come along whose programs have this extension."""
+    languages = {name for name, post in POSTS.items() if suffix in post.extensions}
+    return [name for name in cell_names() if find_cell(name).language in languages]
 
 
 def encode(
@@ -280,14 +296,15 @@ def text_of(post: Post, made: Program) -> Iterator[str]:
     return post.write(in_robot_frame(made) if post.in_robot_frame else made)
 
 
-def whole_program(plan, brush, cell: Cell) -> Program:
+def whole_program(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
-    return unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell)))
+    job = replace(job, visits=visits(plan, cell, job.first_stroke))
+    return unchecked_program(plan, brush, cell, (), job)
 
 
-def time_s(plan, brush, cell: Cell) -> float:
-    """Estimated time of the whole plan, paint included; limits are not looked at."""
-    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell))
+def time_s(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+    """Estimated time of the plan, paint included; limits are not looked at."""
+    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell, job))
 
 
 def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
