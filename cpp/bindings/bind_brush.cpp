@@ -3,17 +3,31 @@
 
 void bind_brush(py::module_& m) {
     using brushsvg::Brush;
-    py::class_<Brush>(m, "Brush", "Four laws against depth and the footprints; all lengths in mm.")
+    py::class_<Brush>(m, "Brush", R"(Four laws against depth and the footprints; all lengths in mm.
+
+Set a law, the footprints, the range of depths or the covariance as a whole: each is a value that cannot be changed.)")
         .def(py::init<>())
         .def_readwrite("name", &Brush::name)
         .def_readwrite("kind", &Brush::kind)
-        .def_readwrite("depth_range_mm", &Brush::depth_range_mm)
-        .def_readwrite("lag", &Brush::lag)
-        .def_readwrite("tip_gap", &Brush::tip_gap)
-        .def_readwrite("tip_to_widest", &Brush::tip_to_widest)
-        .def_readwrite("half_width", &Brush::half_width)
-        .def_readwrite("footprints", &Brush::footprints)
-        .def_readwrite("covariance", &Brush::covariance)
+        .def_property("depth_range_mm", frozen_copy(&Brush::depth_range_mm),
+                      [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); })
+        .def_property(
+            "lag", [](const Brush& b) { return b.lag; },
+            [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); })
+        .def_property(
+            "tip_gap", [](const Brush& b) { return b.tip_gap; },
+            [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); })
+        .def_property(
+            "tip_to_widest", [](const Brush& b) { return b.tip_to_widest; },
+            [](Brush& b, brushsvg::Profile value) { b.tip_to_widest = std::move(value); })
+        .def_property(
+            "half_width", [](const Brush& b) { return b.half_width; },
+            [](Brush& b, brushsvg::Profile value) { b.half_width = std::move(value); })
+        .def_property(
+            "footprints", [](const Brush& b) -> const brushsvg::FootprintTable& { return b.footprints; },
+            replace(&Brush::footprints))
+        .def_property("covariance", frozen_copy(&Brush::covariance),
+                      [](Brush& b, std::vector<std::vector<double>> value) { b.covariance = std::move(value); })
         .def_readwrite("max_speed_mm_s", &Brush::max_speed_mm_s)
         .def_readwrite("paint_depth_mm", &Brush::paint_depth_mm)
         .def_readwrite("sha256", &Brush::sha256)

@@ -54,14 +54,14 @@ void bind_compensate(py::module_& m) {
 largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
 too sharp for the lever.)")
         .def_readonly("largest_mm", &Miss::largest_mm)
-        .def_readonly("at_mm", &Miss::at_mm)
+        .def_property_readonly("at_mm", frozen_copy(&Miss::at_mm))
         .def_readonly("mean_mm", &Miss::mean_mm)
         .def_readonly("within_tolerance", &Miss::within_tolerance)
         .def_readonly("has_turn_in_place", &Miss::has_turn_in_place);
     py::class_<Compensated>(m, "Compensated", "A plan, what each pass still misses, and warnings [(stroke, sentence)].")
         .def_readonly("plan", &Compensated::plan)
-        .def_readonly("misses", &Compensated::misses)
-        .def_readonly("warnings", &Compensated::warnings);
+        .def_property_readonly("misses", parts(&Compensated::misses))
+        .def_property_readonly("warnings", frozen_copy(&Compensated::warnings));
     m.def(
         "compensate",
         [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,

@@ -16,9 +16,9 @@ void bind_fit(py::module_& m) {
              py::arg("floor") = -std::numeric_limits<double>::infinity(), py::arg("norm") = Norm::squares,
              py::arg("smoothing") = 0.0);
     py::class_<LawFit>(m, "LawFit", "A fitted law, how sure it is, and what it leaves.")
-        .def_readonly("law", &LawFit::law)
-        .def_readonly("covariance", &LawFit::covariance)
-        .def_readonly("residual_mm", &LawFit::residual_mm)
+        .def_property_readonly("law", [](const LawFit& f) { return f.law; })
+        .def_property_readonly("covariance", frozen_copy(&LawFit::covariance))
+        .def_property_readonly("residual_mm", frozen_copy(&LawFit::residual_mm))
         .def_readonly("r_squared", &LawFit::r_squared)
         .def_readonly("degrees_of_freedom", &LawFit::degrees_of_freedom)
         .def_readonly("held", &LawFit::held);

@@ -21,11 +21,11 @@ heading_rad: at the first pose, the brush being dragged already; nan: it is set 
         .value("along", Displaced::along)
         .value("both", Displaced::both);
     py::class_<TrackFit>(m, "TrackFit", "A lag fitted to tracks, how sure it is, and what it leaves.")
-        .def_readonly("lag", &TrackFit::lag)
-        .def_readonly("covariance", &TrackFit::covariance)
-        .def_readonly("heading_rad", &TrackFit::heading_rad)
+        .def_property_readonly("lag", [](const TrackFit& f) { return f.lag; })
+        .def_property_readonly("covariance", frozen_copy(&TrackFit::covariance))
+        .def_property_readonly("heading_rad", frozen_copy(&TrackFit::heading_rad))
         .def_readonly("displacement_mm", &TrackFit::displacement_mm)
-        .def_readonly("residual_mm", &TrackFit::residual_mm)
+        .def_property_readonly("residual_mm", frozen_copy(&TrackFit::residual_mm))
         .def_readonly("degrees_of_freedom", &TrackFit::degrees_of_freedom)
         .def_readonly("iterations", &TrackFit::iterations)
         .def_readonly("converged", &TrackFit::converged);
@@ -52,7 +52,7 @@ stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(
              py::arg("stroke"), py::arg("poses_mm"), py::arg("outline_mm"))
         .def_readonly("stroke", &PaintedMark::stroke)
         .def_readonly("poses_mm", &PaintedMark::poses_mm)
-        .def_readonly("outline_mm", &PaintedMark::outline_mm);
+        .def_property_readonly("outline_mm", frozen_copy(&PaintedMark::outline_mm));
     py::class_<Prior>(m, "Prior", "What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.")
         .def(py::init([](double value, double sigma) { return Prior{value, sigma}; }), py::arg("value"),
              py::arg("sigma"))
@@ -66,9 +66,9 @@ stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(
              }),
              py::arg("lag"), py::arg("tip_gap"), py::arg("half_width"), py::arg("widest_per_half") = 1.8,
              py::arg("front_per_half") = 1.0, py::arg("round_tail") = false)
-        .def_readonly("lag", &MarkLaws::lag)
-        .def_readonly("tip_gap", &MarkLaws::tip_gap)
-        .def_readonly("half_width", &MarkLaws::half_width)
+        .def_property_readonly("lag", frozen_copy(&MarkLaws::lag))
+        .def_property_readonly("tip_gap", frozen_copy(&MarkLaws::tip_gap))
+        .def_property_readonly("half_width", frozen_copy(&MarkLaws::half_width))
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
         .def_readonly("front_per_half", &MarkLaws::front_per_half)
         .def_readonly("round_tail", &MarkLaws::round_tail);
@@ -95,8 +95,8 @@ and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, s
         .def_readwrite("most_iterations", &MarkOptions::most_iterations);
     py::class_<MarkMiss>(m, "MarkMiss", "One painted mark against its prediction.")
         .def_readonly("point_mm", &MarkMiss::point_mm)
-        .def_readonly("distance_mm", &MarkMiss::distance_mm)
-        .def_readonly("displacement_mm", &MarkMiss::displacement_mm)
+        .def_property_readonly("distance_mm", frozen_copy(&MarkMiss::distance_mm))
+        .def_property_readonly("displacement_mm", frozen_copy(&MarkMiss::displacement_mm))
         .def_readonly("rms_mm", &MarkMiss::rms_mm)
         .def_readonly("outlier", &MarkMiss::outlier);
     py::class_<MarkFit>(m, "MarkFit", R"(A brush fitted to marks.
@@ -104,18 +104,18 @@ and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, s
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
 front_per_half, height, shift x and y, turn.)")
         .def_readonly("laws", &MarkFit::laws)
-        .def_readonly("covariance", &MarkFit::covariance)
+        .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)
         .def_readonly("turn_rad", &MarkFit::turn_rad)
-        .def_readonly("shift_mm", &MarkFit::shift_mm)
-        .def_readonly("centre_mm", &MarkFit::centre_mm)
-        .def_readonly("marks", &MarkFit::marks)
+        .def_property_readonly("shift_mm", frozen_copy(&MarkFit::shift_mm))
+        .def_property_readonly("centre_mm", frozen_copy(&MarkFit::centre_mm))
+        .def_property_readonly("marks", parts(&MarkFit::marks))
         .def_readonly("noise_mm", &MarkFit::noise_mm)
         .def_readonly("samples", &MarkFit::samples)
         .def_readonly("effective_samples", &MarkFit::effective_samples)
         .def_readonly("left_aside", &MarkFit::left_aside)
         .def_readonly("slim", &MarkFit::slim)
-        .def_readonly("remarks", &MarkFit::remarks)
+        .def_property_readonly("remarks", frozen_copy(&MarkFit::remarks))
         .def_readonly("iterations", &MarkFit::iterations)
         .def_readonly("converged", &MarkFit::converged);
     m.def("fit_marks", &fit_marks, py::arg("marks"), py::arg("start") = std::optional<MarkLaws>(),

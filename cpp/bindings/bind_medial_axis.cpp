@@ -6,8 +6,8 @@ void bind_medial_axis(py::module_& m) {
     py::class_<AxisBranch>(m, "AxisBranch", "A stretch of the medial axis between two nodes.")
         .def_readonly("start", &AxisBranch::from)
         .def_readonly("end", &AxisBranch::to)
-        .def_property_readonly("line", [](const AxisBranch& b) { return b.line; })
-        .def_readonly("part", &AxisBranch::part);
+        .def_property_readonly("line", frozen_copy(&AxisBranch::line))
+        .def_property_readonly("part", frozen_copy(&AxisBranch::part));
     m.def(
         "medial_axis",
         [](const Rings& rings, double least_share) {

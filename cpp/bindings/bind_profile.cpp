@@ -6,10 +6,14 @@
 void bind_profile(py::module_& m) {
     using brushsvg::Profile;
     py::class_<Profile>(
-        m, "Profile", "One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).")
+        m, "Profile", R"(One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).
+
+A value: it is not changed, but another one made. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values
+to spare.)")
         .def(py::init([](std::vector<double> coefficients, double floor, double floor_slope,
                          std::optional<std::array<double, 2>> calibrated_mm, std::string source, bool assumed,
-                         std::vector<double> half_interval_95, std::optional<double> rmse_mm) {
+                         std::vector<double> half_interval_95, std::optional<double> rmse_mm,
+                         std::optional<double> degrees_of_freedom, std::string extra) {
                  Profile p;
                  p.coefficients = std::move(coefficients);
                  p.floor = floor;
@@ -19,21 +23,25 @@ void bind_profile(py::module_& m) {
                  p.assumed = assumed;
                  p.half_interval_95 = std::move(half_interval_95);
                  p.rmse_mm = rmse_mm;
+                 p.degrees_of_freedom = degrees_of_freedom;
+                 p.extra = std::move(extra);
                  return p;
              }),
              py::arg("coefficients") = std::vector<double>{}, py::kw_only(),
              py::arg("floor") = -std::numeric_limits<double>::infinity(), py::arg("floor_slope") = 0.0,
              py::arg("calibrated_mm") = py::none(), py::arg("source") = "", py::arg("assumed") = false,
-             py::arg("half_interval_95") = std::vector<double>{}, py::arg("rmse_mm") = py::none())
+             py::arg("half_interval_95") = std::vector<double>{}, py::arg("rmse_mm") = py::none(),
+             py::arg("degrees_of_freedom") = py::none(), py::arg("extra") = "{}")
         .def("__call__", py::vectorize([](const Profile* p, double depth_mm) { return (*p)(depth_mm); }),
              py::arg("depth_mm"))
-        .def_readwrite("coefficients", &Profile::coefficients)
-        .def_readwrite("floor", &Profile::floor)
-        .def_readwrite("floor_slope", &Profile::floor_slope)
-        .def_readwrite("calibrated_mm", &Profile::calibrated_mm)
-        .def_readwrite("source", &Profile::source)
-        .def_readwrite("assumed", &Profile::assumed)
-        .def_readwrite("half_interval_95", &Profile::half_interval_95)
-        .def_readwrite("rmse_mm", &Profile::rmse_mm)
-        .def_readwrite("extra", &Profile::extra);
+        .def_property_readonly("coefficients", frozen_copy(&Profile::coefficients))
+        .def_readonly("floor", &Profile::floor)
+        .def_readonly("floor_slope", &Profile::floor_slope)
+        .def_property_readonly("calibrated_mm", frozen_copy(&Profile::calibrated_mm))
+        .def_readonly("source", &Profile::source)
+        .def_readonly("assumed", &Profile::assumed)
+        .def_property_readonly("half_interval_95", frozen_copy(&Profile::half_interval_95))
+        .def_readonly("rmse_mm", &Profile::rmse_mm)
+        .def_readonly("degrees_of_freedom", &Profile::degrees_of_freedom)
+        .def_readonly("extra", &Profile::extra);
 }

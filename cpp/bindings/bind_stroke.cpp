@@ -4,6 +4,21 @@
 
 void bind_stroke(py::module_& m) {
     using namespace brushsvg;
+    py::class_<StrokeId>(m, "StrokeId", R"(Where in a drawing a stroke comes from.
+
+element: its id; part: which of its sub-paths, 0 for the only one; repeat: which of the times that it is painted; lane:
+which of the passes that fill a shape wider than the brush; load: which of the loads of paint. name: element/part#repeat
+~lane+load, each where it says something; nobody takes it apart again.)")
+        .def(py::init<std::string, int, int, int, int>(), py::arg("element"), py::arg("part") = 0,
+             py::arg("repeat") = 1, py::arg("lane") = 1, py::arg("load") = 1)
+        .def_readonly("element", &StrokeId::element)
+        .def_readonly("part", &StrokeId::part)
+        .def_readonly("repeat", &StrokeId::repeat)
+        .def_readonly("lane", &StrokeId::lane)
+        .def_readonly("load", &StrokeId::load)
+        .def_property_readonly("name", &StrokeId::name)
+        .def("__repr__", [](const StrokeId& id) { return "StrokeId(" + id.name() + ")"; });
+    py::implicitly_convertible<std::string, StrokeId>();
     using Knots = std::vector<std::pair<double, double>>;
     const auto knots_of = [](const Stroke& s) {
         Knots out;
@@ -15,8 +30,11 @@ void bind_stroke(py::module_& m) {
         for (const auto& [at, h] : knots) s.half_width.push_back({at, h});
     };
     py::class_<Stroke>(m, "Stroke",
-                       "A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].")
-        .def(py::init([set_knots](std::string id, const Cubics& middle_mm, bool closed, const Knots& half_width,
+                       R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
+
+id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm: to be set as a
+whole.)")
+        .def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, std::string settings) {
                  Stroke s;
                  s.id = std::move(id);
@@ -30,13 +48,16 @@ void bind_stroke(py::module_& m) {
              }),
              py::arg("id") = "", py::arg("middle_mm") = Cubics(0, 8), py::arg("closed") = false,
              py::arg("half_width") = Knots{}, py::arg("layer") = "", py::arg("colour") = "", py::arg("settings") = "{}")
-        .def_readwrite("id", &Stroke::id)
         .def_property(
-            "middle_mm", [](const Stroke& s) { return s.middle_mm; },
-            [](Stroke& s, const Cubics& middle) { s.middle_mm = middle; })
+            "id", [](const Stroke& s) { return s.id.name(); }, [](Stroke& s, StrokeId id) { s.id = std::move(id); })
+        .def_property_readonly("origin", [](const Stroke& s) { return s.id; })
+        .def_property(
+            "middle_mm", [](const Stroke& s) -> const Cubics& { return s.middle_mm; }, replace(&Stroke::middle_mm))
         .def_readwrite("closed", &Stroke::closed)
-        .def_property("half_width", knots_of, set_knots)
-        .def_readwrite("wanted_mm", &Stroke::wanted_mm)
+        .def_property(
+            "half_width", [knots_of](const Stroke& s) { return frozen(py::cast(knots_of(s))); }, set_knots)
+        .def_property("wanted_mm", frozen_copy(&Stroke::wanted_mm),
+                      [](Stroke& s, Rings rings) { s.wanted_mm = std::move(rings); })
         .def_readwrite("layer", &Stroke::layer)
         .def_readwrite("colour", &Stroke::colour)
         .def_readwrite("settings", &Stroke::settings);

@@ -5,7 +5,7 @@
 void bind_verdict(py::module_& m) {
     using namespace brushsvg;
     py::class_<WorstPlace>(m, "WorstPlace", "Where paint and drawing differ most, and by how much.")
-        .def_readonly("at_mm", &WorstPlace::at_mm)
+        .def_property_readonly("at_mm", frozen_copy(&WorstPlace::at_mm))
         .def_readonly("is_missing", &WorstPlace::is_missing)
         .def_readonly("area_mm2", &WorstPlace::area_mm2);
     py::class_<Verdict>(m, "Verdict",

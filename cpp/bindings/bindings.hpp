@@ -1,11 +1,14 @@
 #pragma once
 
 #include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <cstddef>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "brushsvg/checkpoint.hpp"
 #include "parallel.hpp"
@@ -13,6 +16,7 @@
 namespace py = pybind11;
 
 void bind_profile(py::module_& m);
+void bind_student(py::module_& m);
 void bind_footprint(py::module_& m);
 void bind_brush(py::module_& m);
 void bind_stroke(py::module_& m);
@@ -48,6 +52,45 @@ class Unlocked {
     py::gil_scoped_release unlocked_;
     brushsvg::CancelWhen listens_;
 };
+
+/// A copy that nobody takes for the original: tuples in place of lists, arrays that are read only. Python changes what
+/// it holds, and a change of a copy would be lost without a word.
+inline py::object frozen(const py::object& copy) {
+    if (py::isinstance<py::list>(copy) || py::isinstance<py::tuple>(copy)) {
+        py::tuple out(py::len(copy));
+        std::size_t k = 0;
+        for (const py::handle one : copy) out[k++] = frozen(py::reinterpret_borrow<py::object>(one));
+        return std::move(out);
+    }
+    if (py::isinstance<py::array>(copy)) copy.attr("setflags")(py::arg("write") = false);
+    return copy;
+}
+
+/// What a member holds, as a frozen copy.
+template <class Owner, class Member>
+auto frozen_copy(Member Owner::* member) {
+    return [member](const Owner& owner) { return frozen(py::cast(owner.*member, py::return_value_policy::copy)); };
+}
+
+/// A member's values themselves, in a tuple: their own fields may be set, the tuple cannot be added to.
+template <class Owner, class Value>
+auto parts(std::vector<Value> Owner::* member) {
+    return [member](const py::object& owner) {
+        return py::tuple(py::cast(owner.cast<Owner&>().*member, py::return_value_policy::reference_internal, owner));
+    };
+}
+
+/// Sets a member to which Python may hold references: they stay good until their owner goes, and show what was there
+/// before.
+template <class Owner, class Value>
+auto replace(Value Owner::* member) {
+    return [member](const py::object& owner, Value value) {
+        Value& now = owner.cast<Owner&>().*member;
+        auto before = std::make_unique<Value>(std::exchange(now, std::move(value)));
+        py::detail::keep_alive_impl(owner,
+                                    py::capsule(before.release(), [](void* p) { delete static_cast<Value*>(p); }));
+    };
+}
 
 /// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which `progress(done, n)` is called
 /// where one is given.

@@ -18,6 +18,7 @@ PYBIND11_MODULE(_core, m) {
     });
 
     bind_profile(m);
+    bind_student(m);
     bind_footprint(m);
     bind_brush(m);
     bind_stroke(m);

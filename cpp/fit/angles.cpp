@@ -1,7 +1,9 @@
 #include "angles.hpp"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -35,8 +37,17 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     if (series.alpha.size() != n || !(series.beta.empty() || series.beta.size() == n))
         throw Error("there are " + std::to_string(n) + " distances and " + std::to_string(series.alpha.size()) +
                     " angles; each distance needs its angles");
-    if (!(series.alpha0 > 0.0 && series.alpha0 < M_PI))
-        throw Error("the first angle must lie between 0 and 180 degrees", "alpha0", series.alpha0 * 180.0 / M_PI);
+    // Beyond 90 degrees the bristles are loose and the patch rests for s = -2 r cos(alpha0): neither (7), nor (11) and
+    // (12), nor what follows of them holds from there on. 1e-9: what is left of 90 degrees in radians.
+    if (!(series.alpha0 > 0.0 && series.alpha0 <= 0.5 * M_PI + 1e-9)) {
+        const double degrees = series.alpha0 * 180.0 / M_PI;
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      "the first angle, %g degrees, is outside the range (0, 90]: beyond it the patch rests at first; "
+                      "let the series begin at a reading within it, and count s from there",
+                      degrees);
+        throw Error(text, "alpha0", degrees, std::array<double, 2>{0.0, 90.0});
+    }
     FromAngles out{0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0};
     std::vector<std::size_t> used;
     for (std::size_t i = 0; i < n; ++i) {

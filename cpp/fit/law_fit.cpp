@@ -1,17 +1,16 @@
 #include "law_fit.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <set>
 #include <string>
 
 #include "bernstein.hpp"
-#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "brushsvg/student.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -24,8 +23,10 @@ using Eigen::VectorXd;
 // tells apart, far above rounding.
 constexpr double kLeastResidualMm = 1e-9;
 constexpr int kMostReweightings = 500;
-constexpr double kEdgeMm = 1e-6;  // nearer to its floor a law counts as on it: the solver stops within 1e-9
-constexpr double kHeld = 1e6;     // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
+// Ways to lie below a floor that are tried: all of a cubic at some 20 depths, in some 10 ms; with more depths it is let
+// through its floor less often. Absolute residuals take some thirty times as long each.
+constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
+constexpr double kHeld = 1e6;  // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
 constexpr double kLeastPositiveMm = 0.01;  // of a law that must stay above 0: a lever of no length has no heading
 
 struct Problem {
@@ -104,68 +105,6 @@ VectorXd least_squares_above_zero(const MatrixXd& a, const VectorXd& y) {
     return x;
 }
 
-/// weight * (max(floor, A x) - y), which has a kink and so needs a solver of non-linear problems.
-class Floored : public ceres::CostFunction {
- public:
-    Floored(const MatrixXd& a, const VectorXd& y, const VectorXd& weight, double floor)
-        : a_(a), y_(y), weight_(weight), floor_(floor) {
-        set_num_residuals(int(a.rows()));
-        mutable_parameter_block_sizes()->push_back(int(a.cols()));
-    }
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-        checkpoint(500);
-        const Eigen::Map<const VectorXd> x(parameters[0], a_.cols());
-        const VectorXd p = a_ * x;
-        Eigen::Map<VectorXd>(residuals, a_.rows()) = weight_.cwiseProduct(p.cwiseMax(floor_) - y_);
-        if (jacobians && jacobians[0]) {
-            using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-            Eigen::Map<RowMajor> slope(jacobians[0], a_.rows(), a_.cols());
-            slope = weight_.asDiagonal() * a_;
-            for (Index i = 0; i < a_.rows(); ++i)
-                if (p[i] < floor_) slope.row(i).setZero();
-        }
-        return true;
-    }
-
- private:
-    MatrixXd a_;
-    VectorXd y_, weight_;
-    double floor_;
-};
-
-VectorXd solve_floored(const MatrixXd& a, const VectorXd& y, const VectorXd& weight, double floor) {
-    // begins as if there were no floor, on the values above it
-    const VectorXd above = (y.array() > floor).cast<double>().matrix().cwiseProduct(weight);
-    VectorXd x = (above.asDiagonal() * a).colPivHouseholderQr().solve(above.cwiseProduct(y));
-    ceres::Problem solver;
-    solver.AddResidualBlock(new Floored(a, y, weight, floor), nullptr, x.data());
-    ceres::Solver::Options options;
-    options.logging_type = ceres::SILENT;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = 500;
-    options.function_tolerance = 1e-15;
-    options.parameter_tolerance = 1e-13;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &solver, &summary);
-    if (!summary.IsSolutionUsable()) throw Error("no law with a floor could be fitted: " + summary.message);
-    // A value below the floor pulls the law down to the floor and no further. The slope jumps there, and the solver
-    // stops on such an edge; the best place along it is found by holding the law to the floor at that depth.
-    const VectorXd p = a * x;
-    MatrixXd rows = weight.asDiagonal() * a;
-    VectorXd wanted = weight.cwiseProduct(y);
-    for (Index i = 0; i < p.size(); ++i) {
-        const bool edge = std::abs(p[i] - floor) < kEdgeMm;
-        const double scale = edge ? kHeld : p[i] < floor ? 0.0 : 1.0;
-        wanted[i] = scale * weight[i] * (edge ? floor : y[i]);
-        rows.row(i) *= scale;
-    }
-    const VectorXd along = rows.colPivHouseholderQr().solve(wanted);
-    const auto cost = [&](const VectorXd& at) {
-        return weight.cwiseProduct((a * at).cwiseMax(floor) - y).squaredNorm();
-    };
-    return cost(along) < cost(x) ? along : x;
-}
-
 /// Over the values of the law's control points on the range: all at least kLeastPositiveMm, or none below the one
 /// before.
 VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool held) {
@@ -200,7 +139,6 @@ VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool hel
 VectorXd solve(const Problem& problem, const VectorXd& weight, bool held) {
     if (held || problem.shape.smoothing > 0.0) return solve_controls(problem, weight, held);
     const MatrixXd a = powers(problem.depth, problem.shape);
-    if (std::isfinite(problem.shape.floor)) return solve_floored(a, problem.value, weight, problem.shape.floor);
     return (weight.asDiagonal() * a).colPivHouseholderQr().solve(weight.cwiseProduct(problem.value));
 }
 
@@ -208,22 +146,109 @@ VectorXd residuals(const Problem& problem, const VectorXd& free) {
     return problem.value - (powers(problem.depth, problem.shape) * free).cwiseMax(problem.shape.floor);
 }
 
-/// Iteratively reweighted least squares: residuals weighted by 1 / sqrt|residual| count by their size, not its square.
-VectorXd solve_norm(const Problem& problem, bool held) {
-    VectorXd weight = VectorXd::Ones(problem.depth.size());
-    VectorXd free = solve(problem, weight, held);
-    if (problem.shape.norm == Norm::squares) return free;
-    double cost = residuals(problem, free).lpNorm<1>();
+/// Least squares by `solve(weights)`, or least absolute residuals by reweighting them: residuals weighted by
+/// 1 / sqrt|residual| count by their size, not its square. `left(x)`: the residuals.
+template <class Solve, class Left>
+VectorXd in_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
+    VectorXd free = solve(VectorXd(VectorXd::Ones(rows)));
+    if (norm == Norm::squares) return free;
+    double cost = left(free).template lpNorm<1>();
     for (int i = 0; i < kMostReweightings; ++i) {
-        weight = residuals(problem, free).cwiseAbs().cwiseMax(kLeastResidualMm).cwiseSqrt().cwiseInverse();
-        const VectorXd next = solve(problem, weight / weight.maxCoeff(), held);
-        const double now = residuals(problem, next).lpNorm<1>();
+        const VectorXd weight = left(free).cwiseAbs().cwiseMax(kLeastResidualMm).cwiseSqrt().cwiseInverse();
+        const VectorXd next = solve(VectorXd(weight / weight.maxCoeff()));
+        const double now = left(next).template lpNorm<1>();
         const bool still = std::abs(now - cost) <= 1e-12 * cost;
         free = next;
         cost = now;
         if (still) break;
     }
     return free;
+}
+
+double size(const VectorXd& residual, Norm norm) {
+    return norm == Norm::squares ? residual.squaredNorm() : residual.lpNorm<1>();
+}
+
+/// Where a polynomial lies at one depth: above its floor, below, or on it.
+enum class Side : char { above, below, on };
+
+/// Every way in which a polynomial with so many roots less its floor can lie at depths in ascending order; `on` only
+/// where `may_stop` says so. At most `most` and one.
+class Ways {
+ public:
+    Ways(const std::vector<bool>& may_stop, int roots, std::size_t most) : may_stop_(may_stop), most_(most) {
+        for (Side first : {Side::above, Side::below}) extend({}, first, roots);
+    }
+    std::vector<std::vector<Side>> found;
+
+ private:
+    /// `side`: on which it lies between this depth and the one before.
+    void extend(std::vector<Side> way, Side side, int roots) {
+        if (found.size() > most_) return;
+        if (way.size() == may_stop_.size()) {
+            found.push_back(std::move(way));
+            return;
+        }
+        const Side other = side == Side::above ? Side::below : Side::above;
+        const bool stops = may_stop_[way.size()];
+        way.push_back(side);
+        extend(way, side, roots);
+        if (roots < 1) return;
+        if (stops) {
+            way.back() = Side::on;
+            extend(way, other, roots - 1);
+            if (roots > 1) extend(way, side, roots - 2);  // touches it
+        }
+        if (way.size() == 1) return;  // that begins on the other side
+        way.back() = other;
+        extend(way, other, roots - 1);
+    }
+    std::vector<bool> may_stop_;
+    std::size_t most_;
+};
+
+/// The law with a floor that lies best. Where its polynomial lies below the floor a value pulls at nothing, so one
+/// hollow is as deep as the next only by chance, and a solver ends in that where it began: all ways to lie above and
+/// below are tried. A value below the floor pulls the law down to the floor and no further: there it may stop.
+VectorXd solve_floored(const Problem& problem) {
+    const LawShape& shape = problem.shape;
+    const MatrixXd a = powers(problem.depth, shape);
+    const std::set<double> depths(problem.depth.data(), problem.depth.data() + problem.depth.size());
+    std::vector<bool> may_stop(depths.size(), false);
+    std::vector<std::size_t> place;
+    for (Index i = 0; i < problem.depth.size(); ++i) {
+        place.push_back(std::size_t(std::distance(depths.begin(), depths.find(problem.depth[i]))));
+        if (problem.value[i] < shape.floor) may_stop[place.back()] = true;
+    }
+    const std::size_t most = shape.norm == Norm::squares ? kMostWays : kMostWaysAbsolute;
+    std::vector<std::vector<Side>> ways;
+    for (int roots = shape.degree; roots >= 0; --roots) {
+        ways = Ways(may_stop, roots, most).found;
+        if (ways.size() <= most) break;
+    }
+    VectorXd best, kept(a.rows()), wanted = problem.value;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::vector<Side>& way : ways) {
+        for (Index i = 0; i < a.rows(); ++i) {
+            const Side side = way[place[std::size_t(i)]];
+            kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
+            wanted[i] = side == Side::on ? shape.floor : problem.value[i];
+        }
+        const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
+            const VectorXd both = weight.cwiseProduct(kept);
+            return (both.asDiagonal() * a).colPivHouseholderQr().solve(both.cwiseProduct(wanted));
+        };
+        const auto left = [&](const VectorXd& free) -> VectorXd {
+            return (kept.array() == 1.0).select(wanted - a * free, 0.0);
+        };
+        const VectorXd free = in_norm(shape.norm, a.rows(), solve_kept, left);
+        const double cost = size(residuals(problem, free), shape.norm);
+        if (cost < least) {
+            least = cost;
+            best = free;
+        }
+    }
+    return best;
 }
 
 double median(std::vector<double> values) {
@@ -276,10 +301,15 @@ LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& v
     const Problem problem{Eigen::Map<const VectorXd>(depth_mm.data(), count),
                           Eigen::Map<const VectorXd>(value_mm.data(), count), shape};
     LawFit out;
-    VectorXd free = solve_norm(problem, false);
+    const auto solved = [&](bool held) {
+        return in_norm(
+            shape.norm, count, [&](const VectorXd& weight) { return solve(problem, weight, held); },
+            [&](const VectorXd& free) { return residuals(problem, free); });
+    };
+    VectorXd free = std::isfinite(shape.floor) ? solve_floored(problem) : solved(false);
     if (!keeps(coefficients_of(free, shape.through_zero), shape)) {
         out.held = true;
-        free = solve_norm(problem, true);
+        free = solved(true);
     }
     out.law.coefficients = coefficients_of(free, shape.through_zero);
     out.law.floor = shape.floor;
@@ -292,6 +322,7 @@ LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& v
     out.degrees_of_freedom = int(count - problem.terms());
     if (out.degrees_of_freedom < 1) return out;
     out.law.rmse_mm = std::sqrt(residual.squaredNorm() / out.degrees_of_freedom);
+    out.law.degrees_of_freedom = out.degrees_of_freedom;
 
     MatrixXd slope = powers(problem.depth, shape);
     const VectorXd polynomial = slope * free;
@@ -301,7 +332,7 @@ LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& v
     if (qr.rank() < slope.cols()) return out;  // all but a few values lie on the floor
     const MatrixXd inverse = (slope.transpose() * slope).ldlt().solve(MatrixXd::Identity(slope.cols(), slope.cols()));
     const MatrixXd covariance = variance(residual, problem.terms(), out.degrees_of_freedom, shape.norm) * inverse;
-    const double t = boost::math::quantile(boost::math::students_t(out.degrees_of_freedom), 0.975);
+    const double t = deviations_of_95(out.law.degrees_of_freedom);
     const Index first = shape.through_zero ? 1 : 0, size = covariance.rows() + first;
     out.covariance.assign(std::size_t(size), std::vector<double>(std::size_t(size), 0.0));
     out.law.half_interval_95.assign(std::size_t(size), 0.0);

@@ -3,12 +3,12 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/Dense>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <memory>
 #include <string>
 
 #include "brushsvg/error.hpp"
+#include "brushsvg/student.hpp"
 #include "parallel.hpp"
 #include "trace.hpp"
 
@@ -247,7 +247,8 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
     out.degrees_of_freedom = int(rows_in_all - unknowns);
     if (out.degrees_of_freedom < 1) return out;
     out.lag.rmse_mm = std::sqrt(sum / out.degrees_of_freedom);
-    const double t = boost::math::quantile(boost::math::students_t(out.degrees_of_freedom), 0.975);
+    out.lag.degrees_of_freedom = out.degrees_of_freedom;
+    const double t = deviations_of_95(out.lag.degrees_of_freedom);
     const MatrixXd covariance = sum / out.degrees_of_freedom * scale.asDiagonal() *
                                 normal.ldlt().solve(MatrixXd::Identity(n, n)) * scale.asDiagonal();
     for (Index i = 0; i < n; ++i) {

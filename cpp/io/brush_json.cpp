@@ -12,11 +12,13 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/brush";
+constexpr double kMostFreedom = 1e9;  // normal long before
 const std::set<std::string> kBrushKeys{"format",         "version",    "name",           "kind",
                                        "depth_range_mm", "lag",        "tip_gap",        "tip_to_widest",
                                        "half_width",     "covariance", "max_speed_mm_s", "paint_depth_mm"};
-const std::set<std::string> kProfileKeys{"coefficients", "calibrated_mm",    "source",  "assumed",
-                                         "floor",        "half_interval_95", "rmse_mm", "floor_slope"};
+const std::set<std::string> kProfileKeys{"coefficients", "calibrated_mm", "source",
+                                         "assumed",      "floor",         "half_interval_95",
+                                         "rmse_mm",      "floor_slope",   "degrees_of_freedom"};
 
 struct Law {
     const char* key;
@@ -49,6 +51,12 @@ Profile read_profile(Field field) {
         }
     }
     if (const auto rmse = fields.find("rmse_mm")) profile.rmse_mm = number(*rmse);
+    if (const auto freedom = fields.find("degrees_of_freedom")) {
+        profile.degrees_of_freedom = number(*freedom);
+        if (!(*profile.degrees_of_freedom >= 1.0 && *profile.degrees_of_freedom <= kMostFreedom))
+            throw Error("degrees_of_freedom must lie within [1, 1e9], not be " + in_words(*profile.degrees_of_freedom),
+                        freedom->path, *profile.degrees_of_freedom, std::array<double, 2>{1.0, kMostFreedom});
+    }
     profile.extra = fields.extra();
     return profile;
 }
@@ -145,6 +153,10 @@ void append_profile(std::string& out, const char* key, const Profile& profile) {
     if (profile.rmse_mm) {
         line("rmse_mm");
         append_exact(out, *profile.rmse_mm, key);
+    }
+    if (profile.degrees_of_freedom) {
+        line("degrees_of_freedom");
+        append_exact(out, *profile.degrees_of_freedom, key);
     }
     append_extra(out, parse_object(profile.extra, std::string(key) + ".extra", kProfileKeys), 4);
     out += "\n  }";

@@ -20,10 +20,10 @@ const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s"
 /// paper still counts as on it.
 void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
     const auto where = [&](Eigen::Index i) { return path + ".poses_mm[" + std::to_string(i) + "]"; };
-    if (pass.poses_mm.rows() == 0) throw Error("stroke " + pass.stroke + " has no poses", path + ".poses_mm");
+    if (pass.poses_mm.rows() == 0) throw Error("stroke " + pass.stroke.name() + " has no poses", path + ".poses_mm");
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         const auto sentence = [&](const std::string& fault) {
-            return "pose " + std::to_string(i) + " of stroke " + pass.stroke + " " + fault;
+            return "pose " + std::to_string(i) + " of stroke " + pass.stroke.name() + " " + fault;
         };
         if (!pass.poses_mm.row(i).allFinite()) throw Error(sentence("is not finite"), where(i));
         const double largest_mm = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
@@ -38,9 +38,9 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
         }
     }
     if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kLargestMm)) {
-        throw Error(
-            "speed_mm_s of stroke " + pass.stroke + " must lie within (0, 1e6], not be " + in_words(pass.speed_mm_s),
-            path + ".speed_mm_s", pass.speed_mm_s);
+        throw Error("speed_mm_s of stroke " + pass.stroke.name() + " must lie within (0, 1e6], not be " +
+                        in_words(pass.speed_mm_s),
+                    path + ".speed_mm_s", pass.speed_mm_s);
     }
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
 }
@@ -91,7 +91,7 @@ Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
 void append_pass(std::string& out, const Pass& pass, const std::string& path) {
     require_sound(pass, path, 0.5e-7);  // what is written as 0
     out += "    {\"stroke\": ";
-    append_string(out, pass.stroke, path + ".stroke");
+    append_string(out, pass.stroke.name(), path + ".stroke");
     out += ", \"speed_mm_s\": ";
     append_exact(out, pass.speed_mm_s, "speed_mm_s");
     out += ", \"layer\": ";

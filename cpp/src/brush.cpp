@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "brushsvg/error.hpp"
+#include "brushsvg/student.hpp"
 
 namespace brushsvg {
 namespace {
@@ -158,8 +159,8 @@ void check_covariance(const Brush& brush) {
         for (double depth : {brush.depth_range_mm[0], brush.depth_range_mm[1]}) {
             Eigen::VectorXd powers = Eigen::VectorXd::Ones(count);
             for (Eigen::Index i = 1; i < count; ++i) powers[i] = powers[i - 1] * depth;
-            const double sure =
-                1.96 * std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
+            const double sure = deviations_of_95(law->degrees_of_freedom) *
+                                std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
             if (!(sure <= kLargestLawMm))
                 throw Error(format("by the covariance the law is known to +- %.3g mm at depth %.2f mm; no more than "
                                    "%.0f mm is taken for true",

@@ -114,7 +114,7 @@ Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* 
     for (const Arc& arc : pass.arcs)
         if (arc.first >= first && arc.last <= last)
             out.arcs.push_back({at[arc.first - first], at[arc.last - first], arc.centre_mm, arc.direction});
-    if (number > 1) out.stroke += "+" + std::to_string(number);
+    out.stroke.load = number;
     return out;
 }
 

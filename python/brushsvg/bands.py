@@ -6,8 +6,9 @@ import itertools
 
 import numpy as np
 
+from . import _core
+
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
-LIKELY = 1.96  # standard deviations of 95 %
 
 
 def places(brush) -> dict[str, slice]:
@@ -16,11 +17,13 @@ def places(brush) -> dict[str, slice]:
     return {law: slice(*pair) for law, pair in zip(LAWS, itertools.pairwise(ends), strict=True)}
 
 
-def half_interval_mm(covariance: np.ndarray, depths: np.ndarray) -> np.ndarray:
-    """1.96 sqrt(x^T C x), x the powers of depth, C (n, n) the covariance of a law's coefficients."""
+def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float | None) -> np.ndarray:
+    """t sqrt(x^T C x), x the powers of depth, C (n, n) the covariance of a law's coefficients, found from so many
+    values to spare, t what 95 % of Student's t lie within; None: nobody knows from how many, t as for a normal value.
+    """
     powers = np.vander(depths, len(covariance), increasing=True)
     squared = np.einsum("ij,jk,ik->i", powers, covariance, powers)
-    return LIKELY * np.sqrt(np.maximum(squared, 0.0))
+    return _core.deviations_of_95(freedom) * np.sqrt(np.maximum(squared, 0.0))
 
 
 def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
@@ -32,7 +35,7 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
     if len(brush.covariance):
         block = np.array(brush.covariance)[place, place]
         if np.any(block):
-            return half_interval_mm(block, depths), "95 % of the law"
+            return half_interval_mm(block, depths, law.degrees_of_freedom), "95 % of the law"
     if law.rmse_mm is not None:
         return np.full_like(depths, law.rmse_mm), "RMSE of the data, not of the law"
     return None

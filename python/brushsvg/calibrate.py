@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import _core, plausible, shapes
+from .bands import places
 from .errors import Error
 from .measurements import Measurements, Row
 from .new_brush import GAP_PER_HALF, WIDEST_PER_HALF, need_fits, outlines_assumed
@@ -86,7 +87,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
     plausible.refuse_brush(brush)
     for law in ("lag", "half_width"):  # what a plan is led by
-        plausible.refuse_open(maker.done[law], brush.depth_range_mm)
+        plausible.refuse_open(brush, maker.done[law])
     return Calibration(brush, laws, tuple([*remarks, *maker.remarks, *plausible.odd(brush, laws)]))
 
 
@@ -178,7 +179,7 @@ class _Maker:
         if "tip_to_widest" not in self.done:
             sentence = "this needs the widest section of the footprint: add rows of tip_to_widest"
             raise Error(sentence, row.where)
-        widest = self.done["tip_to_widest"].fit.law(row.depth_mm)
+        widest = self.done["tip_to_widest"].fit.law(row.depth_mm)  # as it was measured, not as it is drawn
         if "path_mm" in row.numbers:
             return row.numbers["path_mm"] - row.numbers["distance_mm"] + widest
         return row.numbers["value_mm"] + widest
@@ -229,7 +230,10 @@ class _Maker:
             what = "falls" if law == "half_width" else "is not positive"
             remarks.append(f"held to its shape: the law that fits best {what} somewhere in the depth range")
         first = int(law in FROM_ZERO)
-        wild = plausible.wild(depths, fit.residual_mm, len(fit.law.coefficients) - first, first)
+        if widest:
+            wild = plausible.wild_above_floor(depths, values, self.range_mm, degree)
+        else:
+            wild = plausible.wild(depths, fit.residual_mm, len(fit.law.coefficients) - first, first)
         self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), wild)
 
     def _carry(self, wanted: str, known: str, rows: list[Row]) -> None:
@@ -251,7 +255,8 @@ class _Maker:
         if "tip_to_widest" in self.done:
             law = self.done["tip_to_widest"].fit.law
             rate = np.vander(depths, len(law.coefficients), increasing=True)
-            rate[seen_aside | (rate @ law.coefficients < 0.0)] = 0.0  # on its floor the law does not move
+            floored = rate @ law.coefficients < law.floor  # there the law does not move
+            rate[seen_aside | floored] = 0.0
             pull("tip_to_widest", rate)
 
     def covariance(self) -> np.ndarray | None:
@@ -273,18 +278,23 @@ class _Maker:
             out[b, a] = out[a, b].T
         return out
 
-    def _widen(self, brush: _core.Brush, covariance: np.ndarray) -> None:
-        """The intervals of a law that was found from sums, with what it inherits."""
-        if not self.corrected:
-            return
-        first = 0
-        for law in LAWS[: LAWS.index(self.corrected)]:
-            first += len(getattr(brush, law).coefficients)
-        profile = getattr(brush, self.corrected)
-        alone = np.sqrt(np.diag(self.done[self.corrected].fit.covariance))
-        whole = np.sqrt(np.diag(covariance)[first : first + len(alone)])
-        share = np.divide(whole, alone, out=np.ones_like(whole), where=alone > 0)
-        profile.half_interval_95 = (np.array(profile.half_interval_95) * share).tolist()
+    def _widened(self, brush: _core.Brush, covariance: np.ndarray) -> _core.Profile:
+        """The law that was found from sums with intervals that hold what it inherits, by the fewest values to spare of
+        all that it rests on: rather too wide."""
+        law = getattr(brush, self.corrected)
+        rests_on = [self.done[name].fit.law.degrees_of_freedom for name in (self.corrected, *self.pulls)]
+        freedom = min(rests_on)
+        sure = _core.deviations_of_95(freedom) * np.sqrt(np.diag(covariance)[places(brush)[self.corrected]])
+        return _core.Profile(
+            law.coefficients,
+            floor=law.floor,
+            floor_slope=law.floor_slope,
+            calibrated_mm=law.calibrated_mm,
+            source=law.source,
+            half_interval_95=sure,
+            rmse_mm=law.rmse_mm,
+            degrees_of_freedom=freedom,
+        )
 
     def _law(self, law: str) -> _core.Profile:
         half = self.done["half_width"].fit.law
@@ -292,14 +302,20 @@ class _Maker:
             share, what = ASSUMED[law]
             source = f"{what} is taken to lie {share:g} half widths from the tip."
             return _core.Profile([share * c for c in half.coefficients], source=source, assumed=True)
-        profile = self.done[law].fit.law
-        kinds = sorted({point.where.split("[")[0] for point in self.done[law].points})
+        points, fitted = self.done[law].points, self.done[law].fit.law
+        kinds = sorted({point.where.split("[")[0] for point in points})
         read = "a table" if kinds[0].startswith("line") else " and ".join(kinds)
-        profile.source = f"Fitted to {len(self.done[law].points)} values from {read}."
-        if law == "tip_to_widest":
-            deepest = self.range_mm[1]
-            profile.floor, profile.floor_slope = 0.0, FLOOR_PER_HALF * half(deepest) / deepest
-        return profile
+        deepest = self.range_mm[1]
+        return _core.Profile(
+            fitted.coefficients,
+            floor=fitted.floor,
+            floor_slope=FLOOR_PER_HALF * half(deepest) / deepest if law == "tip_to_widest" else 0.0,
+            calibrated_mm=fitted.calibrated_mm,
+            source=f"Fitted to {len(points)} values from {read}.",
+            half_interval_95=fitted.half_interval_95,
+            rmse_mm=fitted.rmse_mm,
+            degrees_of_freedom=fitted.degrees_of_freedom,
+        )
 
     def brush(self, name: str) -> _core.Brush:
         brush = _core.Brush()
@@ -313,7 +329,8 @@ class _Maker:
         covariance = self.covariance()
         if covariance is not None:
             brush.covariance = covariance.tolist()
-            self._widen(brush, covariance)
+            if self.corrected:
+                setattr(brush, self.corrected, self._widened(brush, covariance))
         depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
         brush.footprints = _core.FootprintTable([_outline(brush, depth) for depth in depths])
         brush.extra = outlines_assumed("drops whose widest section and width are those of the laws.")

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -298,20 +298,21 @@ def _turned(unit: _Unit) -> _Unit:
 
 def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
     width, height = sheet_mm
-    named, strokes, labels = [], [], []
-    ids = _numbered()
+    named, strokes, short, labels = [], [], [], []
+    counts: dict[str, int] = {}
     for unit, left, down in sorted(placed, key=lambda each: _order(each[0])):
         x0, _, _, y1 = unit.box_mm
         shift = EDGE_MM + left + GAP_MM / 2 - x0, height - EDGE_MM - down - GAP_MM / 2 - y1
         for stroke, box in zip(unit.strokes, unit.boxes_mm, strict=True):
-            name = ids(stroke.kind)
+            number = counts[stroke.kind] = counts.get(stroke.kind, 0) + 1
+            name = f"{stroke.kind}-{number}"
+            short.append(f"{CODES[stroke.kind]}{number}")
             named.append((name, stroke, shift))
             moved = tuple(float(v + shift[k % 2]) for k, v in enumerate(box))
             strokes.append(Stroke(name, stroke.kind, stroke.depth_mm, moved))
         x, bottom = unit.box_mm[0] + shift[0], unit.box_mm[1] + shift[1]
-        labels.append(
-            _label(strokes[-len(unit.strokes)], (x, bottom - 0.8 * LABEL_MM), unit.size_mm[0] - GAP_MM)
-        )
+        first, at_mm = -len(unit.strokes), (x, bottom - 0.8 * LABEL_MM)
+        labels.append(_label(strokes[first], short[first], at_mm, unit.size_mm[0] - GAP_MM))
     title = f"brushsvg chart, brush {brush.name}, {width:g} x {height:g} mm: print at 100 %"
     labels.append(
         Label(title, (EDGE_MM + side + 3, height - EDGE_MM - LABEL_MM), width - 2 * (EDGE_MM + side + 3))
@@ -329,9 +330,9 @@ def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
     return Chart(_plan(brush, sheet_mm, named), tuple(strokes), markers, tuple(labels))
 
 
-def _label(stroke: Stroke, at_mm: tuple[float, float], width_mm: float) -> Label:
+def _label(stroke: Stroke, short: str, at_mm: tuple[float, float], width_mm: float) -> Label:
     """Its id and depth where there is room, else a letter and its number."""
-    texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, CODES[stroke.kind] + stroke.id.split("-")[1])
+    texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, short)
     fitting = (text for text in texts if len(text) * LETTER_MM <= width_mm)
     return Label(next(fitting, texts[-1]), at_mm, width_mm)
 
@@ -339,16 +340,6 @@ def _label(stroke: Stroke, at_mm: tuple[float, float], width_mm: float) -> Label
 def _order(unit: _Unit) -> tuple[bool, float]:
     """References first, then from shallow to deep: paint that runs out does so where most of it is used."""
     return unit.strokes[0].kind != "reference", unit.strokes[0].depth_mm
-
-
-def _numbered() -> Callable[[str], str]:
-    counts: dict[str, int] = {}
-
-    def name(kind: str) -> str:
-        counts[kind] = counts.get(kind, 0) + 1
-        return f"{kind}-{counts[kind]}"
-
-    return name
 
 
 def _plan(brush, sheet_mm, named):

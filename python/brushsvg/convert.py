@@ -246,8 +246,8 @@ def nearest_first(work: Work) -> Work:
     """
     passes = work.plan.passes
     order = [int(k) for group in _groups(passes) for k in _nearest(passes, group)]
-    plan = work.plan
-    plan.passes = [passes[k] for k in order]
+    was = work.plan
+    plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
     strokes = None if work.strokes is None else [work.strokes[k] for k in order]
     misses = tuple(work.misses[k] for k in order) if work.misses else ()
     return replace(work, plan=plan, strokes=strokes, misses=misses)

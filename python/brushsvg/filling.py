@@ -3,7 +3,6 @@ their outlines."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -103,10 +102,10 @@ def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
     elements: dict[tuple, list[int]] = {}
     for k, stroke in enumerate(strokes):
         if stroke.wanted_mm:
-            elements.setdefault(_element(stroke.id), []).append(k)
+            elements.setdefault(_element(stroke), []).append(k)
     found = []
     wide = set(wider)
-    for element in dict.fromkeys(_element(strokes[k].id) for k in wider):
+    for element in dict.fromkeys(_element(strokes[k]) for k in wider):
         numbers = elements[element]
         shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
         members: list[list[int]] = [[] for _ in shapes]
@@ -129,7 +128,6 @@ def _homes(shapes, strokes: list) -> list[int]:
     return homes
 
 
-def _element(name: str) -> tuple[str, str]:
-    """What strokes of one element have in common in their names: id/1, id/2 ..., and which repeat of it they are."""
-    found = re.fullmatch(r"(.*?)(?:/[0-9]+)?(#[0-9]+)?", name, re.DOTALL)
-    return found[1], found[2] or ""
+def _element(stroke) -> tuple[str, int]:
+    """What strokes that share a shape have in common: their element, and which of the times that it is painted."""
+    return stroke.origin.element, stroke.origin.repeat

@@ -38,7 +38,7 @@ def lines_svg(strokes: list, sheet_mm: tuple[float, float], title: str = "") -> 
     that it was found in the outline of a shape.
     """
     width, height = sheet_mm
-    once = [stroke for stroke in strokes if not _is_repeat(stroke)]
+    once = [stroke for stroke in strokes if stroke.origin.repeat == 1]
     names = _names(once)
     drawn = [_drawn(stroke, name, height) for stroke, name in zip(once, names, strict=True)]
     lines = [
@@ -56,11 +56,6 @@ def lines_svg(strokes: list, sheet_mm: tuple[float, float], title: str = "") -> 
         else:
             lines += paths
     return "\n".join([*lines, "</svg>", ""])
-
-
-def _is_repeat(stroke) -> bool:
-    passes = json.loads(stroke.settings).get("passes", 1)
-    return stroke.id.endswith(tuple(f"#{k}" for k in range(2, passes + 1)))
 
 
 def _names(strokes: list) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import _core, shapes
-from .bands import LIKELY, half_interval_mm, places
+from .bands import half_interval_mm, places
 from .errors import Error
 from .new_brush import need_fits, outlines_assumed
 from .painted import Painted, depths_painted, middle
@@ -202,9 +202,10 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     if covariance is not None:
         whole = _over_brush(laws, covariance)
         brush.covariance = whole.tolist()
-        sure = LIKELY * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        sure = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
-            getattr(brush, law).half_interval_95 = sure[place].tolist()
+            coefficients = getattr(brush, law).coefficients
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=sure[place]))
     return brush
 
 
@@ -252,7 +253,7 @@ def _refuse_unsure(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
     for law in ("lag", "half_width"):  # the others are not what a plan is led by
-        half = half_interval_mm(covariance[at[law], at[law]], depths)
+        half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
         unsure = (half > UNSURE * values) & (half > UNSURE_MM)
         if unsure.mean() > UNSURE_PART:

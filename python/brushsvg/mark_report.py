@@ -11,7 +11,6 @@ from .bands import law_band
 from .describe import LAWS, polynomial
 from .mark_calibrate import LAG_TERMS, TELLS
 from .plot import INK, brush_picture_on, encoded, fill_rings, new_figure
-from .sheet_scale import told
 
 TABLE_ROWS = 6
 FOREIGN = 0.1  # of all points, without a say: more than blots and gaps
@@ -132,7 +131,7 @@ def _table(brush) -> list[str]:
 def _moved(made) -> list[str]:
     """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
     fit = made.fit
-    sure = 1.96 * np.sqrt(np.diag(np.array(fit.covariance)))
+    sure = _core.deviations_of_95() * np.sqrt(np.diag(np.array(fit.covariance)))
     height, shift, turn = sure[-4], sure[-3:-1], sure[-1]
     way = "higher" if fit.height_mm >= 0 else "lower"
     sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
@@ -145,7 +144,7 @@ def _moved(made) -> list[str]:
         f"most, by {sizes[far]:.2f} mm",
     ]
     if made.scale:
-        lines.append(f"by where its marks lie the sheet is {told(made.scale.both)} than the plan")
+        lines.append(f"by where its marks lie the sheet is {made.scale.told(made.scale.both)} than the plan")
     return lines
 
 

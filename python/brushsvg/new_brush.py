@@ -124,15 +124,18 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
             "width",
             2 * halves[worst],
         )
-    law = fit.law
     told = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
     more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""
-    law.source = (
-        f"Widths as typed in: {told}{more}; met to {2 * miss:.2f} mm. That the brush touches with no width at "
-        "depth 0 is assumed."
+    return _core.Profile(
+        fit.law.coefficients,
+        calibrated_mm=fit.law.calibrated_mm,
+        source=f"Widths as typed in: {told}{more}; met to {2 * miss:.2f} mm. That the brush touches with no width at "
+        "depth 0 is assumed.",
+        assumed=places == 1,
+        half_interval_95=fit.law.half_interval_95,
+        rmse_mm=fit.law.rmse_mm,
+        degrees_of_freedom=fit.law.degrees_of_freedom,
     )
-    law.assumed = places == 1
-    return law
 
 
 def _share(half_width: _core.Profile, share: float, what: str) -> _core.Profile:

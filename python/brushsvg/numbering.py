@@ -22,22 +22,32 @@ class Run:
 
 
 def runs_of(strokes: list) -> list[Run]:
-    """Strokes that follow each other, numbered on and alike in width and layer, are one entry if they are many."""
+    """Strokes that follow each other, alike in width and layer, are one entry if they are many: sub-paths of one
+    element, or elements that are numbered on."""
     runs: list[Run] = []
     keys = []
     for stroke in strokes:
-        stem, number = re.fullmatch("(.*?)([0-9]*)", stroke.id, re.DOTALL).groups()
-        keys.append((stem, int(number[-18:] or -1), width_text(stroke), stroke.layer))
+        keys.append((*_place(stroke.origin), width_text(stroke), stroke.layer))
     first = 0
     for k, key in enumerate(keys):
-        follows = k + 1 < len(keys) and keys[k + 1] == (key[0], key[1] + 1, *key[2:]) and key[1] >= 0
+        kind, number, *alike = key
+        follows = k + 1 < len(keys) and keys[k + 1] == (kind, number + 1, *alike) and number >= 0
         if not follows:
             if k - first + 1 < FOLDED:
                 runs += [Run(each, each) for each in range(first, k + 1)]
             else:
-                runs.append(Run(first, k, key[0].endswith("/")))
+                runs.append(Run(first, k, strokes[k].origin.part > 0))
             first = k + 1
     return runs
+
+
+def _place(origin) -> tuple[tuple, int]:
+    """What strokes of one entry share, and the number by which they follow each other; -1: by none."""
+    others = (origin.repeat, origin.lane)
+    if origin.part:
+        return (origin.element, True, *others), origin.part
+    stem, number = re.fullmatch("(.*?)([0-9]*)", origin.element, re.DOTALL).groups()
+    return (stem, False, *others), int(number[-18:] or -1)
 
 
 def width_text(stroke) -> str:

@@ -10,8 +10,6 @@ from . import _core
 from .cell import Cell, Station
 from .errors import Error
 
-PART = "part"  # of the settings of a pass: which part of an interrupted stroke it is, from the second on
-
 
 def in_loads(plan, brush, cell: Cell):
     """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
@@ -25,10 +23,6 @@ def in_loads(plan, brush, cell: Cell):
     for a_pass in plan.passes:
         whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
         parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-        for number, part in enumerate(
-            parts[1:], 2
-        ):  # names alone do not tell: a drawing may have its own "s+2"
-            part.settings = json.dumps(json.loads(part.settings) | {PART: number})
         passes += parts
     if len(passes) == len(plan.passes):
         return plan
@@ -96,7 +90,7 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
 
 def is_later_part(a_pass) -> bool:
     """Whether a pass of a plan in loads goes on with the stroke that the pass before it paints."""
-    return PART in json.loads(a_pass.settings)
+    return a_pass.origin.load > 1
 
 
 def _asked(a_pass) -> bool | None:

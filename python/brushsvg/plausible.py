@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 
-from .bands import half_interval_mm
+from . import _core
+from .bands import law_band
 from .errors import Error
-from .student import as_normal
 
 LEAST_ALPHA0_DEG = (
     5.0  # a series that starts nearer to the motion cannot be read; in radians 90 degrees are 1.57
@@ -103,7 +103,49 @@ def wild(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> di
     apart = np.maximum(apart, 1e-9)
     others = np.maximum((left @ left - left**2 / apart) / spare, 1e-18)
     studentised = left / np.sqrt(apart * others)
-    return {int(k): float(left[k] / apart[k]) for k in np.flatnonzero(as_normal(studentised, spare) > WILD)}
+    return {
+        int(k): float(left[k] / apart[k]) for k in np.flatnonzero(_core.as_normal(studentised, spare) > WILD)
+    }
+
+
+def wild_above_floor(depths_mm, values_mm, range_mm: tuple[float, float], degree: int) -> dict[int, float]:
+    """The same for a law that is a polynomial or 0, whichever is greater."""
+    return {
+        k: off
+        for k, (size, off) in off_the_others(depths_mm, values_mm, range_mm, degree).items()
+        if size > WILD
+    }
+
+
+def off_the_others(
+    depths_mm, values_mm, range_mm: tuple[float, float], degree: int
+) -> dict[int, tuple[float, float]]:
+    """How unlikely each value is beside the law with floor 0 of the others, as the size of a normal one, and how far it
+    lies off that law [mm].
+
+    The law of the others has a polynomial p at this depth, known to s, and a noise n about it. The value y is as
+    unlikely as the likeliest truth leaves it: the polynomial lies above the floor, t^2 = (y - p)^2 / (n^2 + s^2),
+    or not, t^2 = y^2 / n^2 + max(0, p)^2 / s^2. Values whose law the others leave open are left out.
+    """
+    depths, values = np.array(depths_mm, float), np.array(values_mm, float)
+    shape = _core.LawShape(range_mm, degree, floor=0.0)
+    found = {}
+    for k, (depth, value) in enumerate(zip(depths, values, strict=True)):
+        if len(np.unique(np.delete(depths, k))) <= degree:
+            continue
+        others = _core.fit_law(np.delete(depths, k), np.delete(values, k), shape)
+        if others.degrees_of_freedom < 1 or not others.covariance:
+            continue
+        powers = depth ** np.arange(degree + 1.0)
+        polynomial = powers @ others.law.coefficients
+        noise = max(others.law.rmse_mm, 1e-9) ** 2
+        sure = max(powers @ np.array(others.covariance) @ powers, 1e-18)
+        squared = value**2 / noise + max(0.0, polynomial) ** 2 / sure
+        if polynomial + sure / (sure + noise) * (value - polynomial) >= 0.0:
+            squared = min(squared, (value - polynomial) ** 2 / (noise + sure))
+        size = float(_core.as_normal(math.sqrt(squared), others.degrees_of_freedom))
+        found[k] = (size, value - others.law(depth))
+    return found
 
 
 def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:
@@ -226,14 +268,13 @@ def refuse_brush(brush) -> None:
         )
 
 
-def refuse_open(fitted, range_mm: tuple[float, float]) -> None:
+def refuse_open(brush, fitted) -> None:
     """A law whose 95 % interval holds 0 over much of its depths; fitted: a calibrate.Fitted."""
-    covariance = np.array(fitted.fit.covariance)
-    if not covariance.size:
+    if not len(brush.covariance):
         return
-    depths = np.linspace(*range_mm, 41)[1:]
-    half = half_interval_mm(covariance, depths)
-    values = np.array([fitted.fit.law(depth) for depth in depths])
+    depths = np.linspace(*brush.depth_range_mm, 41)[1:]
+    half, _ = law_band(brush, fitted.name, depths)
+    values = getattr(brush, fitted.name)(depths)
     if np.mean(half > values) <= OPEN_PART:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))

@@ -66,14 +66,11 @@ def _filled(strokes: list, wider: list[int], least: float, greatest: float) -> d
         first = min(filling.passes)
         left_over = _left_over(filling)
         for k in filling.passes:
-            passes = [
-                _like(strokes[k], strokes[k].id + (f"~{number}" if number > 1 else ""), line)
-                for number, line in enumerate(filling.passes[k], start=1)
-            ]
+            passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
             meant = []
             if passes:
                 line, rings = filling.meant[k]
-                meant = [_like(strokes[k], strokes[k].id, line), *passes[1:]]
+                meant = [_like(strokes[k], line), *passes[1:]]
                 meant[0].wanted_mm = rings
             done[k] = (passes, meant, _how(passes) + left_over * (k == first))
     return done
@@ -92,7 +89,9 @@ def _left_over(filling) -> str:
     return f"; {share} stay unpainted, with gaps up to {filling.gap_mm:.2g} mm wide"
 
 
-def _like(stroke, name: str, line):
+def _like(stroke, line, lane: int = 1):
+    of = stroke.origin
+    name = _core.StrokeId(of.element, of.part, of.repeat, lane)
     return _core.Stroke(
         name, line.middle_mm, line.closed, line.half_width, stroke.layer, stroke.colour, stroke.settings
     )
@@ -100,6 +99,6 @@ def _like(stroke, name: str, line):
 
 def _clamped(stroke, least: float, greatest: float):
     """The stroke with its widths cut to the range."""
-    made = _like(stroke, stroke.id, clamped(stroke, least, greatest))
+    made = _like(stroke, clamped(stroke, least, greatest))
     made.wanted_mm = stroke.wanted_mm
     return made

@@ -66,7 +66,7 @@ def towards_reach(painted, wanted, brush):
     if np.maximum(half - greatest, 0).mean() <= SPARED * greatest:
         return painted
     return _core.Stroke(
-        painted.id,
+        painted.origin,
         painted.middle_mm,
         painted.closed,
         painted.half_width,

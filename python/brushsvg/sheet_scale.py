@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import _core
 from .errors import Error
-from .student import as_normal
 
 LEAST_MARKS = 8  # of fewer the scatter of the displacements is not known
 CERTAIN = 4.0  # standard deviations of a normal value that do not come about by chance
@@ -27,7 +27,13 @@ class SheetScale:
 
     def is_off(self, share: tuple[float, float]) -> bool:
         size, error = abs(share[0]), max(share[1], 1e-12)
-        return size > LEAST_SCALE and as_normal(size / error, self.freedom) > CERTAIN
+        return size > LEAST_SCALE and _core.as_normal(size / error, self.freedom) > CERTAIN
+
+    def told(self, share: tuple[float, float]) -> str:
+        """A share with its 95 % interval."""
+        size = "larger" if share[0] >= 0 else "smaller"
+        half = _core.deviations_of_95(self.freedom) * share[1]
+        return f"{100 * abs(share[0]):.2f} +- {100 * half:.2f} % {size}"
 
 
 def sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> SheetScale | None:
@@ -60,19 +66,13 @@ def refuse_scale(scale: SheetScale | None) -> None:
     apart = (scale.x[0] - scale.y[0], math.hypot(scale.x[1], scale.y[1]))
     if scale.is_off(apart):
         raise Error(
-            f"the sheet is {told(scale.x)} than the plan in x and {told(scale.y)} in y: was it scanned at different "
-            "resolutions in x and y? Outlines count in mm of the tool's way",
+            f"the sheet is {scale.told(scale.x)} than the plan in x and {scale.told(scale.y)} in y: was it scanned at "
+            "different resolutions in x and y? Outlines count in mm of the tool's way",
             "marks",
         )
     if scale.is_off(scale.both):
         raise Error(
-            f"the sheet is {told(scale.both)} than the plan: was the page printed, or the paint scanned, at another "
-            "scale? Outlines count in mm of the tool's way",
+            f"the sheet is {scale.told(scale.both)} than the plan: was the page printed, or the paint scanned, at "
+            "another scale? Outlines count in mm of the tool's way",
             "marks",
         )
-
-
-def told(share: tuple[float, float]) -> str:
-    """A share with its 95 % interval."""
-    size = "larger" if share[0] >= 0 else "smaller"
-    return f"{100 * abs(share[0]):.2f} +- {196 * share[1]:.2f} % {size}"

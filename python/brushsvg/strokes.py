@@ -124,14 +124,14 @@ def _drawn(element: Element, subpath: SubPath) -> _Line:
     return _Line(subpath.cubics, half_width, subpath.closed, [])
 
 
-def _of_element(element: Element, names: list[str], lines: list[_Line]):
-    from ._core import Stroke
+def _of_element(element: Element, name: str, lines: list[_Line]):
+    from ._core import Stroke, StrokeId
 
     settings = json.dumps(element.settings, sort_keys=True)
-    for name, line in zip(names, lines, strict=True):
+    for part, line in zip(_parts(len(lines)), lines, strict=True):
         for repeat in range(1, element.settings.get("passes", 1) + 1):
             stroke = Stroke(
-                id=name if repeat == 1 else f"{name}#{repeat}",
+                id=StrokeId(name, part, repeat),
                 middle_mm=line.cubics.reshape(-1, 8),
                 closed=line.closed,
                 half_width=line.half_width,
@@ -143,8 +143,9 @@ def _of_element(element: Element, names: list[str], lines: list[_Line]):
             yield stroke
 
 
-def _names(elements: list[tuple[Element, int]]) -> tuple[list[list[str]], list[Notice]]:
-    """Names of each element's strokes, no two alike; the first to claim a name keeps it."""
+def _names(elements: list[tuple[Element, int]]) -> tuple[list[str], list[Notice]]:
+    """What each element is called, given with the number of its strokes: no two strokes have one name, and the first
+    to claim one keeps it."""
     nominal, anonymous = [], 0
     for element, _ in elements:
         anonymous += not element.id
@@ -152,29 +153,30 @@ def _names(elements: list[tuple[Element, int]]) -> tuple[list[list[str]], list[N
     reserved = set(nominal)
     taken: set[str] = set()
     last_suffix: dict[str, int] = {}
-    result: list[list[str]] = []
+    result: list[str] = []
     notices: list[Notice] = []
     for (element, count), base in zip(elements, nominal, strict=True):
-        name, names = base, _with_numbers(base, count)
+        name, names = base, _all_names(element, base, count)
         suffix = last_suffix.get(base, 1)
-        while not taken.isdisjoint((name, *_with_repeats(element, names))) or (
-            name != base and name in reserved
-        ):
+        while not taken.isdisjoint((name, *names)) or (name != base and name in reserved):
             suffix += 1
             name = f"{base}-{suffix}"
-            names = _with_numbers(name, count)
+            names = _all_names(element, name, count)
         if name != base:
             last_suffix[base] = suffix
             notices.append(Notice(base, f"the name {base!r} is taken: this one is called {name!r}"))
-        taken.update((name, *_with_repeats(element, names)))
-        result.append(names)
+        taken.update((name, *names))
+        result.append(name)
     return result, notices
 
 
-def _with_repeats(element: Element, names: list[str]) -> list[str]:
-    passes = element.settings.get("passes", 1)
-    return [*names, *(f"{name}#{k}" for name in names for k in range(2, passes + 1))]
+def _all_names(element: Element, name: str, count: int) -> list[str]:
+    from ._core import StrokeId
+
+    repeats = range(1, element.settings.get("passes", 1) + 1)
+    return [StrokeId(name, part, repeat).name for part in _parts(count) for repeat in repeats]
 
 
-def _with_numbers(name: str, count: int) -> list[str]:
-    return [name] if count == 1 else [f"{name}/{k}" for k in range(1, count + 1)]
+def _parts(count: int) -> range:
+    """Numbers of an element's strokes: 0 for the only one."""
+    return range(1) if count == 1 else range(1, count + 1)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import _core
-from .bands import LAWS, LIKELY, places
+from .bands import LAWS, places
 
 ROWS = 160  # of a stroke that a band is made from: beyond, it only takes longer
 COVARIANCE, RMSE = "covariance", "RMSE"
@@ -52,7 +52,7 @@ class Band:
 
 @dataclass(frozen=True)
 class _Effects:
-    """What one standard deviation along each of K independent directions changes, at rows of a pass."""
+    """What half a 95 % interval along each of K independent directions changes, at rows of a pass."""
 
     middle: np.ndarray  # (n, 2)
     along: np.ndarray  # (n, 2), u
@@ -128,7 +128,13 @@ def _all_effects(plan, brush, marks):
         [brush.depth_range_mm[1] ** np.arange(part.stop - part.start, dtype=float) for part in at.values()]
     )
     covariance = scale[:, None] * covariance_of(brush) * scale
-    factor, steps = _factor(covariance), _factor(covariance[lag, lag])
+    sure = np.concatenate(  # each law's half interval in its own standard deviations
+        [
+            np.full(part.stop - part.start, _core.deviations_of_95(getattr(brush, law).degrees_of_freedom))
+            for law, part in at.items()
+        ]
+    )
+    factor, steps = sure[:, None] * _factor(covariance), _factor(covariance[lag, lag])
     mixing = np.linalg.pinv(steps) @ factor[lag]  # the independent directions of all, in steps of the lag
     runs = [_both_sides(plan, brush, step / scale[lag]) for step in steps.T]
     # once: every look at the passes copies the list
@@ -228,7 +234,7 @@ def _sure(effects: _Effects) -> Sure:
     ends = rows[[0, -1]]
     along = _spread(np.einsum("ij,ijk->ik", effects.along[ends], effects.d_tip[ends]))
     width = 2 * _spread(effects.d_half[rows])
-    return Sure(*(float(LIKELY * values.max()) for values in (across, along, width)))
+    return Sure(*(float(values.max()) for values in (across, along, width)))
 
 
 def _tangents(points: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -241,7 +247,7 @@ def _tangents(points: np.ndarray, along: np.ndarray) -> np.ndarray:
 
 
 def _spread(effects: np.ndarray) -> np.ndarray:
-    """Standard deviation of a sum of independent parts, (n, K) -> (n,)."""
+    """Half interval of a sum of independent parts, (n, K) -> (n,)."""
     return np.sqrt(np.sum(np.square(effects), axis=1))
 
 
@@ -261,7 +267,7 @@ def _swept(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:
     outward = np.column_stack([edge[:, 1], -edge[:, 0]])
     outward = outward + np.roll(outward, 1, axis=0)
     outward /= np.maximum(np.hypot(*outward.T), 1e-12)[:, None]
-    off = outward * (LIKELY * _edge_spread(ring, outward, effects))[:, None]
+    off = outward * _edge_spread(ring, outward, effects)[:, None]
     outer, inner = ring + off, ring - off
     # two triangles an edge: a quad that is folded over has no area of its own
     next_outer, next_inner = np.roll(outer, -1, axis=0), np.roll(inner, -1, axis=0)
@@ -274,7 +280,7 @@ def _swept(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:
 
 
 def _edge_spread(ring: np.ndarray, outward: np.ndarray, effects: _Effects) -> np.ndarray:
-    """Standard deviation [mm] of an outline's vertices along its normals: of the footprint that painted each, its
+    """Half interval [mm] of an outline's vertices along its normals: of the footprint that painted each, its
     middle moved, turned with the brush, its tip moved on and its sides spread."""
     rows = np.unique(np.linspace(0, len(effects.half) - 1, ROWS).round().astype(int))
     half = np.maximum(effects.half[rows], 1e-3)

@@ -66,13 +66,13 @@ TEST_CASE("parts are no longer than the paint lasts, named and complete") {
     const double lift = 7.5;  // comes back over its own patch
     CHECK(length(parts[0]) < 15.0 + lift);
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (k > 0) CHECK(parts[k].stroke == "wave+" + std::to_string(k + 1));
+        if (k > 0) CHECK(parts[k].stroke.name() == "wave+" + std::to_string(k + 1));
         if (k > 0) CHECK(length(parts[k]) < 40.0 + lift);
         CHECK(parts[k].poses_mm(0, 2) == 0.0);
         CHECK(parts[k].poses_mm(parts[k].poses_mm.rows() - 1, 2) == 0.0);
         CHECK(parts[k].speed_mm_s == whole.speed_mm_s);
     }
-    CHECK(parts.front().stroke == "wave");
+    CHECK(parts.front().stroke.name() == "wave");
     CHECK(parts.back().poses_mm.bottomRows<1>() == whole.poses_mm.bottomRows<1>());
 }
 

@@ -33,7 +33,7 @@ Error refusal_of(Act act) {
 
 const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name": "flat", "depth_range_mm": [0, 4],
   "maker": {"b": 1, "a": [2e-5]},
-  "lag": {"coefficients": [1, 0.1], "half_interval_95": [0.5, 0.1], "rmse_mm": 0.3, "calibrated_mm": [1, 4],
+  "lag": {"coefficients": [1, 0.1], "half_interval_95": [0.5, 0.1], "rmse_mm": 0.3, "degrees_of_freedom": 7, "calibrated_mm": [1, 4],
           "source": "ruler", "assumed": true, "note": "wet"},
   "tip_gap": {"coefficients": [0, 0.52]},
   "tip_to_widest": {"coefficients": [-2.35, 2.75], "floor": 0, "floor_slope": 0.126},
@@ -74,6 +74,7 @@ TEST_CASE("brush.json: every key arrives where it belongs") {
     CHECK(brush.lag.coefficients == std::vector<double>{1.0, 0.1});
     CHECK(brush.lag.half_interval_95 == std::vector<double>{0.5, 0.1});
     CHECK(*brush.lag.rmse_mm == 0.3);
+    CHECK(*brush.lag.degrees_of_freedom == 7.0);
     CHECK((*brush.lag.calibrated_mm)[0] == 1.0);
     CHECK(brush.lag.source == "ruler");
     CHECK(brush.lag.assumed);
@@ -116,6 +117,8 @@ TEST_CASE("brush.json: unknown keys of every level and every double come back, t
     CHECK(again.lag.source == "ruler");
     CHECK(again.lag.assumed);
     CHECK(*again.lag.rmse_mm == 0.3);
+    CHECK(*again.lag.degrees_of_freedom == 7.0);
+    CHECK_FALSE(again.tip_gap.degrees_of_freedom.has_value());
     CHECK((*again.lag.calibrated_mm)[1] == 4.0);
     CHECK(again.tip_to_widest.floor == 0.0);
     CHECK(again.tip_to_widest.floor_slope == 0.126);
@@ -213,7 +216,7 @@ TEST_CASE("plan.json: every key arrives and is written back") {
     CHECK(plan.extra == R"({"author":"me"})");
     REQUIRE(plan.passes.size() == 2);
     const Pass& pass = plan.passes[0];
-    CHECK(pass.stroke == "a");
+    CHECK(pass.stroke.name() == "a");
     CHECK(pass.poses_mm.rows() == 2);
     CHECK(pass.poses_mm(1, 0) == 3.5);
     CHECK(pass.poses_mm(1, 2) == -1.0);

@@ -7,10 +7,14 @@ import shapely
 from brushsvg import _core, convert, find_brush, uncertainty
 from brushsvg.calibrate import calibrate
 from brushsvg.measurements import Measurements, Row
-from brushsvg.uncertainty import LIKELY
 
 LAWS = uncertainty.LAWS
 DRAWN = 400
+
+
+def sure_of(brush, law):
+    """Half a 95 % interval in standard deviations."""
+    return _core.deviations_of_95(getattr(brush, law).degrees_of_freedom)
 
 
 @pytest.fixture(scope="module")
@@ -99,9 +103,9 @@ def test_against_monte_carlo(brush, painted):
         across = np.einsum("dij,ij->di", found[:, taut, :2], normal).std(axis=0)
         ends = np.einsum("dij,ij->di", found[:, taut[[0, -1]], 2:4], u[[0, -1]]).std(axis=0)
         width = 2 * found[:, taut, 4].std(axis=0)
-        assert sure.middle_mm == pytest.approx(LIKELY * across.max(), rel=0.13)
-        assert sure.ends_mm == pytest.approx(LIKELY * ends.max(), rel=0.13)
-        assert sure.width_mm == pytest.approx(LIKELY * width.max(), rel=0.1)
+        assert sure.middle_mm == pytest.approx(sure_of(brush, "lag") * across.max(), rel=0.13)
+        assert sure.ends_mm == pytest.approx(sure_of(brush, "lag") * ends.max(), rel=0.13)
+        assert sure.width_mm == pytest.approx(sure_of(brush, "half_width") * width.max(), rel=0.1)
         compared += 1
     assert compared >= 10
 

@@ -256,13 +256,12 @@ def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
     before = path.read_bytes()
     assert before == (SHIPPED / "round-6.json").read_bytes()
 
-    lag = brush.lag.coefficients
-    for speed, coefficients in [(math.inf, lag), (10, [-1.0] * 5)]:
-        brush.max_speed_mm_s = speed
-        brush.lag.coefficients = coefficients
+    lag = brush.lag
+    for speed, law in [(math.inf, lag), (10, _core.Profile([-1.0] * 5))]:
+        brush.max_speed_mm_s, brush.lag = speed, law
         with pytest.raises(Error):
             save_brush(brush, path)
-    brush.lag.coefficients = lag
+    brush.lag = lag
     with monkeypatch.context() as patch:
         patch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
         with pytest.raises(Error, match="cannot be written: no space left") as refusal:

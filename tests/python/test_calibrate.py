@@ -5,8 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from brushsvg import _core, find_brush, plausible
+from brushsvg.bands import law_band
+from brushsvg.calibrate import calibrate
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.measurements import Row, read_measurements
@@ -388,3 +391,122 @@ def test_angles_that_do_not_begin_with_the_first_are_refused(tmp_path, capsys, c
     (tmp_path / "m.json").write_text(json.dumps(content))
     assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 1
     assert said in capsys.readouterr().err
+
+
+def readings(**laws):
+    content = {"format": "brushsvg/measurements", "version": 1}
+    content |= {
+        law: [{"depth_mm": float(d), "value_mm": float(v)} for d, v in zip(*both, strict=True)]
+        for law, both in laws.items()
+    }
+    return read_measurements(json.dumps(content).encode(), ".json")
+
+
+WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
+
+
+@pytest.mark.parametrize("floored", [1, 3])
+def test_normal_noise_above_a_floor_is_seldom_called_wild(floored):
+    """Readings where the law lies on its floor say nothing of its coefficients: 15 % of such calibrations were told to
+    measure the first depth again."""
+    rng, depths = np.random.default_rng(3), np.linspace(1, 10, 10)
+    law = np.maximum(0, WIDEST(depths - (floored - 1) * 0.8))
+    sizes, named = [], 0
+    for _ in range(300):
+        found = plausible.off_the_others(depths, law + rng.normal(0, 0.2, 10), (0.0, 10.0), 3)
+        sizes += [size for size, _ in found.values()]
+        named += any(size > plausible.WILD for size, _ in found.values())
+    assert len(sizes) == 3000
+    assert 0.03 <= np.mean(np.array(sizes) > 1.96) <= 0.07  # 0.05 of normal values
+    assert named <= 1  # six in a hundred thousand values
+
+
+def test_a_slip_above_a_floor_is_named():
+    rng, depths = np.random.default_rng(4), np.linspace(1, 10, 10)
+    for k in range(10):
+        values = np.maximum(0, WIDEST(depths)) + rng.normal(0, 0.05, 10)
+        values[k] += 3.0
+        assert list(plausible.wild_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
+
+
+def test_a_fit_stays_as_it_was_when_the_brush_is_made():
+    """The brush's outlines need a floor that rises with depth; the fit got it too, once sums had been corrected."""
+    d = np.arange(1, 11.0)
+    made = calibrate(
+        readings(
+            lag=(d, 3 + 0.8 * d),
+            tip_gap=(d, 0.5 * d),
+            tip_to_widest=(d, np.maximum(0, WIDEST(d))),
+            width=(d, 0.8 * d),
+        ),
+        "b",
+    )
+    fit = next(fitted.fit for fitted in made.laws if fitted.name == "tip_to_widest")
+    assert fit.law.floor_slope == 0 and fit.law(1.0) == pytest.approx(WIDEST(1.0), abs=1e-6)
+    assert made.brush.tip_to_widest.floor_slope > 0 and made.brush.tip_to_widest(1.0) > 0.1
+    assert fit.law.source == "" and made.brush.tip_to_widest.source.startswith("Fitted to 10 values")
+
+
+@pytest.mark.parametrize(("alpha0_deg", "is_taken"), [(90, True), (60, True), (91, False), (120, False)])
+def test_angles_that_begin_beyond_90_degrees_are_refused(alpha0_deg, is_taken):
+    """The patch rests at first: from 120 degrees the lag came out 9 % short, with an RMSE of 0."""
+    s = np.linspace(1, 16, 6)
+    rested = max(0.0, -2 * 8 * np.cos(np.radians(alpha0_deg)))
+    begun = np.radians(min(alpha0_deg, 180 - alpha0_deg))
+    alpha = 2 * np.arctan(np.tan(begun / 2) * np.exp(-np.maximum(0, s - rested) / 8))
+    if is_taken:
+        assert _core.from_angles(np.radians(alpha0_deg), s, alpha)["lag_mm"] == pytest.approx(8)
+        return
+    with pytest.raises(Error, match=rf"{alpha0_deg} degrees, is outside the range \(0, 90\]") as refusal:
+        _core.from_angles(np.radians(alpha0_deg), s, alpha)
+    assert list(refusal.value.range) == [0, 90] and refusal.value.value == pytest.approx(alpha0_deg)
+
+
+def test_five_readings_have_a_band_that_holds_the_truth():
+    """Bands of 1.96 standard deviations held it in 83 %. The laws are numpy's, their covariance too."""
+    rng, depths, at = (
+        np.random.default_rng(8),
+        np.array([2.0, 4, 6, 8, 10]),
+        np.array([0.0, 1, 3, 5, 7, 9, 10]),
+    )
+    columns = np.vander(depths, 3, increasing=True)
+    inverse = np.linalg.inv(columns.T @ columns)
+    truth = np.array([3.0, 0.9, -0.02])
+    held = []
+    brush = find_brush("round-6")
+    brush.tip_gap = brush.tip_to_widest = brush.half_width = _core.Profile([0.0])
+    for _ in range(4000):
+        values = columns @ truth + rng.normal(0, 0.3, 5)
+        found = inverse @ columns.T @ values
+        left = values - columns @ found
+        covariance = np.zeros((6, 6))
+        covariance[:3, :3] = left @ left / 2 * inverse
+        brush.lag, brush.covariance = _core.Profile(found, degrees_of_freedom=2), covariance
+        half, what = law_band(brush, "lag", at)
+        held.append(np.abs(np.polynomial.polynomial.polyval(at, found - truth)) <= half)
+    assert what == "95 % of the law"
+    assert np.all(np.abs(np.mean(held, axis=0) - 0.95) < 0.015)
+
+
+def test_a_calibration_of_five_readings_says_one_interval_for_one_number(tmp_path, capsys):
+    """The constant coefficient is the law at depth 0: its interval and the band's there were two."""
+    rng, d = np.random.default_rng(2), np.array([2.0, 4, 6, 8, 10])
+    made = calibrate(readings(lag=(d, 3 + 0.8 * d + rng.normal(0, 0.1, 5)), width=(d, 0.8 * d)), "b")
+    law = made.brush.lag
+    assert law.degrees_of_freedom == 2
+    half, _ = law_band(made.brush, "lag", np.array([0.0]))
+    assert half[0] == pytest.approx(law.half_interval_95[0])
+    error = np.sqrt(np.diag(made.brush.covariance)[:3])
+    np.testing.assert_allclose(law.half_interval_95, stats.t.ppf(0.975, 2) * error, rtol=1e-9)
+    again = _core.read_brush(_core.write_brush(made.brush))
+    assert again.lag.degrees_of_freedom == 2 and '"degrees_of_freedom": 2' in _core.write_brush(made.brush)
+
+
+@pytest.mark.parametrize("freedom", [1, 2, 3.5, 10, 200])
+def test_quantiles_are_scipys(freedom):
+    assert _core.deviations_of_95(freedom) == pytest.approx(stats.t.ppf(0.975, freedom), rel=1e-9)
+    assert _core.deviations_of_95() == pytest.approx(stats.norm.ppf(0.975), rel=1e-12)
+    t = np.array([-30.0, -2.0, 0.0, 0.5, 4.0])
+    np.testing.assert_allclose(
+        _core.as_normal(t, freedom), stats.norm.isf(stats.t.sf(np.abs(t), freedom)), rtol=1e-7, atol=1e-12
+    )

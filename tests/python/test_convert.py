@@ -80,3 +80,20 @@ def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
     with pytest.raises(Error, match=r"speed 25\.5 mm/s .* \(0, 25\.0\] mm/s of brush round-6") as refusal:
         machine.encode(".ngc", work.plan, work.brush, "two")
     assert refusal.value.where == "bold"
+
+
+def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
+    line = '<path id="{}" fill="none" stroke="#000" stroke-width="3" d="M{} 20h20"/>'.format
+    path = tmp_path / "three.svg"
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">'
+        + line("a", 10)
+        + line("far", 90)
+        + line("near", 40)
+        + "</svg>"
+    )
+    work = convert.prepare(path)
+    moved = convert.nearest_first(work)
+    assert [p.stroke for p in moved.plan.passes] == [s.id for s in moved.strokes] == ["a", "near", "far"]
+    assert [p.stroke for p in work.plan.passes] == [s.id for s in work.strokes] == ["a", "far", "near"]
+    assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256

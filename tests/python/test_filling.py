@@ -174,3 +174,19 @@ def test_what_is_no_lettering_is_left_to_the_middle_lines():
     assert contour_passes(shapely.box(0, 0, 4000, 4000), [], [], 0.0, 1.0) == []
     line = Line(np.array([[0.0, 0, 1, 0, 2, 0, 3, 0]]), [(0.0, 1.0)])
     assert painted([line]).area == pytest.approx(6 + np.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("names", [("icon/1", "icon/2"), ("a", "b")])
+def test_shapes_that_touch_are_filled_each_in_its_own_colour(brush, names):
+    """Names that look like parts of one element made one shape of two: all passes in the first one's red."""
+    body = "".join(
+        f'<path id="{name}" fill="{colour}" stroke="none" d="M{x} 10h40v30h-40z"/>'
+        for name, colour, x in zip(names, ("#ff0000", "#0000ff"), (10, 40), strict=True)
+    )
+    passes, wanted, _ = within_reach(strokes(read(body))[0], brush, "passes")
+    for name, colour, x in zip(names, ("#ff0000", "#0000ff"), (10, 40), strict=True):
+        own = [each for each in passes if each.origin.element == name]
+        assert {each.colour for each in own} == {colour}
+        assert [each.origin.lane for each in own] == list(range(1, len(own) + 1))
+        assert share_left(shapely.box(x, 10, x + 40, 40), own) < 0.02
+    assert [each.id for each in wanted] == [each.id for each in passes]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import curve_fit, linprog, lsq_linear
+from scipy.optimize import curve_fit, linprog, lsq_linear, minimize
 
 from brushsvg import _core
 from brushsvg.errors import Error
@@ -105,13 +105,16 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
 
     best, covariance = curve_fit(floored, depth, value, p0=law.coef)
     squares = np.sum((floored(depth, *best) - value) ** 2)
-    assert np.sum(np.square(fit.residual_mm)) <= squares * (1 + 1e-9)
+    found = np.sum(np.square(fit.residual_mm))
+    assert found <= squares * (1 + 1e-9)
+    assert fit.law(0.1) == 0
+    if found < squares * (1 - 1e-6):
+        return  # scipy stopped in a hollow beside it
     np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
     if (
         np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
     ):  # else the slope has a step just there
         np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.01)
-    assert fit.law(0.1) == 0
 
 
 @pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
@@ -145,4 +148,45 @@ def test_as_many_values_as_coefficients_leave_nothing_to_judge_by():
     fit = _core.fit_law([1, 2, 3], [1, 4, 9], _core.LawShape(RANGE, 2))
     assert fit.law.coefficients == pytest.approx([0, 0, 1], abs=1e-12)
     assert fit.degrees_of_freedom == 0 and fit.law.rmse_mm is None
-    assert fit.covariance == [] and fit.law.half_interval_95 == []
+    assert fit.covariance == () and fit.law.half_interval_95 == ()
+    assert fit.law.degrees_of_freedom is None
+
+
+def best_over_all_subsets(depth, value, degree):
+    """Least squares of max(0, polynomial): whatever may lie on the floor is left out in turn, by numpy; then scipy
+    looks on from there."""
+    powers = np.vander(depth, degree + 1, increasing=True)
+
+    def cost(c):
+        return np.sum((np.maximum(0, powers @ c) - value) ** 2)
+
+    found = []
+    for number in range(1, 2**depth.size):
+        kept = (number >> np.arange(depth.size) & 1).astype(bool)
+        c = np.linalg.lstsq(powers[kept], value[kept], rcond=None)[0]
+        found.append((cost(c), number, c))
+    found.sort(key=lambda each: each[:2])
+    looked = [minimize(cost, c, method="Nelder-Mead", options={"maxiter": 2000}).fun for *_, c in found[:2]]
+    return min(found[0][0], *looked)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_the_floor_is_the_best_of_all(seed):
+    """One of ten such fits once ended in a hollow of its own, up to 0.6 mm off."""
+    depth = np.linspace(1, 10, 8)
+    truth = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
+    value = np.maximum(0, truth(depth)) + np.random.default_rng(seed).normal(0, 0.5, depth.size)
+    fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 3, floor=0.0))
+    squares = np.sum(np.square(fit.residual_mm))
+    assert squares <= best_over_all_subsets(depth, value, 3) * (1 + 1e-9)
+    np.testing.assert_allclose(value - [fit.law(d) for d in depth], fit.residual_mm, atol=1e-9)
+
+
+@pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
+def test_many_depths_above_a_floor_are_fitted_too(norm):
+    """There are more ways to lie below it than are tried: the likely ones are."""
+    depth = np.linspace(0.1, 10, 120)
+    truth = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
+    value = np.maximum(0, truth(depth)) + np.random.default_rng(1).normal(0, 0.1, depth.size)
+    fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 3, norm=norm, floor=0.0))
+    np.testing.assert_allclose([fit.law(d) for d in depth], np.maximum(0, truth(depth)), atol=0.1)

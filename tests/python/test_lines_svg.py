@@ -72,6 +72,12 @@ def test_layers_settings_and_odd_ids_are_kept():
     assert [path.get("data-stroke") for path in root.iter(f"{SVG}path")] == ["a/b", "a#b", "line"]
 
 
+def test_a_name_that_ends_as_a_repeat_does_is_no_repeat():
+    """An element called a#2 that is painted twice was once left out with its repeats."""
+    _, _, root = again('<path id="a#2" d="M10 10H30" data-brushsvg-passes="2"/>' + LINE)
+    assert [path.get("data-stroke") for path in root.iter(f"{SVG}path")] == ["a#2", "line"]
+
+
 def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.svg").write_text(f"{HEAD}{WEDGE}</svg>")

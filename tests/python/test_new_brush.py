@@ -34,7 +34,7 @@ def test_the_widths_are_those_typed_in(widths):
         assert 2 * brush.half_width(depth) == pytest.approx(width, abs=0.1)
         seen = _core.footprint_at(brush.footprints, depth, 1.0)
         assert np.ptp(seen[:, 1]) == pytest.approx(width, abs=0.15), "outlines and laws say the same"
-    assert brush.lag.coefficients == [5.0]
+    assert brush.lag.coefficients == (5.0,)
 
 
 def test_what_is_assumed_says_so():

@@ -83,3 +83,10 @@ def test_warnings_of_a_kind_are_one_line():
     notices = [Notice(f"p{k}", f"depth 0.{k} mm is outside the range [1, 10] mm") for k in range(9)]
     texts = [word for word, *_ in words_of('<path d="M1 1H9"/>', [*notices, Notice("x", "another")])]
     assert texts[-2:] == ["p0 and 8 like it: depth 0.0 mm is outside the range [1, 10] mm", "x: another"]
+
+
+def test_elements_whose_names_look_like_parts_keep_an_ink_each():
+    line = '<path id="icon/{}" d="M{} 5v9"/>'.format
+    words = words_of("".join(line(k, 5 + 3 * k) for k in range(1, 7)))
+    assert "1-6  icon/1 ... icon/6: 1 mm (6 strokes)" in [word for word, *_ in words]
+    assert len({ink for word, *_, ink in words if word.isdigit()}) == 6

@@ -213,6 +213,9 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
         "long+3",
         "last",
     ]
+    loads = [("short", 1), ("long", 1), ("long", 2), ("long", 3), ("last", 1)]
+    assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in plan.passes] == loads
+    assert {a_pass.settings for a_pass in plan.passes} == {"{}"}
     assert names(visits(plan, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
     assert max(map(painted_mm, plan.passes)) < 120 + 8
     rings = []

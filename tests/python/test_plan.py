@@ -5,7 +5,7 @@ import gc
 import numpy as np
 import pytest
 
-from brushsvg import Error, _core
+from brushsvg import Error, _core, find_brush
 
 
 def plan_of(*passes):
@@ -57,9 +57,67 @@ def test_arcs():
 
 
 def test_an_arc_that_is_none_is_refused_by_the_simulator_too():
-    from brushsvg.brushes import find_brush
-
     a_pass = _core.Pass("V", [[0, 0, -1], [10, 0, -1], [20, 10, -1]], arcs=[_core.Arc(1, 2, (10, 11), 1)])
     with pytest.raises(Error, match=r"arc 0 of stroke V has pose 2 -0\.95\d* mm off its circle") as refusal:
         _core.simulate(plan_of(a_pass), find_brush("round-6"))
     assert refusal.value.where == "V"
+
+
+def test_nothing_is_added_to_a_copy_without_a_word():
+    """plan.passes.append(...) was once lost: it changed a list that nobody kept."""
+    plan, brush = plan_of(_core.Pass("a", [[0, 0, 0], [5, 0, -1]])), find_brush("round-6")
+    marks = _core.simulate(plan, brush)
+    stroke = _core.Stroke("s", np.zeros((1, 8)), half_width=[(0, 1)])
+    stroke.wanted_mm = [np.zeros((3, 2))]
+    fit = _core.fit_law([1, 2, 3, 4], [1, 2, 3, 5], _core.LawShape((0, 4), 1))
+    held = {
+        "passes": plan.passes,
+        "arcs": plan.passes[0].arcs,
+        "sheet": plan.sheet_mm,
+        "marks": marks.passes,
+        "rings": marks.passes[0].outline_mm,
+        "dragged": brush.footprints.dragged,
+        "pressed": brush.footprints.pressed,
+        "range": brush.depth_range_mm,
+        "covariance": brush.covariance,
+        "coefficients": brush.lag.coefficients,
+        "intervals": brush.lag.half_interval_95,
+        "knots": stroke.half_width,
+        "wanted": stroke.wanted_mm,
+        "misses": _core.compensate([], brush, (9, 9)).misses,
+        "fit": fit.covariance[0],
+        "residuals": fit.residual_mm,
+    }
+    assert {name: type(value) for name, value in held.items()} == dict.fromkeys(held, tuple)
+    with pytest.raises(AttributeError):
+        plan.passes.append(_core.Pass("b"))
+    arrays = [stroke.middle_mm, stroke.wanted_mm[0], brush.footprints.dragged[0].outline_mm]
+    arrays += [
+        getattr(marks.passes[0], name) for name in ("depth_mm", "taut", "tcp_mm", "contact_mm", "pose")
+    ]
+    assert not any(array.flags.writeable for array in arrays)
+
+
+def test_laws_are_values():
+    """A law that was taken from a fit and given another floor was the fit's own."""
+    law = find_brush("round-6").lag
+    for name in ("coefficients", "floor", "source", "rmse_mm", "degrees_of_freedom"):
+        with pytest.raises(AttributeError):
+            setattr(law, name, getattr(law, name))
+
+
+def test_where_a_stroke_comes_from_is_kept_in_fields():
+    stroke = _core.Stroke(_core.StrokeId("icon/1", part=2, repeat=3, lane=4))
+    assert stroke.id == "icon/1/2#3~4" and stroke.origin.element == "icon/1"
+    (a_pass,) = _core.compensate(
+        [_core.Stroke(stroke.origin, np.zeros((1, 8)), half_width=[(0, 1)])], find_brush("round-6"), (9, 9)
+    ).plan.passes
+    assert (a_pass.stroke, a_pass.origin.part, a_pass.origin.lane) == (stroke.id, 2, 4)
+    (again,) = _core.read_plan(_core.write_plan(plan_of(a_pass))).passes
+    assert (again.stroke, again.origin.element, again.origin.part) == (
+        stroke.id,
+        stroke.id,
+        0,
+    )  # not taken apart
+    stroke.id = "other/2"
+    assert (stroke.id, stroke.origin.element, stroke.origin.part) == ("other/2", "other/2", 0)

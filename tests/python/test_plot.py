@@ -29,7 +29,7 @@ def test_bands():
     covariance[5:7, 5:7] = [[0.04, -0.01], [-0.01, 0.01]]
     brush.covariance = covariance.tolist()
     half, what = law_band(brush, "tip_gap", depths)
-    np.testing.assert_allclose(half, 1.96 * np.sqrt(0.04 - 0.02 * depths + 0.01 * depths**2))
+    np.testing.assert_allclose(half, 1.959963985 * np.sqrt(0.04 - 0.02 * depths + 0.01 * depths**2))
     assert "95 %" in what
     assert "RMSE" in law_band(brush, "lag", depths)[1]
 

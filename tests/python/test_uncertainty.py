@@ -36,7 +36,7 @@ def test_the_report_says_how_far_off_and_where_from(drawing, capsys):
     assert found["uncertainty_from"] == "RMSE"
     line, bow = (row["uncertainty_95"] for row in found["strokes"])
     # r and b as far off as single readings: the ends of any stroke follow from (16) alone
-    ends = 1.96 * np.hypot(0.58, 0.85)
+    ends = 1.959963985 * np.hypot(0.58, 0.85)
     assert line["ends_mm"] == pytest.approx(ends, rel=0.02) == bow["ends_mm"]
     assert line["middle_mm"] < 0.1 < bow["middle_mm"]  # a lag that is wrong shows where the line bends
     assert line["width_mm"] is None
@@ -49,7 +49,7 @@ def test_a_width_that_was_measured_counts(drawing, tmp_path, capsys):
     brush.half_width = _core.Profile(law.coefficients, rmse_mm=0.2)
     (tmp_path / "own.json").write_text(_core.write_brush(brush))
     found = json.loads(report(drawing, capsys, "--json", "--brush", str(tmp_path / "own.json")).out)
-    assert found["strokes"][0]["uncertainty_95"]["width_mm"] == pytest.approx(2 * 1.96 * 0.2)
+    assert found["strokes"][0]["uncertainty_95"]["width_mm"] == pytest.approx(2 * 1.959963985 * 0.2)
 
 
 def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):

@@ -21,6 +21,8 @@
 #include "brushsvg/ring.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/stroke.hpp"
+#include "brushsvg/stroke_id.hpp"
+#include "brushsvg/student.hpp"
 #include "brushsvg/thin_out.hpp"
 #include "brushsvg/verdict.hpp"
 #include "brushsvg/wanted.hpp"

@@ -94,7 +94,7 @@ template <class T>
 Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay);
 
 /// beta, article (11) and (12): direction of the tip's displacement against the direction of motion, for constant lag,
-/// after psi went from alpha0 to alpha1 over s [mm]. In (0, pi) for alpha0 > 0.
+/// from 0 < alpha0 <= pi/2 to alpha1 over s [mm]: in (0, pi). Beyond pi/2 the patch rests at first: neither holds.
 template <class T>
 T tip_direction(const T& alpha0, const T& alpha1, const T& s, const T& lag_mm, const T& tip_gap_mm) {
     using std::atan2;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "brushsvg/stroke_id.hpp"
+
 namespace brushsvg {
 
 /// TCP poses, one per row: x, y, z [mm] in the paper frame; z = -depth while painting.
@@ -31,7 +33,7 @@ inline constexpr double kOnCircleMm = 3e-3;
 
 /// One stroke's motion: straight moves between poses, depth linear along each.
 struct Pass {
-    std::string stroke;  ///< id of the stroke it paints
+    StrokeId stroke;  ///< the stroke it paints
     Poses poses_mm;
     std::vector<Arc> arcs;  ///< ascending; poses of one are followed on its circle in place of its chords
     double speed_mm_s = 20.0;

@@ -20,6 +20,7 @@ struct Profile {
     bool assumed = false;
     std::vector<double> half_interval_95;  ///< per coefficient, empty when not known
     std::optional<double> rmse_mm;
+    std::optional<double> degrees_of_freedom;  ///< values to spare, from which its scatter is known
     std::string extra = "{}";  ///< JSON object of the keys this version does not know; written back as read
 
     /// Value at a depth [mm]; any scalar with arithmetic (a solver differentiates it).

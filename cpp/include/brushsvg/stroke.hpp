@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brushsvg/ring.hpp"
+#include "brushsvg/stroke_id.hpp"
 
 namespace brushsvg {
 
@@ -19,7 +20,7 @@ struct WidthKnot {
 
 /// What the designer drew: a middle line with a width along it, in painting direction.
 struct Stroke {
-    std::string id;
+    StrokeId id;
     Cubics middle_mm;
     bool closed = false;
     std::vector<WidthKnot> half_width;
