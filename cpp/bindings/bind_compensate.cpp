@@ -72,6 +72,7 @@ too sharp for the lever.)")
             options.lag_mm = lag_mm;
             options.speed_mm_s = speed_mm_s;
             options.few_poses = few_poses;
+            check(brush);
             const Way way = way_of(method, brush, options, sheet_mm);
             Compensated out;
             out.plan.brush = brush.name;
@@ -104,5 +105,5 @@ asks for.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
     m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,
-          "Miss of one pass against the stroke it should paint, by simulating it.");
+          py::call_guard<Unlocked>(), "Miss of one pass against the stroke it should paint, by simulating it.");
 }

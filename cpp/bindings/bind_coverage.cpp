@@ -3,7 +3,7 @@
 
 void bind_coverage(py::module_& m) {
     using namespace brushsvg;
-    const auto unlocked = py::call_guard<py::gil_scoped_release>();
+    const auto unlocked = py::call_guard<Unlocked>();
     m.def(
         "coverage",
         [](const Marks& marks, const Brush& brush, const std::array<double, 4>& w, double px_per_mm) {
@@ -33,11 +33,11 @@ void bind_coverage(py::module_& m) {
                 marks.passes[i].outline_mm = outline(marks.passes[i], brush);
                 all.insert(all.end(), marks.passes[i].outline_mm.begin(), marks.passes[i].outline_mm.end());
             });
-            py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             marks.outline_mm = marks.passes.size() == 1 ? all : unite(all);
         },
         py::arg("marks"), py::arg("brush"), py::arg("progress") = py::none(),
         "Fills outline_mm of every pass and of the whole.");
-    m.def("painted_bounds", &painted_bounds, py::arg("pass_marks"), py::arg("brush"),
+    m.def("painted_bounds", &painted_bounds, py::arg("pass_marks"), py::arg("brush"), unlocked,
           "Left, bottom, right, top [mm] of everything one pass paints.");
 }

@@ -4,7 +4,7 @@
 
 void bind_fit(py::module_& m) {
     using namespace brushsvg::fit;
-    const auto unlocked = py::call_guard<py::gil_scoped_release>();
+    const auto unlocked = py::call_guard<Unlocked>();
     py::enum_<Norm>(m, "Norm").value("squares", Norm::squares).value("absolute", Norm::absolute);
     py::class_<LawShape>(m, "LawShape", "What is asked of a fitted law; positive and rising hold on range_mm.")
         .def(py::init([](std::array<double, 2> range_mm, int degree, bool through_zero, bool positive, bool rising,

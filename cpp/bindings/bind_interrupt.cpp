@@ -6,7 +6,7 @@ void bind_interrupt(py::module_& m) {
     m.def(
         "interrupted",
         [](const Pass& pass, const Brush& brush, double first_mm, double every_mm, double backtrack_mm) {
-            py::gil_scoped_release release;
+            const Unlocked release;
             return interrupted(pass, brush, {first_mm, every_mm, backtrack_mm});
         },
         py::arg("a_pass"), py::arg("brush"), py::arg("first_mm"), py::arg("every_mm"), py::arg("backtrack_mm") = 5.0,

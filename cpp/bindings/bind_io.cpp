@@ -4,7 +4,7 @@
 #include "plan_json.hpp"
 
 void bind_io(py::module_& m) {
-    const auto unlocked = py::call_guard<py::gil_scoped_release>();
+    const auto unlocked = py::call_guard<Unlocked>();
     m.def("read_brush", &brushsvg::io::read_brush, py::arg("text"), unlocked, "brush.json; Error names the key.");
     m.def("write_brush", &brushsvg::io::write_brush, py::arg("brush"), unlocked, "The text of a brush.json.");
     m.def("read_plan", &brushsvg::io::read_plan, py::arg("text"), unlocked, "plan.json; Error names the key.");

@@ -4,7 +4,7 @@
 
 void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
-    const auto unlocked = py::call_guard<py::gil_scoped_release>();
+    const auto unlocked = py::call_guard<Unlocked>();
     py::class_<Track>(m, "Track",
                       R"(A stroke along which the patch was seen: lag from it by fit_tracks.
 

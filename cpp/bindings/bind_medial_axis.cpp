@@ -13,7 +13,7 @@ void bind_medial_axis(py::module_& m) {
         [](const Rings& rings, double least_share) {
             MedialAxis axis;
             {
-                py::gil_scoped_release unlocked;
+                const Unlocked unlocked;
                 axis = medial_axis(rings, least_share);
             }
             Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> nodes(Eigen::Index(axis.nodes.size()), 4);

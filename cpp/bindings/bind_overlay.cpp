@@ -14,15 +14,15 @@ void bind_overlay(py::module_& m) {
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
             return common_area(painted, wanted, brush);
         },
-        py::arg("painted"), py::arg("wanted"), py::arg("brush"), py::call_guard<py::gil_scoped_release>(),
+        py::arg("painted"), py::arg("wanted"), py::arg("brush"), py::call_guard<Unlocked>(),
         "What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.");
     m.def(
         "wanted_coverage",
         [](const std::vector<Stroke>& wanted, const std::array<double, 4>& w, double px_per_mm) {
             return wanted_coverage(wanted, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
         },
-        py::arg("wanted"), py::arg("window_mm"), py::arg("px_per_mm"), py::call_guard<py::gil_scoped_release>(),
+        py::arg("wanted"), py::arg("window_mm"), py::arg("px_per_mm"), py::call_guard<Unlocked>(),
         "What strokes should cover of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].");
-    m.def("touching", &touching, py::arg("wanted"), py::call_guard<py::gil_scoped_release>(),
+    m.def("touching", &touching, py::arg("wanted"), py::call_guard<Unlocked>(),
           "Numbers of strokes whose wanted marks touch, a list per letter; those that stand alone are not named.");
 }

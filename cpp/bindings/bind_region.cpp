@@ -4,7 +4,7 @@
 
 void bind_region(py::module_& m) {
     using namespace brushsvg;
-    const auto unlocked = py::call_guard<py::gil_scoped_release>();
+    const auto unlocked = py::call_guard<Unlocked>();
     m.def("unite", &unite, py::arg("rings"), unlocked,
           "Union of shapes: counter-clockwise rings fill, the clockwise rings behind one are its holes.");
     m.def(

@@ -49,7 +49,7 @@ void bind_stroke(py::module_& m) {
         py::arg("stroke"), py::arg("tolerance_mm") = 0.005,
         "Middle line as (n, 4): x, y, arc length, half width [mm].");
     m.def("wanted_pieces", &wanted_pieces, py::arg("stroke"), py::arg("tolerance_mm") = 0.005,
-          py::call_guard<py::gil_scoped_release>(),
+          py::call_guard<Unlocked>(),
           "Convex rings whose union is the path with its width and round caps; no wanted_mm is looked at.");
     m.def(
         "wanted_outline",
@@ -57,6 +57,6 @@ void bind_stroke(py::module_& m) {
             check(stroke);
             return wanted_outline(stroke, tolerance_mm);
         },
-        py::arg("stroke"), py::arg("tolerance_mm") = 0.005, py::call_guard<py::gil_scoped_release>(),
+        py::arg("stroke"), py::arg("tolerance_mm") = 0.005, py::call_guard<Unlocked>(),
         "Rings of the wanted mark: the path with its width, round caps and round joins.");
 }

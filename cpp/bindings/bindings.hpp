@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "brushsvg/checkpoint.hpp"
 #include "parallel.hpp"
 
 namespace py = pybind11;
@@ -33,13 +34,28 @@ void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);
 
-/// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which Ctrl-C is heard and
-/// `progress(done, n)` is called where one is given.
+/// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints.
+class Unlocked {
+ public:
+    Unlocked()
+        : listens_([] {
+              const py::gil_scoped_acquire locked;
+              if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+              return false;
+          }) {}
+
+ private:
+    py::gil_scoped_release unlocked_;
+    brushsvg::CancelWhen listens_;
+};
+
+/// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which `progress(done, n)` is called
+/// where one is given.
 template <class Work>
 void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
     for (std::size_t begin = 0; begin < n; begin += chunk) {
         {
-            py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) work(i);
         }
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();

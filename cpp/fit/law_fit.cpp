@@ -10,6 +10,7 @@
 #include <string>
 
 #include "bernstein.hpp"
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg::fit {
@@ -112,6 +113,7 @@ class Floored : public ceres::CostFunction {
         mutable_parameter_block_sizes()->push_back(int(a.cols()));
     }
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        checkpoint(500);
         const Eigen::Map<const VectorXd> x(parameters[0], a_.cols());
         const VectorXd p = a_ * x;
         Eigen::Map<VectorXd>(residuals, a_.rows()) = weight_.cwiseProduct(p.cwiseMax(floor_) - y_);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
 #include "mark_instants.hpp"
 #include "mark_model.hpp"
 
@@ -115,6 +116,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     distance_mm.resize(points.rows());
     std::size_t row = 0;
     for (Index k = 0; k < points.rows(); ++k) {
+        checkpoint(5);
         const Eigen::Vector2d x = points.row(k).transpose();
         const Beside beside = beside_of(footprints, x, back * painted.outward.row(k).transpose(), row);
         row = beside.row;

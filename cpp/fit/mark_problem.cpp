@@ -7,6 +7,8 @@
 #include <cmath>
 #include <memory>
 
+#include "brushsvg/checkpoint.hpp"
+
 namespace brushsvg::fit {
 namespace {
 
@@ -26,6 +28,7 @@ class MarkCost : public ceres::CostFunction {
         *mutable_parameter_block_sizes() = {model.layout().size(), 2};
     }
     bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+        checkpoint(500);
         const Index n = num_residuals(), size = model_.layout().size();
         VectorXd distance;
         RowMajor shared, own;

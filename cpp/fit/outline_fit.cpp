@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
 #include "painted_edge.hpp"
 
 namespace brushsvg::fit {
@@ -75,6 +76,7 @@ class Outlines : public ceres::CostFunction {
     }
 
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        checkpoint(500);
         const int n = path_.unknowns();
         const VectorXd x = Eigen::Map<const VectorXd>(parameters[0], n);
         const bool derive = jacobians && jacobians[0];

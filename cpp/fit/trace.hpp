@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/plan.hpp"
 
@@ -60,6 +61,7 @@ void trace(const LagLaw<T>& law, const Poses& poses, const T& deeper_mm, const s
     }
     for (; k < at.size() && at[k] <= 0.0; ++k) out(k, Trace<T>{down, depth0, q(0), state});
     for (Eigen::Index i = 0; i + 1 < poses.rows() && k < at.size(); ++i) {
+        checkpoint();
         const T d0 = deeper_mm - poses(i, 2), d1 = deeper_mm - poses(i + 1, 2);
         const bool down0 = value_of(d0) >= 0.0, down1 = value_of(d1) >= 0.0;
         const Vec2<T> q0 = q(i), q1 = q(i + 1);

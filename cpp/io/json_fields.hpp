@@ -3,6 +3,7 @@
 // Private to brushsvg::io: values of a JSON document read as what they must be, with their key path.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -111,6 +112,17 @@ inline std::array<double, 2> interval(const Field& field) {
     return ends;
 }
 
+/// A coordinate [mm] beyond it is damage; squares of smaller ones still add up.
+inline constexpr double kFarthestMm = 1e6;
+
+inline void require_coordinates(const Ring& ring, const std::string& path) {
+    for (Eigen::Index i = 0; i < ring.rows(); ++i)
+        for (const double mm : {ring(i, 0), ring(i, 1)})
+            if (!(std::abs(mm) <= kFarthestMm))
+                throw Error("a coordinate of " + Json(mm).dump() + " mm is outside [-1e6, 1e6] mm",
+                            path + "[" + std::to_string(i) + "]", mm, std::array<double, 2>{-kFarthestMm, kFarthestMm});
+}
+
 /// [[x, y], ...]
 inline Ring points(const Field& field) {
     if (!field.value.is_array()) {
@@ -126,6 +138,7 @@ inline Ring points(const Field& field) {
         if (!point[0].is_number() || !point[1].is_number()) require_numbers(point, path());
         ring.row(static_cast<Eigen::Index>(i)) << point[0].get<double>(), point[1].get<double>();
     }
+    require_coordinates(ring, field.path);
     return ring;
 }
 

@@ -25,6 +25,14 @@ void require_parallel(const PassMarks& pass, const std::string& path) {
     require("taut", pass.taut.size());
 }
 
+void require_within(const std::vector<double>& values, const std::string& path, double least, double greatest) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (!(values[i] >= least && values[i] <= greatest))
+            throw Error("the number " + in_words(values[i]) + " is outside [" + in_words(least) + ", " +
+                            in_words(greatest) + "]",
+                        path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
+}
+
 Rings read_rings(Fields& fields) {
     Rings rings;
     if (auto field = fields.find("outline_mm")) {
@@ -46,6 +54,10 @@ PassMarks read_pass(Field field, std::size_t index, const PassRows& rows) {
     pass.outline_mm = read_rings(fields);
     pass.pull.assign(pass.pose.size(), 1.0);
     require_parallel(pass, path);
+    require_coordinates(pass.contact_mm, path + ".contact_mm");
+    require_within(pass.pose, path + ".pose", 0.0, 1e9);
+    require_within(pass.heading_rad, path + ".heading_rad", -kFarthestMm, kFarthestMm);
+    require_within(pass.depth_mm, path + ".depth_mm", -kFarthestMm, kFarthestMm);
     return pass;
 }
 

@@ -26,15 +26,21 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
             return "pose " + std::to_string(i) + " of stroke " + pass.stroke + " " + fault;
         };
         if (!pass.poses_mm.row(i).allFinite()) throw Error(sentence("is not finite"), where(i));
+        const double largest_mm = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
+        if (largest_mm > kLargestMm) {
+            throw Error(sentence("has a coordinate of " + in_words(largest_mm) + " mm, outside [-1e6, 1e6] mm"),
+                        where(i), largest_mm, std::array<double, 2>{-kLargestMm, kLargestMm});
+        }
         const double z_mm = pass.poses_mm(i, 2);
         if (z_mm > slack_mm) {
             throw Error(sentence("has z = " + in_words(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
                         z_mm, std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
         }
     }
-    if (!(pass.speed_mm_s > 0.0) || !std::isfinite(pass.speed_mm_s)) {
-        throw Error("speed_mm_s of stroke " + pass.stroke + " must be greater than 0, not " + in_words(pass.speed_mm_s),
-                    path + ".speed_mm_s", pass.speed_mm_s);
+    if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kLargestMm)) {
+        throw Error(
+            "speed_mm_s of stroke " + pass.stroke + " must lie within (0, 1e6], not be " + in_words(pass.speed_mm_s),
+            path + ".speed_mm_s", pass.speed_mm_s);
     }
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
 }

@@ -20,6 +20,8 @@ std::string format(const char* pattern, Numbers... numbers) {
 constexpr double kDeepestMm = 1000.0;   // no brush is longer, and plans grow with the depth
 constexpr double kRigidLeverMm = 0.05;  // what a rigid pen's widest section may be off unseen: the usual tolerance
 constexpr double kLargestLawMm = 1000.0;
+constexpr std::size_t kMostOutlines = 1000;
+constexpr Eigen::Index kMostVertices = 2000;             // of an outline: each is held against each other
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
 constexpr double kOddMm = 0.05;     // less is within the usual tolerance and nothing to wonder about
 constexpr double kPoorFit = 0.3;    // RMSE by the law's size; the article's worst, its angles' tip gap, has 0.6
@@ -185,14 +187,29 @@ bool crosses_itself(const Ring& p) {
 
 void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, const std::string& where) {
     double depth_before = 0.0;
+    if (shapes.size() > kMostOutlines)
+        throw Error(
+            format("there are %.0f outlines; at most %.0f are read", double(shapes.size()), double(kMostOutlines)),
+            where);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Footprint& shape = shapes[i];
         const std::string here = where + "[" + std::to_string(i) + "]";
         const double d = shape.depth_mm;
-        if (!std::isfinite(d) || !(d > depth_before))
-            throw Error(format("depth %.3f mm is not greater than the one before, %.3f mm", d, depth_before), here, d);
+        if (!(d <= kLargestLawMm) || !(d > depth_before))
+            throw Error(format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm", d,
+                               depth_before),
+                        here, d);
         depth_before = d;
         if (!shape.outline_mm.allFinite()) throw Error("the outline has a coordinate that is not finite", here);
+        const double largest = shape.outline_mm.size() > 0 ? shape.outline_mm.cwiseAbs().maxCoeff() : 0.0;
+        if (!(largest <= kLargestLawMm))
+            throw Error(format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
+                               kLargestLawMm),
+                        here, largest, std::array<double, 2>{0.0, kLargestLawMm});
+        if (shape.outline_mm.rows() > kMostVertices)
+            throw Error(format("the outline has %.0f vertices; at most %.0f are read", double(shape.outline_mm.rows()),
+                               double(kMostVertices)),
+                        here);
         if (shape.outline_mm.rows() < 3) throw Error("the outline needs at least 3 vertices", here);
         if (shape.outline_mm.rows() != brush.footprints.vertex_count())
             throw Error(format("the outline has %.0f vertices where the first one has %.0f; all depths need the same",
@@ -323,6 +340,7 @@ std::vector<Warning> remarks(const Brush& brush) {
                                          "pressed deeper usually trail farther",
                                          -shorter, lo)});
         for (const Footprint& shape : brush.footprints.dragged) {
+            if (shape.outline_mm.rows() == 0) continue;
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
             if (!(shape.depth_mm <= hi && contact > front + kOddMm)) continue;
             out.push_back({"tip_gap", format("at depth %.2f mm the centre of friction lies %.2f mm from the tip, "

@@ -9,7 +9,9 @@
 #include "brushsvg/lag.hpp"
 #include "brushsvg/thin_out.hpp"
 #include "middle_line.hpp"
+#include "tolerance.hpp"
 #include "touch.hpp"
+#include "usable.hpp"
 
 namespace brushsvg {
 namespace {
@@ -275,6 +277,8 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
     warnings.push_back({stroke.id, text + brush.name + " was measured"});
 }
 
+constexpr double kLongestLagMm = 1000.0;  // no brush is longer
+
 /// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
 /// of it for that, less costs time, and poses where the brush is loose, which stay as they are.
 constexpr double kStepShare = 0.35;
@@ -299,8 +303,13 @@ bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& str
 
 CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
     check(stroke);
-    if (!(options.tolerance_mm > 0.0))
-        throw Error("the tolerance must be greater than 0 mm", stroke.id, options.tolerance_mm);
+    require_usable(brush);
+    require_tolerance(options.tolerance_mm, stroke.id);
+    if (options.lag_mm && !(*options.lag_mm >= 0.0 && *options.lag_mm <= kLongestLagMm))
+        throw Error("the lag is not within [0, 1000] mm", stroke.id, *options.lag_mm,
+                    std::array<double, 2>{0.0, kLongestLagMm});
+    if (!(options.speed_mm_s > 0.0) || std::isinf(options.speed_mm_s))
+        throw Error("the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
     const Line line(stroke, brush);
     CompensatedPass result;
     warn(stroke, brush, result.warnings);

@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
+#include "tolerance.hpp"
+
 namespace brushsvg {
 namespace {
 
@@ -76,6 +80,7 @@ class Fit {
                 return;
             }
             if (most > 8.0 * tolerance_) break;
+            checkpoint(int(t.size()));
             move(cubic, first, t);
         }
         if (last - first < 2) {
@@ -174,6 +179,9 @@ void few(const std::vector<WidthKnot>& all, std::size_t first, std::size_t last,
 }  // namespace
 
 FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
+    if (line.rows() > 0 && !(line.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
+        throw Error("the line has a number that is not finite, or beyond 1e6 mm");
+    require_tolerance(tolerance_mm);
     FittedLine result;
     Points points;
     std::vector<double> half;

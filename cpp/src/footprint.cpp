@@ -3,21 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brushsvg/error.hpp"
+
 namespace brushsvg {
 namespace {
 
 /// Adds weight * outline(depth) to `sum`, blended between the neighbouring depths.
 void add_blend(const std::vector<Footprint>& shapes, double depth, double weight, Ring& sum) {
+    const auto needed = [&](const Footprint& shape) -> const Ring& {
+        if (shape.outline_mm.rows() != sum.rows())
+            throw Error("all outlines of a footprint need as many vertices as the first one");
+        return shape.outline_mm;
+    };
     const auto above = std::lower_bound(shapes.begin(), shapes.end(), depth,
                                         [](const Footprint& shape, double d) { return shape.depth_mm < d; });
     if (above == shapes.end()) {
-        sum += weight * shapes.back().outline_mm;
+        sum += weight * needed(shapes.back());
     } else if (above == shapes.begin()) {
-        sum += (weight * depth / above->depth_mm) * above->outline_mm;
+        sum += (weight * depth / above->depth_mm) * needed(*above);
     } else {
         const Footprint& below = *(above - 1);
         const double c = (depth - below.depth_mm) / (above->depth_mm - below.depth_mm);
-        sum += weight * (1.0 - c) * below.outline_mm + weight * c * above->outline_mm;
+        sum += weight * (1.0 - c) * needed(below) + weight * c * needed(*above);
     }
 }
 
@@ -28,6 +35,7 @@ double cross(const Ring& p, Eigen::Index a, Eigen::Index b, Eigen::Index c) {
 }  // namespace
 
 Ring footprint_at(const FootprintTable& table, double depth_mm, double pull) {
+    if (table.dragged.empty()) throw Error("the footprint has no outline", "footprints.dragged");
     Ring outline = Ring::Zero(table.vertex_count(), 2);
     const bool pressed = !table.pressed.empty() && pull < 1.0;
     add_blend(table.dragged, depth_mm, pressed ? pull : 1.0, outline);
@@ -57,6 +65,7 @@ WidestSection widest_section(const Ring& outline_mm) {
 
 bool is_convex(const Ring& outline_mm) {
     const Eigen::Index n = outline_mm.rows();
+    if (n < 3) return true;
     const double size = outline_mm.cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < n; ++i)
         if (cross(outline_mm, i, (i + 1) % n, (i + 2) % n) < -1e-4 * size * size) return false;

@@ -2,9 +2,11 @@
 
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/simulate.hpp"
 #include "touch.hpp"
+#include "usable.hpp"
 
 namespace brushsvg {
 namespace {
@@ -18,6 +20,8 @@ constexpr double kLeastDepthMm = 0.05;
 /// Places on long straight moves, whose ends alone would not do: so many for one load of paint. Fewer would leave more
 /// of it unused, more only cost time.
 constexpr double kPlacesPerLoad = 200.0;
+
+constexpr double kMostLoads = 1000.0;  // of one stroke; with more the brush would only travel
 
 /// The pass with more poses along its straight moves. own[i]: whether it is one of the pass's.
 struct Fine {
@@ -119,8 +123,15 @@ Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* 
 std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const InterruptOptions& options) {
     if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
         throw Error("paint must last for more than twice the backtrack", pass.stroke, options.every_mm);
+    require_usable(brush);
     if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
+    const auto refuse_often = [&](double loads) {
+        if (!(loads <= kMostLoads))
+            throw Error("paint that lasts so short would have to be fetched more than 1000 times in one stroke",
+                        pass.stroke, options.every_mm);
+    };
+    refuse_often(path_lengths(pass.poses_mm).back() / options.every_mm);
     const Fine fine = refined(pass, options.every_mm / kPlacesPerLoad);
     const std::vector<double> along = path_lengths(fine.pass.poses_mm);
     const std::vector<Place> all = places(fine.pass, brush, along);
@@ -128,6 +139,8 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const Interr
     const Place* from = nullptr;
     double lasts_to = options.first_mm;
     while (along.back() > lasts_to) {
+        checkpoint(int(all.size()));
+        refuse_often(double(parts.size()) + 1.0);
         // the last place that the paint reaches, else the first after it; in both cases one that gets on
         const double least = from ? from->along_mm + options.backtrack_mm : 0.0;
         const Place *cut = nullptr, *back = nullptr;

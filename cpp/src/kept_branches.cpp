@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "brushsvg/checkpoint.hpp"
+
 namespace brushsvg {
 namespace {
 
@@ -40,6 +42,7 @@ void KeptBranches::drop(double least_share) {
     std::vector<std::size_t> looked_at(axis_.points.size());
     for (std::size_t p = 0; p < looked_at.size(); ++p) looked_at[p] = p;
     while (!looked_at.empty()) {
+        checkpoint(int(looked_at.size()));
         std::vector<Drop> drops = judged(looked_at, least_share);  // all before any goes
         keep_ends(drops);
         std::vector<std::size_t> junctions;

@@ -43,13 +43,17 @@ double bound_of_derivative(std::vector<double> c, int order, double lo, double h
 }  // namespace
 
 LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign) {
+    if (pieces.empty()) throw Error("a law without pieces says nothing: the depth range is empty");
     LagLaw<double> law;
     law.rigid = true;
     for (const PolynomialPiece& from : pieces) {
         std::vector<double> c = from.coefficients;
         while (c.size() > 1 && c.back() == 0.0) c.pop_back();
         if (c.empty()) c.push_back(0.0);
-        for (double& x : c) x *= sign;
+        for (double& x : c) {
+            if (!std::isfinite(x)) throw Error("a coefficient of a law is not finite", "", x);
+            x *= sign;
+        }
         if (int(c.size()) > kMaxLawDegree + 1)
             throw Error("a law of degree " + std::to_string(c.size() - 1) + " is beyond the greatest degree, 8");
         LawPiece<double> piece;
@@ -89,7 +93,7 @@ double first_positive(std::vector<double> f) {
         std::vector<double> c;
     };
     std::vector<Span> stack{{0.0, 1.0, std::move(bernstein)}};
-    while (!stack.empty()) {
+    for (int looks = 0; !stack.empty() && looks < kMostLooks; ++looks) {
         Span span = std::move(stack.back());
         stack.pop_back();
         if (std::all_of(span.c.begin(), span.c.end(), [](double c) { return c <= 0.0; })) continue;

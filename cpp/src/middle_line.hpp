@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brushsvg/brush.hpp"
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/stroke.hpp"
 
 namespace brushsvg {
@@ -141,6 +142,7 @@ void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& 
             }
             done = false;
         }
+        checkpoint(int(finer.size()));
         solve(finer);
         samples.clear();
         for (std::size_t i = 0; i < finer.size(); ++i) {

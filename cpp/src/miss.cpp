@@ -6,6 +6,7 @@
 
 #include "brushsvg/simulate.hpp"
 #include "nearest.hpp"
+#include "tolerance.hpp"
 
 namespace brushsvg {
 
@@ -16,6 +17,8 @@ using Eigen::Index;
 constexpr double kLookEveryMm = 0.1;
 
 Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
+    check(stroke);
+    require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
     const Ring widest = widest_points(marks, brush);
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));

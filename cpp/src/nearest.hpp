@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
+
 namespace brushsvg {
 
 /// Points that are visited between the rows of one polyline, at most: kilometres of it are looked at less closely.
@@ -23,6 +25,7 @@ void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step
         if (i > begin) {
             const Eigen::Vector2d before = rows.row(i - 1).transpose();
             const int n = int(std::min(1e4, std::ceil((here - before).norm() / step_mm)));
+            checkpoint(1 + n);
             for (int k = 1; k < n; ++k) visit(Eigen::Vector2d(before + double(k) / n * (here - before)));
         }
         visit(here);

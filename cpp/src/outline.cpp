@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg {
@@ -56,6 +57,7 @@ void Outline::walk(const Foot& from, const Foot& to, bool round, std::vector<Vec
     if (same_ring(from, to) && is_far) {
         std::size_t k = from.edge;
         do {
+            checkpoint();
             out.push_back(end(k));
             k = after(k);
         } while (k != to.edge);

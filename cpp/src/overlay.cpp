@@ -6,6 +6,8 @@
 #include <map>
 #include <numeric>
 
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
 #include "brushsvg/wanted.hpp"
 #include "parallel.hpp"
 
@@ -78,6 +80,7 @@ struct Meant {
     Box box;
 
     explicit Meant(const Stroke& stroke) : is_outline(!stroke.wanted_mm.empty()) {
+        check(stroke);
         parts = is_outline ? stroke.wanted_mm : wanted_pieces(stroke, kOutlineMm);
         for (const Ring& part : parts) {
             boxes.push_back(box_of(part));
@@ -140,6 +143,8 @@ Overlay overlay(const std::vector<PassMarks>& painted, const std::vector<Stroke>
 }
 
 CommonArea common_area(const Overlay& seen) {
+    if (seen.wanted.rows() != seen.painted.rows() || seen.wanted.cols() != seen.painted.cols())
+        throw Error("paint and drawing are pictures of different sizes");
     const double mm2 = 1.0 / (seen.px_per_mm * seen.px_per_mm);
     double common = 0.0, together = 0.0;
     for (Eigen::Index row = 0; row < seen.wanted.rows(); ++row) {  // a row's sum is exact enough in single precision
@@ -205,6 +210,7 @@ std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted
                      [&](std::size_t a, std::size_t b) { return drawn[a].box.left < drawn[b].box.left; });
     for (std::size_t at = 0; at < order.size(); ++at)
         for (std::size_t next = at + 1; next < order.size(); ++next) {
+            checkpoint(10);
             const Meant &one = drawn[order[at]], &other = drawn[order[next]];
             if (other.box.left > one.box.right) break;
             const std::size_t a = root(order[at]), b = root(order[next]);

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
+
+#include "brushsvg/checkpoint.hpp"
 
 namespace brushsvg {
 
@@ -14,18 +19,41 @@ template <class Work>
 void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     std::atomic<std::size_t> next{begin};
     std::vector<std::exception_ptr> errors(end - begin);
+    const SameCancel cancel;
     const auto run = [&] {
         for (std::size_t i = next++; i < end; i = next++) try {
+                checkpoint();
                 work(i);
             } catch (...) {
                 errors[i - begin] = std::current_exception();
             }
     };
+    std::mutex mutex;
+    std::condition_variable ended;
+    std::size_t running = 0;
     std::vector<std::thread> others;
-    for (unsigned k = 1; k < std::min<std::size_t>(std::thread::hardware_concurrency(), end - begin); ++k)
-        others.emplace_back(run);
+    for (unsigned k = 1; k < std::min<std::size_t>(std::thread::hardware_concurrency(), end - begin); ++k) {
+        ++running;
+        others.emplace_back([&] {
+            cancel.take_over();
+            run();
+            const std::lock_guard lock(mutex);
+            --running;
+            ended.notify_one();
+        });
+    }
     run();
+    std::exception_ptr given_up;  // this thread alone asks whether to go on, also while it waits
+    for (std::unique_lock lock(mutex); running > 0;) {
+        ended.wait_for(lock, std::chrono::milliseconds(50));
+        if (!given_up) try {
+                checkpoint(1 << 20);
+            } catch (...) {
+                given_up = std::current_exception();
+            }
+    }
     for (std::thread& other : others) other.join();
+    if (given_up) std::rethrow_exception(given_up);
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);
 }

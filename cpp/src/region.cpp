@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "nearest.hpp"
 
@@ -94,6 +95,10 @@ double area_of(const Set& set) {
     return sum / (kUnitsPerMm * kUnitsPerMm);
 }
 
+void require_finite(const Ring& ring) {
+    if (!ring.allFinite()) throw Error("a ring has a coordinate that is not finite");
+}
+
 /// Numbers of the points that are corners of their convex hull, counter-clockwise.
 std::vector<Eigen::Index> hull_order(const Ring& points) {
     std::vector<Eigen::Index> order(points.rows());
@@ -102,6 +107,7 @@ std::vector<Eigen::Index> hull_order(const Ring& points) {
         return points(a, 0) < points(b, 0) || (points(a, 0) == points(b, 0) && points(a, 1) < points(b, 1));
     });
     std::vector<Eigen::Index> hull;
+    if (order.empty()) return hull;
     const auto turns_right = [&](Eigen::Index c) {
         const Eigen::Index a = hull[hull.size() - 2], b = hull.back();
         return (points(b, 0) - points(a, 0)) * (points(c, 1) - points(b, 1)) -
@@ -150,6 +156,7 @@ Rings unite(const Rings& rings) {
         for (std::size_t i = 0; i < level.size(); i += 4) {
             Set set;
             for (std::size_t j = i; j < std::min(level.size(), i + 4); ++j) set.insert(level[j]);
+            checkpoint(100);
             set.clean();
             next.push_back(std::move(set));
         }
@@ -188,6 +195,7 @@ Set wound(const Rings& outlines, int turns, bool reversed) {
             if (ring.rows() >= 3) insert(set, ring, true);
         for (int k = 1; k < turns; ++k) set.insert_vertex_sequence(frame.begin(), frame.end(), bp::CLOCKWISE, false);
     }
+    checkpoint(1000);
     set.clean();
     return set;
 }
@@ -219,6 +227,7 @@ Set in_an_odd_number(const Rings& outlines) {
     while (level.size() > 1) {
         std::vector<Set> next;
         for (std::size_t i = 0; i < level.size(); i += 2) {
+            checkpoint(1000);
             if (i + 1 < level.size()) level[i] ^= level[i + 1];
             next.push_back(std::move(level[i]));
         }
@@ -263,7 +272,10 @@ double overlap(const Rings& a, const Rings& b) {
     return all > 0.0 ? shared / all : 1.0;
 }
 
-Ring convex_hull(const Ring& points) { return rows_of(points, hull_order(points)); }
+Ring convex_hull(const Ring& points) {
+    require_finite(points);
+    return rows_of(points, hull_order(points));
+}
 
 std::vector<double> clearance(const Rings& rings, const Ring& points) {
     Rings closed;
@@ -273,6 +285,7 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
     std::vector<double> distances;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
         double least = std::numeric_limits<double>::infinity();
+        checkpoint(int(outlines.size()));
         for (auto& outline : outlines) least = std::min(least, outline.distance(points.row(i).transpose(), least));
         distances.push_back(least);
     }
@@ -280,15 +293,20 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
 }
 
 Rings pieces_between(const Rings& chain) {
+    for (const Ring& ring : chain) require_finite(ring);
     if (chain.size() < 2) return chain;
     using Numbers = std::vector<Eigen::Index>;
     std::vector<Numbers> hulls;  // of F_i and F_i+1, whose corners are numbered behind those of F_i
-    for (std::size_t i = 0; i + 1 < chain.size(); ++i) hulls.push_back(hull_order(both(chain[i], chain[i + 1])));
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+        checkpoint(10);
+        hulls.push_back(hull_order(both(chain[i], chain[i + 1])));
+    }
     // Between two corners of F_i that stay, others of F_i can go: what they enclose lies in F_i, so in the hull before.
     // So can corners of F_i+1 that are none of the next hull: what they enclose is in that, and is not what it loses.
     Rings pieces;
     std::vector<bool> in_next;
     for (std::size_t i = 0; i < hulls.size(); ++i) {
+        checkpoint(10);
         const Numbers& hull = hulls[i];
         const Eigen::Index n = chain[i].rows();
         const bool is_first = i == 0, is_last = i + 1 == hulls.size();

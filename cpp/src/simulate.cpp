@@ -4,12 +4,18 @@
 #include <cmath>
 #include <cstdio>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"
+#include "tolerance.hpp"
+#include "usable.hpp"
 
 namespace brushsvg {
 namespace {
+
+/// Rows of a pass, at most: real ones have one to twenty a pose, landings some hundred.
+constexpr std::size_t kMostRows = 1000000, kMostRowsPerPose = 100;
 
 /// The footprint's bounding box about the contact, for the sampling: how far back, forward and to the sides it reaches.
 struct Extents {
@@ -40,12 +46,13 @@ struct Extents {
 
 class Tracer {
  public:
-    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, PassMarks& out)
+    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, std::size_t poses, PassMarks& out)
         : brush_(brush),
           law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
           extents_(brush),
           tolerance_(tolerance_mm),
           for_outlines_(for_outlines),
+          most_rows_(kMostRows + kMostRowsPerPose * poses),
           out_(out) {
         kinks_ = extents_.depth;
         for (const Profile* profile : {&brush.tip_gap, &brush.tip_to_widest})
@@ -224,6 +231,11 @@ class Tracer {
     }
 
     void add(double t, const Vec2<double>& q, double depth, const LagState<double>& state, double pull) {
+        checkpoint();
+        if (out_.pose.size() >= most_rows_)
+            throw Error("the mark of the pass takes more than " + std::to_string(most_rows_) +
+                            " rows: it is too large for the tolerance",
+                        out_.stroke, tolerance_);
         out_.pose.push_back(pose_ + scale_ * t);
         tcp_.insert(tcp_.end(), {q.x(), q.y()});
         contact_.insert(contact_.end(), {state.contact.x(), state.contact.y()});
@@ -239,6 +251,7 @@ class Tracer {
     std::vector<double> kinks_;
     double tolerance_;
     bool for_outlines_;
+    std::size_t most_rows_;
     PassMarks& out_;
     LagState<double> state_;
     std::vector<double> tcp_, contact_;
@@ -272,11 +285,13 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
 }  // namespace
 
 PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines) {
+    require_usable(brush);
+    require_tolerance(tolerance_mm, pass.stroke);
     refuse_bad_poses(pass, brush);
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     PassMarks marks;
     marks.stroke = pass.stroke;
-    Tracer tracer(brush, tolerance_mm, for_outlines, marks);
+    Tracer tracer(brush, tolerance_mm, for_outlines, std::size_t(pass.poses_mm.rows()), marks);
     const Eigen::Index n = pass.poses_mm.rows();
     if (n == 0) {
         tracer.finish();
@@ -336,6 +351,7 @@ Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm) {
 }
 
 Ring widest_points(const PassMarks& marks, const Brush& brush) {
+    require_usable(marks);
     Ring points = marks.contact_mm;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
         const double e = brush.lever_to_widest(std::max(0.0, marks.depth_mm[i]));

@@ -3,15 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <string>
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "tolerance.hpp"
 
 namespace brushsvg {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
+
+void require_cubic(const Cubics& c, Index i) {
+    if (i < 0 || i >= c.rows())
+        throw Error("the middle line has no cubic " + std::to_string(i) + " of " + std::to_string(c.rows()), "",
+                    double(i));
+}
 
 Vector2d control(const Cubics& c, Index i, int k) { return c.row(i).segment<2>(2 * k).transpose(); }
 
@@ -27,12 +37,14 @@ Vector2d derivative(const Cubics& c, Index i, double t) {
 Vector2d point_at(const Cubics& c, const Place& place) {
     const double t = place.t, u = 1.0 - t;
     const Index i = place.cubic;
+    require_cubic(c, i);
     return u * u * u * control(c, i, 0) + 3.0 * u * u * t * control(c, i, 1) + 3.0 * u * t * t * control(c, i, 2) +
            t * t * t * control(c, i, 3);
 }
 
 Vector2d tangent_at(const Cubics& c, const Place& place) {
     const Index i = place.cubic;
+    require_cubic(c, i);
     double size = 0.0;
     for (int k = 1; k < 4; ++k) size = std::max(size, (control(c, i, k) - control(c, i, 0)).norm());
     if (size == 0.0) return Vector2d::Zero();
@@ -50,7 +62,8 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
                                     0.9061798459386640};
     static constexpr double w[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                     0.2369268850561891};
-    const int n = std::max(1, int(std::ceil(std::abs(t1 - t0) * 8.0 - 1e-9)));
+    require_cubic(c, i);
+    const int n = int(std::clamp(std::ceil(std::abs(t1 - t0) * 8.0 - 1e-9), 1.0, 1000.0));
     double sum = 0.0;
     for (int k = 0; k < n; ++k) {
         const double a = t0 + (t1 - t0) * k / n, half = 0.5 * (t1 - t0) / n;
@@ -61,6 +74,7 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
 
 double half_width_at(const Stroke& stroke, double fraction) {
     const auto& knots = stroke.half_width;
+    if (knots.empty()) throw Error("the stroke has no width", stroke.id);
     const auto above = std::upper_bound(knots.begin(), knots.end(), fraction,
                                         [](double f, const WidthKnot& knot) { return f < knot.at; });
     if (above == knots.begin()) return knots.front().half_width_mm;
@@ -79,11 +93,15 @@ void check(const Stroke& stroke) {
     if (stroke.half_width.empty()) throw Error("the stroke has no width", stroke.id);
     double before = -1.0;
     for (const WidthKnot& knot : stroke.half_width) {
-        if (!std::isfinite(knot.at) || !std::isfinite(knot.half_width_mm) || knot.half_width_mm < 0.0)
-            throw Error("a width along the stroke is negative or not finite", stroke.id, knot.half_width_mm);
+        if (!(std::abs(knot.at) <= 1e6) || !(knot.half_width_mm >= 0.0 && knot.half_width_mm <= 1e6))
+            throw Error("a width along the stroke is negative, not finite or beyond 1e6 mm", stroke.id,
+                        knot.half_width_mm);
         if (knot.at < before) throw Error("the widths along the stroke are not in ascending order", stroke.id, knot.at);
         before = knot.at;
     }
+    for (const Ring& ring : stroke.wanted_mm)
+        if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
+            throw Error("the wanted outline has a coordinate that is not finite or beyond 1e6 mm", stroke.id);
 }
 
 namespace {
@@ -108,18 +126,30 @@ std::vector<std::array<double, 3>> with_places_of_knots(const std::vector<std::a
 
 }  // namespace
 
+/// Of a line: with more, kilometres of curves to a hair, it is as fine as these allow.
+constexpr double kMostPoints = 4e6;
+
 MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
+    check(stroke);
+    require_tolerance(tolerance_mm, stroke.id);
     const Cubics& c = stroke.middle_mm;
+    // chord error of equal steps: |B''| / 8 n^2
+    std::vector<double> steps;
+    for (Index i = 0; i < c.rows(); ++i) {
+        const Vector2d p0 = control(c, i, 0), p1 = control(c, i, 1), p2 = control(c, i, 2), p3 = control(c, i, 3);
+        const double second = 6.0 * std::max((p0 - 2.0 * p1 + p2).norm(), (p1 - 2.0 * p2 + p3).norm());
+        steps.push_back(std::max(1.0, std::ceil(std::sqrt(second / (8.0 * tolerance_mm)))));
+    }
+    const double coarser = std::max(1.0, std::accumulate(steps.begin(), steps.end(), 0.0) / kMostPoints);
     std::vector<std::array<double, 3>> points;
     double s = 0.0;
     for (Index i = 0; i < c.rows(); ++i) {
-        const Vector2d p0 = control(c, i, 0), p1 = control(c, i, 1), p2 = control(c, i, 2), p3 = control(c, i, 3);
-        // chord error of equal steps: |B''| / 8 n^2
-        const double second = 6.0 * std::max((p0 - 2.0 * p1 + p2).norm(), (p1 - 2.0 * p2 + p3).norm());
-        const int n = std::clamp(int(std::ceil(std::sqrt(second / (8.0 * tolerance_mm)))), 1, 1 << 20);
+        const Vector2d p0 = control(c, i, 0), p3 = control(c, i, 3);
+        const int n = int(std::ceil(steps[std::size_t(i)] / coarser));
         if (i == 0) points.push_back({p0.x(), p0.y(), 0.0});
         for (int k = 1; k <= n; ++k) {
             const Vector2d p = k == n ? p3 : point_at(c, {i, double(k) / n});
+            checkpoint();
             const double step = arc_length(c, i, double(k - 1) / n, double(k) / n);
             if (p.x() == points.back()[0] && p.y() == points.back()[1] && step == 0.0) continue;
             s += step;

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "brushsvg/brush.hpp"
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/marks.hpp"
+#include "usable.hpp"
 
 namespace brushsvg {
 
@@ -56,6 +58,8 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
 /// swept area is their hull), else `polygon(ring)` for the footprint and `piece(ring)`, convex, for each edge's sweep.
 template <class Convex, class Polygon, class Piece>
 void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece) {
+    require_usable(brush);
+    require_usable(marks);
     bool all_convex = true;
     for (const auto* shapes : {&brush.footprints.dragged, &brush.footprints.pressed})
         for (const Footprint& shape : *shapes) all_convex = all_convex && is_convex(shape.outline_mm);
@@ -77,6 +81,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
             before.resize(0, 2);
             continue;
         }
+        checkpoint(5);
         Ring now = placed(i);
         if (before.rows() == 0) {
             if (all_convex)

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/simulate.hpp"
 #include "nearest.hpp"
+#include "tolerance.hpp"
 
 namespace brushsvg {
 namespace {
@@ -172,6 +174,7 @@ class Walk {
     }
 
     Step tried(Index i, Index j, const Vector3d& to) const {
+        checkpoint(10);
         Step step{to, state_};
         const Move<double> move(at_.head<2>(), to.head<2>(), at_.z(), to.z());
         if (move.length > kLeastMoveMm && j > i + 1) {
@@ -284,6 +287,7 @@ double apart(const PassMarks& marks, const Brush& brush, const Ring& middle) {
 }  // namespace
 
 Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
+    require_tolerance(tolerance_mm, pass.stroke);
     const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
     const PassMarks marks = simulate(pass, brush, exact_mm, false);
     if (pass.poses_mm.rows() < 4) return pass;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
+
 namespace brushsvg {
 namespace {
 
@@ -11,9 +14,11 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kLineMm = 0.01;
-constexpr double kLeastSquareMm = 0.5;  // in which paint and drawing differ most
-constexpr int kBlocks = 5;              // the worst place is looked for in steps of a fifth of its size
-constexpr double kEveryMm = 0.5;        // where widths are measured
+constexpr double kLeastSquareMm = 0.5;   // in which paint and drawing differ most
+constexpr int kBlocks = 5;               // the worst place is looked for in steps of a fifth of its size
+constexpr double kEveryMm = 0.5;         // where widths are measured
+constexpr double kMostWidths = 20000.0;  // of a line of many metres
+constexpr double kMostReach = 1e5;       // pixels; no picture has more across
 
 /// Sums of values over all squares of so many blocks, from sums over blocks.
 class Squares {
@@ -65,6 +70,11 @@ double median_half_width(const MiddlePolyline& line) {
 
 WorstPlace worst_place(const Overlay& seen, double size_mm) {
     const Index height = seen.wanted.rows(), width = seen.wanted.cols();
+    if (height == 0 || width == 0 || seen.painted.rows() != height || seen.painted.cols() != width)
+        throw Error("paint and drawing are pictures of different sizes, or empty");
+    if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= kMostReach))
+        throw Error("the size of the square where the worst place is looked for is not within the picture", "",
+                    size_mm);
     const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocks)), Index(1),
                                    std::min(height, width));  // what is left over at the edges is paper
     const Index rows = height / block, columns = width / block;
@@ -103,10 +113,12 @@ WorstPlace worst_place(const Overlay& seen, double size_mm) {
 
 double width_across(const Coverage& shares, const Overlay& seen, const Vector2d& at_mm, const Vector2d& direction,
                     double reach_mm) {
+    if (!at_mm.allFinite() || !direction.allFinite() || std::isnan(reach_mm) || !(seen.px_per_mm > 0.0))
+        throw Error("the place of a width or the picture's scale is not finite");
     const double step_mm = 1.0 / seen.px_per_mm;
     const Vector2d across = step_mm * Vector2d(-direction.y(), direction.x());
     const auto share = [&](int k) { return share_at(shares, seen, at_mm + double(k) * across); };
-    const int most = int(std::ceil(reach_mm * seen.px_per_mm));
+    const int most = int(std::clamp(std::ceil(reach_mm * seen.px_per_mm), 0.0, kMostReach));
     int inside = 0;  // the nearest place that is painted: 0, -1, 1, -2, 2 ...
     while (inside <= most && !(share(inside) > 0.5)) inside = inside < 0 ? -inside : -inside - 1;
     if (inside > most) return 0.0;
@@ -124,13 +136,16 @@ double width_across(const Coverage& shares, const Overlay& seen, const Vector2d&
 }
 
 std::optional<double> width_error_mm(const Overlay& seen, const MiddlePolyline& line) {
+    if (line.rows() == 0) return {};
     const double length = line(line.rows() - 1, 2);
     if (!(length > 0.0)) return {};
     const double reach = 2.0 * line.col(3).maxCoeff() + 4.0 / seen.px_per_mm;
     double sum = 0.0;
     int count = 0;
     Index segment = 0;
-    for (double at = 0.5 * kEveryMm; at < length; at += kEveryMm) {
+    const double every_mm = std::max(kEveryMm, length / kMostWidths);
+    for (double at = 0.5 * every_mm; at < length; at += every_mm) {
+        checkpoint(5);
         while (segment + 2 < line.rows() && line(segment + 1, 2) <= at) ++segment;
         const Vector2d from = line.row(segment).head<2>().transpose(), to = line.row(segment + 1).head<2>().transpose();
         const double t = (at - line(segment, 2)) / (line(segment + 1, 2) - line(segment, 2));

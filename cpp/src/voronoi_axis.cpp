@@ -3,13 +3,30 @@
 #include <algorithm>
 #include <boost/polygon/voronoi.hpp>
 #include <cmath>
+#include <utility>
+
+#include "brushsvg/checkpoint.hpp"
 
 namespace brushsvg {
 namespace {
 
 namespace bp = boost::polygon;
 using Eigen::Vector2d;
-using Diagram = bp::voronoi_diagram<double>;
+/// Asks on its way whether to go on.
+class Diagram : public bp::voronoi_diagram<double> {
+ public:
+    template <class Event>
+    std::pair<void*, void*> _insert_new_edge(const Event& a, const Event& b) {
+        checkpoint(5);
+        return bp::voronoi_diagram<double>::_insert_new_edge(a, b);
+    }
+    template <class Event, class Circle>
+    std::pair<void*, void*> _insert_new_edge(const Event& a, const Event& b, const Circle& circle, void* edge12,
+                                             void* edge23) {
+        checkpoint(5);
+        return bp::voronoi_diagram<double>::_insert_new_edge(a, b, circle, edge12, edge23);
+    }
+};
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -117,6 +134,7 @@ Foot VoronoiAxis::begin(std::size_t h) const {
 AxisPoint VoronoiAxis::at_start(std::size_t h) const { return in_mm(points[from[h]], radius(h)); }
 
 void VoronoiAxis::sample(std::size_t h, std::vector<AxisPoint>& line) const {
+    checkpoint();
     const Vector2d &p = points[from[h]], &q = points[to(h)];
     const Site &a = left[h], &b = left[h ^ 1];
     if (a.is_corner != b.is_corner) {  // a parabola

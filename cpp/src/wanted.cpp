@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
+
 namespace brushsvg {
 namespace {
 
@@ -35,6 +37,7 @@ Rings wanted_pieces(const Stroke& stroke, double tolerance_mm) {
     const int n = 4 * std::max(3, int(std::ceil(kPi / std::acos(cosine) / 4.0)));
     Rings hulls;
     for (Eigen::Index i = 0; i < std::max<Eigen::Index>(1, line.rows() - 1); ++i) {
+        checkpoint(20);
         const Eigen::Index j = std::min(i + 1, line.rows() - 1);
         hulls.push_back(hull_of_discs(line.row(i).head<2>().transpose(), line(i, 3), line.row(j).head<2>().transpose(),
                                       line(j, 3), n));
@@ -43,6 +46,7 @@ Rings wanted_pieces(const Stroke& stroke, double tolerance_mm) {
 }
 
 Rings wanted_outline(const Stroke& stroke, double tolerance_mm) {
+    check(stroke);
     if (!stroke.wanted_mm.empty()) return stroke.wanted_mm;
     return unite(wanted_pieces(stroke, tolerance_mm));
 }

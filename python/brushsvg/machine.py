@@ -312,6 +312,8 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
 
     Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
     """
+    if not isinstance(cell, Cell | None):
+        raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
     cell = as_exact_as(cell or find_cell(), DEFAULT_TOLERANCE_MM)
     suffix = Path(path).suffix.lower()
     for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):

@@ -9,6 +9,7 @@
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/wanted.hpp"
+#include "middle_line.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -249,4 +250,46 @@ TEST_CASE("what the brush cannot paint is refused, what it was not measured for 
     CHECK(compensate(stroke_of(line, {{0.0, 0.2}, {1.0, 0.3}}), brush, {}).warnings.size() == 1);
     CHECK(compensate(stroke_of(line, {{0.0, 1.0}}), brush, {}).warnings.empty());
     CHECK_THROWS_AS(compensate(stroke_of(line, {{0.0, 1.0}}), brush, {Compensation::closed, 0.0}), Error);
+}
+
+namespace {
+
+/// A hook: the line runs back in itself at its end, where the lengths of its parts do not add up to its own.
+Stroke hook() {
+    Cubics middle(1, 8);
+    middle << 23.89, 32.82, 21.99, 29.27, 20.52, 26.64, 21.19, 28.07;
+    return stroke_of(middle,
+                     {{0.0, 4.0}, {0.764, 4.0}, {0.8679, 2.9156}, {0.9236, 1.8313}, {0.9514, 0.53}, {1.0, 0.53}});
+}
+
+}  // namespace
+
+TEST_CASE("steps round a cusp come to an end, however fine they are asked for") {
+    const Stroke stroke = hook();
+    const Brush brush = shipped("round-6");
+    const Line line(stroke, brush);
+    for (const double tolerance : {1e-2, 3.5e-3, 1.4e-3, 1e-4, 1e-5}) {
+        Samples samples = line.coarse(0.0, line.length(), {});
+        int rounds = 0;
+        std::size_t most = 0;
+        refine_steps(line, samples, tolerance, [&](Samples& all) {
+            ++rounds;
+            most = std::max(most, all.size());
+            REQUIRE(rounds < 100);
+            for (Sample& sample : all) {
+                sample.heading = line.tangent(sample);
+                sample.contact = sample.middle;
+                sample.tcp = sample.middle + brush.lag(sample.depth) * sample.heading;
+            }
+        });
+        CAPTURE(tolerance);
+        CHECK(rounds <= 25);  // each parts a step in three, and a parameter in 1e9
+        CHECK(most < 20000);
+    }
+}
+
+TEST_CASE("a hook has a plan of ordinary size") {
+    const CompensatedPass found = compensate(hook(), shipped("round-6"));
+    CHECK(found.pass.poses_mm.rows() < 200);
+    CHECK(found.miss.largest_mm < 0.1);
 }

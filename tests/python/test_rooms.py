@@ -17,7 +17,6 @@ HEADERS = CPP / "include" / "brushsvg"
 
 # Headers that need no test of their own stem, and why.
 UNTESTED = {
-    "brushsvg": "includes the others and nothing else",
     "error": "two value types; what is said with them is tested where it is said",
     "lag_impl": "the bodies of lag.hpp, tested with it",
     "marks": "value types; simulate, coverage and io fill and carry them",

@@ -2,6 +2,7 @@
 
 #include "brushsvg/bristle.hpp"
 #include "brushsvg/brush.hpp"
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/curve_fit.hpp"

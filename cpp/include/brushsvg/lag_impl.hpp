@@ -88,6 +88,9 @@ LagState<double> values_of(const LagState<T>& state) {
     return {values_of(state.contact), values_of(state.heading), state.taut, state.heading_known};
 }
 
+/// So often a move is looked at for an event: thousands of times more than any needs whose numbers are finite.
+constexpr int kMostLooks = 100000;
+
 /// Smallest t in [begin, end] from where a function bounded below by `lower(a, b)` on [a, b] is negative; 1 + end when
 /// there is none. `value(t)` is exact.
 template <class Lower, class Value>
@@ -98,7 +101,7 @@ double first_negative(double begin, double end, Lower&& lower, Value&& value) {
     std::array<Span, 128> stack;
     int top = 0;
     stack[top++] = {begin, end};
-    while (top > 0) {
+    for (int looks = 0; top > 0 && looks < kMostLooks; ++looks) {
         const auto [a, b] = stack[--top];
         if (lower(a, b) >= 0.0) continue;
         const double middle = 0.5 * (a + b);
@@ -225,7 +228,8 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
     }
     if (nearest > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
     if (nearest > 10.0 * 10.0 * h2) return length * detail::mean_reciprocal<5>(law, middle, half);
-    if (nearest > 1.9 * 1.9 * h2 || splits_left == 0) return length * detail::mean_reciprocal<12>(law, middle, half);
+    if (!(nearest <= 1.9 * 1.9 * h2) || splits_left == 0 || !(h2 < 1e300))
+        return length * detail::mean_reciprocal<12>(law, middle, half);
     // a piece as short as rounding, at a root: halves of it would be the same piece again
     if (std::abs(h) < 1e-13 * (1.0 + std::abs(m))) {
         const T r = law.at(middle);

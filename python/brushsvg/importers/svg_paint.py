@@ -24,10 +24,17 @@ class Paints:
     def __init__(self, by_id: dict[str, ET.Element], rules: Callable[[ET.Element], list[Declaration]]):
         self._by_id = by_id
         self._rules = rules
+        self._known: dict[
+            tuple[str, str], tuple[str, list[str]]
+        ] = {}  # thousands of shapes share a long gradient
 
     def of(self, properties: dict[str, str], name: str) -> tuple[str, list[str]]:
         """What "stroke" or "fill" paints with: "#rrggbb" or "none", and what of it is not read."""
-        colour, sentences = self._colour(properties[name] or "#000000", name)
+        key = properties[name] or "#000000", name
+        if key not in self._known:
+            self._known[key] = self._colour(*key)
+        colour, sentences = self._known[key]
+        sentences = [*sentences]
         colour = properties["color"] if colour == "currentcolor" else colour
         opacity = float(properties[f"{name}-opacity"])
         alpha = int(colour[7:], 16) / 255 if len(colour) == 9 else 1.0

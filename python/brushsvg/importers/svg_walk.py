@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
+from functools import cache
 
 from ..design import Element, Notice
 from ..errors import Error
@@ -170,7 +171,8 @@ class Walk:
             self.notes.add(node, context, "its own transform is not read: it counts as none", damaged=True)
             return None
 
-        def box():
+        @cache  # one transform can ask for it a thousand times
+        def box() -> ReferenceBox:
             return self._reference_box(node, context)
 
         matrix: Matrix = IDENTITY

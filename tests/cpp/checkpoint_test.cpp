@@ -1,0 +1,73 @@
+#include "brushsvg/checkpoint.hpp"
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "brushsvg/compensate.hpp"
+#include "parallel.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+/// Asked at every checkpoint that is worth so much work, if the pause of 50 ms is over.
+void work_for(int rounds) {
+    for (int i = 0; i < rounds; ++i) {
+        checkpoint(1000);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("without anybody who asks, work goes on") { CHECK_NOTHROW(work_for(100)); }
+
+TEST_CASE("what runs is given up when it is asked to, and not before") {
+    int asked = 0;
+    {
+        const CancelWhen third([&] { return ++asked == 3; });
+        CHECK_THROWS_AS(work_for(100000), Cancelled);
+        CHECK_THROWS_AS(work_for(1), Cancelled);  // and stays so
+    }
+    CHECK(asked == 3);
+    CHECK_NOTHROW(work_for(1));
+}
+
+TEST_CASE("what the question throws is what the work throws") {
+    const CancelWhen fails([]() -> bool { throw std::logic_error("no"); });
+    CHECK_THROWS_AS(work_for(100000), std::logic_error);
+}
+
+TEST_CASE("the innermost question counts, then the one before it") {
+    const CancelWhen outer([] { return true; });
+    {
+        const CancelWhen inner([] { return false; });
+        CHECK_NOTHROW(work_for(200));
+    }
+    CHECK_THROWS_AS(work_for(100000), Cancelled);
+}
+
+TEST_CASE("threads that work for this one end with it, and only this one is asked") {
+    const auto here = std::this_thread::get_id();
+    int asked = 0;
+    const CancelWhen second([&] {
+        CHECK(std::this_thread::get_id() == here);
+        return ++asked == 2;
+    });
+    CHECK_THROWS_AS(on_all_processors(0, 64, [](std::size_t) { work_for(100000); }), Cancelled);
+}
+
+TEST_CASE("a stroke is given up inside of itself") {
+    // a wave of 20 m: seconds of work
+    std::vector<Eigen::Vector2d> points;
+    for (int i = 0; i < 20000; ++i) points.emplace_back(0.7 * i, (i % 2) * 0.7 + 100.0);
+    const Stroke stroke = stroke_of(polyline(points), {{0.0, 0.5}, {1.0, 1.5}});
+    const Brush brush = shipped("round-6");
+    int asked = 0;
+    const CancelWhen first([&] { return ++asked == 1; });
+    CHECK_THROWS_AS(compensate(stroke, brush), Cancelled);
+}

@@ -1,0 +1,151 @@
+"""Every command is fed nonsense: refused in lines of ours, with nothing written and nothing left over."""
+
+from pathlib import Path
+
+import pytest
+
+from brushsvg.cli import main
+
+SOUND = {  # the word that stands for a file, and what lies there when it is sound
+    "IN": "a.svg",
+    "BRUSH": "mine.json",
+    "CELL": "mine.toml",
+    "PROGRAM": "own.ngc",
+    "PLAN": "plan.json",
+    "TABLE": "table.csv",
+    "WIDTHS": "widths.csv",
+    "MEASURED": "marks.json",
+    "FONT": "font.svg",
+    "ZIP": "extension.zip",
+}
+COMMANDS = [
+    "convert IN OUT.ngc",
+    "convert IN OUT.json",
+    "convert PLAN OUT.ngc",
+    "convert a.svg OUT.ngc --brush BRUSH",
+    "convert a.svg OUT.ngc --cell CELL",
+    "predict IN OUT.svg",
+    "predict PLAN OUT.json",
+    "report IN",
+    "report a.svg --preview OUT.png",
+    "animate IN OUT.html",
+    "import IN OUT.png",
+    "border IN OUT.ngc",
+    "height OUT.ngc --brush BRUSH",
+    "check PROGRAM",
+    "check own.ngc IN --preview OUT.svg",
+    "check own.ngc PLAN",
+    "text T OUT.svg --font FONT",
+    "chart OUT.ngc --drawing IN",
+    "calibrate TABLE -o OUT.json",
+    "calibrate MEASURED -o OUT.json",
+    "brush new OUT.json --lag 5 --widths WIDTHS",
+    "brush show BRUSH",
+    "brush check BRUSH",
+    "brush plot BRUSH OUT.svg",
+    "cell show CELL",
+    "cell check CELL",
+    "cell new OUT.toml --like CELL",
+    "install-plugin inkscape ZIP",
+]
+NONSENSE = {  # None: a folder; False: nothing
+    "missing": False,
+    "a folder": None,
+    "empty": b"",
+    "blank": b"\n \n",
+    "binary": bytes(range(256)) * 40,
+    "zeros": bytes(3000),
+    "braces": b"{}",
+    "lists": b"[[[[1]]]]",
+    "deep": b"[" * 100_000,
+    "half a letter": b"<svg>\xc3",
+}
+PLACES = {"no folder": "no/out", "below a file": "a.svg/out", "a folder": "folder", "a full device": "full"}
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path / "profile"))
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+        '<path id="line" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/></svg>'
+    )
+    (tmp_path / "font.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
+        '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
+    )
+    for words in ("convert a.svg own.ngc", "convert a.svg plan.json", "cell new mine.toml"):
+        assert main(words.split()) == 0
+    assert main("brush new mine --lag 5 --width-at 3=2 --width-at 8=7".split()) == 0
+    rows = [f"{kind},{depth},{k * depth}" for depth in range(1, 7) for kind, k in (("lag", 2), ("width", 1))]
+    (tmp_path / "table.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
+    (tmp_path / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")
+    capsys.readouterr()
+    return tmp_path
+
+
+def contents(folder: Path) -> dict:
+    return {path.relative_to(folder): path.is_file() and path.read_bytes() for path in folder.rglob("*")}
+
+
+def refused(desk, capsys, words) -> list[str]:
+    before = contents(desk)
+    status = main(words)
+    said = capsys.readouterr().err
+    assert status in (1, 2), (words, status, said)
+    assert said and all(line.startswith("brushsvg: ") for line in said.splitlines()), (words, said)
+    assert "should not happen" not in said, (words, said)
+    assert contents(desk) == before, words
+    return said.splitlines()
+
+
+@pytest.mark.parametrize(
+    "command", [each for each in COMMANDS if any(word in SOUND for word in each.split())]
+)
+def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
+    for word in {*command.split()} & {*SOUND}:
+        path = desk / f"bad{Path(SOUND[word]).suffix}"
+        for kind, data in NONSENSE.items():
+            if data is None:
+                path.mkdir()
+            elif data is not False:
+                path.write_bytes(data)
+            words = [path.name if each == word else each.replace("OUT", "out") for each in command.split()]
+            (line,) = refused(desk, capsys, [SOUND.get(each, each) for each in words])
+            assert path.name in line, (kind, line)
+            if data is None:
+                path.rmdir()
+            elif data is not False:
+                path.unlink()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize("command", [each for each in COMMANDS if "OUT" in each and "MEASURED" not in each])
+def test_whatever_is_written_may_have_no_place(desk, capsys, command):
+    for kind, place in PLACES.items():
+        suffix = next(Path(word).suffix for word in command.split() if word.startswith("OUT"))
+        out = desk / f"{place}{suffix}"
+        if kind == "a folder":
+            out.mkdir()
+        elif kind == "a full device":
+            out.symlink_to("/dev/full")
+        words = [f"{place}{suffix}" if word.startswith("OUT") else word for word in command.split()]
+        *_, line = refused(desk, capsys, [SOUND.get(word, word) for word in words])
+        assert line.startswith(f"brushsvg: {place}{suffix}: "), (kind, line)
+
+
+def test_no_command_is_forgotten():
+    from brushsvg.usage import _parser
+
+    def names(parser) -> set[str]:
+        found = set()
+        for action in parser._actions:
+            for name, below in (action.choices if hasattr(action, "_name_parser_map") else {}).items():
+                found |= {f"{name} {each}".strip() for each in names(below) or {""}}
+        return found
+
+    assert names(_parser()) - {"brush list", "cell list"} == {
+        next(name for name in names(_parser()) if f"{command} ".startswith(f"{name} "))
+        for command in COMMANDS
+    }
