@@ -462,6 +462,7 @@ UNWRITTEN = {
         (r"(?m)^  movel", "\tmovel"),
         (r"(?m)^  movel", "  movej"),
         (r"v=0\.02", "v=-0.02"),
+        (r"r=0\.", "r=-0."),
         (r"a=0\.5000, v=0\.02", "a=0.0000, v=0.02"),
         (r"(?m)^(  if here\[2\] < )0\.", r"\g<1>1."),
         (r"(?m)^  end$", "  end\n  end"),
@@ -506,6 +507,7 @@ HARMLESS = {
     ],
     "grbl-servo": [
         (r"(?m)^(M3 S\d+\n)(G4)", r"\1(a remark)\n\2"),
+        (r"(?m)^(M3 S6\d+\n)", r"\1\1"),
         (r"(?m)^(G1 X\S+ Y\S+) S(\d+)\n(G1 X\S+ Y\S+) S\2\n", r"\1 S\2\n\3\n"),
         (r"(?m)^F1200\.0", "F1080.0"),
     ],

@@ -14,7 +14,7 @@ _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
 _MOVE = re.compile(rf"(movel|movep)\({_POINT}, a=({_N}), v=({_N})(?:, r=({_N}))?\)")
 _CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=0\.0+, mode=1\)")
 _PAPER = re.compile(rf"paper = p\[({_N}(?:, {_N}){{5}})\]")
-_SLEEP = re.compile(rf"sleep\(({_N})\)")
+_SLEEP = re.compile(r"sleep\((\d*\.\d+)\)")
 _RISE = re.compile(
     rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\)), "
     rf"a=({_N}), v=({_N})\)"
@@ -40,6 +40,8 @@ def read_urscript(text: str) -> Readback:
         elif found := _MOVE.fullmatch(line):
             x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
             _is_run(number, line, a, v)
+            if r < 0:
+                raise Error(f"line {number}: {line[:60]!r} has a negative blend")
             out.section().steps.append(Step(number, False, x, y, z, v, r))
             out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
         elif found := _CIRCLE.fullmatch(line):
