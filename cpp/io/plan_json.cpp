@@ -38,9 +38,10 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
         }
     }
     if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kLargestMm)) {
-        throw Error(
-            "speed_mm_s of stroke " + pass.stroke + " must lie within (0, 1e6], not be " + in_words(pass.speed_mm_s),
-            path + ".speed_mm_s", pass.speed_mm_s);
+        throw Error("speed_mm_s of stroke " + pass.stroke + " must be " +
+                        (pass.speed_mm_s > kLargestMm ? "at most 1e6" : "greater than 0") + ", not " +
+                        in_words(pass.speed_mm_s),
+                    path + ".speed_mm_s", pass.speed_mm_s);
     }
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
 }
