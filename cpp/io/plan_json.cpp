@@ -38,7 +38,8 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
         }
     }
     if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kLargestMm)) {
-        throw Error("speed_mm_s of stroke " + pass.stroke.name() + " must lie within (0, 1e6], not be " +
+        throw Error("speed_mm_s of stroke " + pass.stroke.name() + " must be " +
+                        (pass.speed_mm_s > kLargestMm ? "at most 1e6" : "greater than 0") + ", not " +
                         in_words(pass.speed_mm_s),
                     path + ".speed_mm_s", pass.speed_mm_s);
     }

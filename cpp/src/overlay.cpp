@@ -80,7 +80,6 @@ struct Meant {
     Box box;
 
     explicit Meant(const Stroke& stroke) : is_outline(!stroke.wanted_mm.empty()) {
-        check(stroke);
         parts = is_outline ? stroke.wanted_mm : wanted_pieces(stroke, kOutlineMm);
         for (const Ring& part : parts) {
             boxes.push_back(box_of(part));

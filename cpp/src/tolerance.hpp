@@ -9,13 +9,13 @@
 namespace brushsvg {
 
 /// Finer ones are lost in rounding and take no end, coarser ones say nothing of a brush.
-inline constexpr std::array<double, 2> kTolerancesMm{1e-6, 1000.0};
+inline constexpr std::array<double, 2> kTolerancesMm{1e-8, 1000.0};
 
 /// Throws Error for a tolerance [mm] outside of them.
 inline void require_tolerance(double tolerance_mm, const std::string& where = "") {
     if (tolerance_mm >= kTolerancesMm[0] && tolerance_mm <= kTolerancesMm[1]) return;
     char text[120];
-    std::snprintf(text, sizeof text, "the tolerance of %.4g mm is outside the range [1e-6, 1000] mm", tolerance_mm);
+    std::snprintf(text, sizeof text, "the tolerance of %.4g mm is outside the range [1e-8, 1000] mm", tolerance_mm);
     throw Error(text, where, tolerance_mm, kTolerancesMm);
 }
 

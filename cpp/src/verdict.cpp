@@ -72,9 +72,8 @@ WorstPlace worst_place(const Overlay& seen, double size_mm) {
     const Index height = seen.wanted.rows(), width = seen.wanted.cols();
     if (height == 0 || width == 0 || seen.painted.rows() != height || seen.painted.cols() != width)
         throw Error("paint and drawing are pictures of different sizes, or empty");
-    if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= kMostReach))
-        throw Error("the size of the square where the worst place is looked for is not within the picture", "",
-                    size_mm);
+    if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= 1e15))
+        throw Error("the square in which the worst place is looked for has no size", "", size_mm);
     const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocks)), Index(1),
                                    std::min(height, width));  // what is left over at the edges is paper
     const Index rows = height / block, columns = width / block;

@@ -46,7 +46,6 @@ Rings wanted_pieces(const Stroke& stroke, double tolerance_mm) {
 }
 
 Rings wanted_outline(const Stroke& stroke, double tolerance_mm) {
-    check(stroke);
     if (!stroke.wanted_mm.empty()) return stroke.wanted_mm;
     return unite(wanted_pieces(stroke, tolerance_mm));
 }

@@ -263,6 +263,8 @@ TEST_CASE("plan.json: each fault is named with its key") {
         {"\"stroke\": \"b\"", "\"id\": \"b\"", "passes[1].stroke", "missing"},
         {"\"stroke\": \"b\"", "\"stroke\": 4", "passes[1].stroke", "must be a string, not 4"},
         {"12.5", "0", "passes[0].speed_mm_s", "greater than 0, not 0"},
+        {"12.5", "2e6", "passes[0].speed_mm_s", "at most 1e6, not 2000000"},
+        {"[3.5, 2, -1]", "[3.5, 2e6, -1]", "passes[0].poses_mm[1]", "outside [-1e6, 1e6] mm"},
         {"{\"dry\": true}", "[]", "passes[0].settings", "must be an object, not an array"},
         {"[100, 50.5]", "[100, 0]", "sheet_mm", "within (0, 1e6] mm, not be 0"},
         {"[100, 50.5]", "[100, 1e300]", "sheet_mm", "within (0, 1e6] mm, not be 1000000000"},
@@ -348,9 +350,9 @@ TEST_CASE("plan.json: numbers are plain decimals rounded to 1e-7") {
     Plan plan = io::read_plan(kPlan);
     plan.passes.resize(1);
     plan.passes[0].poses_mm.resize(3, 3);
-    plan.passes[0].poses_mm << 1.0 / 3.0, -2.77e-17, -1e-12, 1e15 / 3.0, 123.45678949, -0.1, 4e-8, -7e-8, 1e-17;
+    plan.passes[0].poses_mm << 1.0 / 3.0, -2.77e-17, -1e-12, 1e6 / 3.0, 123.45678949, -0.1, 4e-8, -7e-8, 1e-17;
     const std::string written = io::write_plan(plan);
-    CHECK(written.find("[[0.3333333, 0, 0], [333333333333333.3125, 123.4567895, -0.1], [0, -0.0000001, 0]]") !=
+    CHECK(written.find("[[0.3333333, 0, 0], [333333.3333333, 123.4567895, -0.1], [0, -0.0000001, 0]]") !=
           std::string::npos);
     CHECK(io::write_plan(io::read_plan(written)) == written);
 }
