@@ -298,7 +298,7 @@ def _turned(unit: _Unit) -> _Unit:
 
 def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
     width, height = sheet_mm
-    named, strokes, short, labels = [], [], [], []
+    named, strokes, numbers, labels = [], [], [], []
     counts: dict[str, int] = {}
     for unit, left, down in sorted(placed, key=lambda each: _order(each[0])):
         x0, _, _, y1 = unit.box_mm
@@ -306,13 +306,13 @@ def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
         for stroke, box in zip(unit.strokes, unit.boxes_mm, strict=True):
             number = counts[stroke.kind] = counts.get(stroke.kind, 0) + 1
             name = f"{stroke.kind}-{number}"
-            short.append(f"{CODES[stroke.kind]}{number}")
+            numbers.append(number)
             named.append((name, stroke, shift))
             moved = tuple(float(v + shift[k % 2]) for k, v in enumerate(box))
             strokes.append(Stroke(name, stroke.kind, stroke.depth_mm, moved))
         x, bottom = unit.box_mm[0] + shift[0], unit.box_mm[1] + shift[1]
         first, at_mm = -len(unit.strokes), (x, bottom - 0.8 * LABEL_MM)
-        labels.append(_label(strokes[first], short[first], at_mm, unit.size_mm[0] - GAP_MM))
+        labels.append(_label(strokes[first], numbers[first], at_mm, unit.size_mm[0] - GAP_MM))
     title = f"brushsvg chart, brush {brush.name}, {width:g} x {height:g} mm: print at 100 %"
     labels.append(
         Label(title, (EDGE_MM + side + 3, height - EDGE_MM - LABEL_MM), width - 2 * (EDGE_MM + side + 3))
@@ -330,9 +330,9 @@ def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
     return Chart(_plan(brush, sheet_mm, named), tuple(strokes), markers, tuple(labels))
 
 
-def _label(stroke: Stroke, short: str, at_mm: tuple[float, float], width_mm: float) -> Label:
+def _label(stroke: Stroke, number: int, at_mm: tuple[float, float], width_mm: float) -> Label:
     """Its id and depth where there is room, else a letter and its number."""
-    texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, short)
+    texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, f"{CODES[stroke.kind]}{number}")
     fitting = (text for text in texts if len(text) * LETTER_MM <= width_mm)
     return Label(next(fitting, texts[-1]), at_mm, width_mm)
 

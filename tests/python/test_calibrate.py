@@ -447,19 +447,21 @@ def test_a_fit_stays_as_it_was_when_the_brush_is_made():
     assert fit.law.source == "" and made.brush.tip_to_widest.source.startswith("Fitted to 10 values")
 
 
-@pytest.mark.parametrize(("alpha0_deg", "is_taken"), [(90, True), (60, True), (91, False), (120, False)])
-def test_angles_that_begin_beyond_90_degrees_are_refused(alpha0_deg, is_taken):
+@pytest.mark.parametrize(
+    ("alpha0_deg", "is_taken"), [(90, True), (60, True), (95, True), (96, False), (120, False)]
+)
+def test_angles_that_begin_beyond_what_reading_leaves_of_90_degrees_are_refused(alpha0_deg, is_taken):
     """The patch rests at first: from 120 degrees the lag came out 9 % short, with an RMSE of 0."""
-    s = np.linspace(1, 16, 6)
+    s = np.linspace(2, 16, 6)
     rested = max(0.0, -2 * 8 * np.cos(np.radians(alpha0_deg)))
     begun = np.radians(min(alpha0_deg, 180 - alpha0_deg))
     alpha = 2 * np.arctan(np.tan(begun / 2) * np.exp(-np.maximum(0, s - rested) / 8))
     if is_taken:
-        assert _core.from_angles(np.radians(alpha0_deg), s, alpha)["lag_mm"] == pytest.approx(8)
+        assert _core.from_angles(np.radians(alpha0_deg), s, alpha)["lag_mm"] == pytest.approx(8, rel=1e-3)
         return
-    with pytest.raises(Error, match=rf"{alpha0_deg} degrees, is outside the range \(0, 90\]") as refusal:
+    with pytest.raises(Error, match=rf"{alpha0_deg} degrees, is outside the range \(0, 95\]") as refusal:
         _core.from_angles(np.radians(alpha0_deg), s, alpha)
-    assert list(refusal.value.range) == [0, 90] and refusal.value.value == pytest.approx(alpha0_deg)
+    assert list(refusal.value.range) == [0, 95] and refusal.value.value == pytest.approx(alpha0_deg)
 
 
 def test_five_readings_have_a_band_that_holds_the_truth():

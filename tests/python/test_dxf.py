@@ -540,7 +540,7 @@ def test_from_a_file_to_strokes(tmp_path):
     assert notices == []
     assert [stroke.id.split("-")[0] for stroke in made] == ["LWPOLYLINE", "CIRCLE"]
     assert np.array(made[0].half_width) == pytest.approx(np.array([(0, 0.5), (3 / 7, 1.5), (1, 0.5)]))
-    assert made[1].half_width == [(0.0, 1.0)]
+    assert made[1].half_width == ((0.0, 1.0),)
     assert read_dxf(encoded(drawing(draw))).sheet_mm == read_drawing(tmp_path / "a.DXF").sheet_mm
 
 

@@ -190,21 +190,21 @@ def test_fill_and_stroke_is_the_shape_grown_by_half_the_stroke():
     assert {round(half, 2) for _, half in grown.half_width} == {4}
     assert _core.area(grown.wanted_mm) == pytest.approx(300 + 2 * 56 + np.pi, abs=0.1)
     (line,) = painted(body, paths_as="stroke")
-    assert line.closed and line.half_width == [(0.0, 1.0)] and line.wanted_mm == []
+    assert line.closed and line.half_width == ((0.0, 1.0),) and line.wanted_mm == ()
     (shape,) = painted(body, paths_as="outline")
     assert {round(half, 2) for _, half in shape.half_width} == {3}
 
 
 def test_a_fill_that_does_not_show_beside_its_stroke_leaves_a_line():
     (line,) = painted(path("M10 10L30 11L50 10", 'stroke="red" stroke-width="4"'))
-    assert line.wanted_mm == []
+    assert line.wanted_mm == ()
     assert ends(line) == [[10, 10], [50, 10]]
     assert len(painted(path("M10 10L30 30L50 10", 'stroke="red" stroke-width="4"'))[0].wanted_mm) == 1
 
 
 def test_hairline_contours_can_be_read_as_shapes():
     contour = path(BAR, 'fill="none" stroke="red" stroke-width=".1"')
-    assert painted(contour)[0].half_width == [(0.0, 0.05)]
+    assert painted(contour)[0].half_width == ((0.0, 0.05),)
     (shape,) = painted(contour, paths_as="outline")
     assert {round(half, 2) for _, half in shape.half_width} == {3}
 

@@ -102,7 +102,7 @@ def test_scaling_a_stroke_scales_all_of_it():
     stroke.wanted_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
     twice = suit.scaled(stroke, 2.0)
     assert twice.middle_mm == pytest.approx(2 * stroke.middle_mm)
-    assert twice.half_width == [(0.0, 4.0), (1.0, 4.0)]
+    assert twice.half_width == ((0.0, 4.0), (1.0, 4.0))
     assert twice.wanted_mm[0] == pytest.approx(2 * stroke.wanted_mm[0])
 
 
