@@ -12,7 +12,7 @@ import numpy as np
 from . import _core
 from .blends import blend_radii, blended
 from .cell import Cell, robot_from_paper
-from .cell_file import cell_names, find_cell
+from .cell_file import cell_names, find_cell, parse_cell, write_cell
 from .errors import Error
 from .files import write_files
 from .limits import beyond_edges
@@ -314,7 +314,9 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
-    cell = as_exact_as(cell or find_cell(), DEFAULT_TOLERANCE_MM)
+    # a cell made by hand must be one that a file may hold: each key within its range
+    cell = parse_cell(write_cell(cell)) if cell else find_cell()
+    cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
     suffix = Path(path).suffix.lower()
     for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
         raise Error(sentence, where=where)

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from .errors import Error
-from .svg_marks import BAND, BOTH, MISSES, MISSING, SPILT, known_colour
+from .svg_marks import BAND, BOTH, MISSES, MISSING, SPILT, check_picture, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -28,6 +28,7 @@ SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
     with a legend."""
+    check_picture(marks, sheet_mm, colours)
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
     image = None

@@ -7,6 +7,8 @@ from html import escape
 
 import numpy as np
 
+from .errors import Error
+
 BAND = "#e0862b"  # where an edge lies with 95 %
 
 
@@ -24,6 +26,7 @@ def marks_svg(
     marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
     legend.
     """
+    check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
@@ -40,6 +43,14 @@ def marks_svg(
     if band is not None:
         lines += _band(band, width, height)
     return "\n".join([*lines, "</svg>", ""])
+
+
+def check_picture(marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
+    """Error for a sheet that has no size, or where not every pass has a colour."""
+    if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
+        raise Error(f"a sheet of {sheet_mm} mm cannot be drawn: both sides must lie within (0, 1e6] mm")
+    if len(colours) != len(marks.passes):
+        raise Error(f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}")
 
 
 def _band(band, width: float, height: float) -> list[str]:

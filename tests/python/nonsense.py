@@ -1,0 +1,353 @@
+"""Calls public names with nonsense; run by test_nonsense.py in a process of its own: python nonsense.py NAME ...
+
+One line per call that ended in anything but a result or brushsvg.Error; where a value has the wrong Python type, a
+mistake of whoever wrote the call, what Python says of types is as good.
+"""
+
+import inspect
+import itertools
+import sys
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import brushsvg
+from brushsvg import _core
+from brushsvg.design import Design
+
+NAN, INF = float("nan"), float("inf")
+NUMBERS = [0, -1, 1e-300, 1e300, 5.5e9, NAN, INF, -INF, 10**30]
+WRONG_TYPES = [None, "x", b"x", [], {}, (), object(), True, [None], [[1]], np.zeros(0), np.full((2, 8), NAN)]
+LINE = [[10, 10, 20, 10, 30, 10, 40, 20.0]]
+
+
+def brush(**changes):
+    made = brushsvg.find_brush("round-6")
+    for name, value in changes.items():
+        setattr(made, name, value)
+    return made
+
+
+def footprints(change):
+    table = brushsvg.find_brush("round-6").footprints
+    dragged = [(shape.depth_mm, shape.outline_mm.copy()) for shape in table.dragged]
+    return _core.FootprintTable([_core.Footprint(*shape) for shape in change(dragged)], [])
+
+
+def moved(shapes, value):
+    shapes[1][1][3, 0] = value
+    return shapes
+
+
+def brushes():
+    yield brush()
+    yield brushsvg.Brush()
+    yield brush(footprints=_core.FootprintTable())
+    yield brush(footprints=footprints(lambda shapes: shapes[::-1]))
+    yield brush(footprints=footprints(lambda shapes: [shapes[0], (9.5, shapes[1][1][:5])]))
+    yield brush(footprints=footprints(lambda shapes: [(shapes[0][0], np.zeros((0, 2)))]))
+    yield brush(depth_range_mm=(8, 0))
+    yield brush(lag=_core.Profile([]))
+    yield brush(lag=_core.Profile([-5]))
+    yield brush(lag=_core.Profile([1e-9] * 5000))
+    yield brush(half_width=_core.Profile([9, -1]))
+    yield brush(extra="[", name="\0")
+    for value in (NAN, INF, 1e300, 5.5e9):
+        yield brush(footprints=footprints(lambda shapes, value=value: moved(shapes, value)))
+        yield brush(lag=_core.Profile([value]), tip_gap=_core.Profile([0, value]))
+        yield brush(depth_range_mm=(0, value), max_speed_mm_s=value, paint_depth_mm=value)
+        yield brush(half_width=_core.Profile([value]), paint_depth_mm=value)
+
+
+def stroke(line=LINE, width=((0, 1.0), (1, 1.0)), **more):
+    made = brushsvg.Stroke("a", np.array(line, float), more.pop("closed", False), list(width))
+    for name, value in more.items():
+        setattr(made, name, value)
+    return made
+
+
+def some_strokes():
+    yield stroke()
+    yield brushsvg.Stroke()
+    yield stroke(width=())
+    yield stroke([[5.0] * 8], closed=True)
+    yield stroke(width=[(1, 1), (0, 2)])
+    yield stroke(np.array(LINE) * 2e4)
+    for value in (NAN, INF, 1e300, 5.5e9, 1e-300, -1):
+        yield stroke(np.array(LINE) * value)
+        yield stroke(width=[(0, value), (1, 1)])
+        yield stroke(width=[(value, 1), (1, 1)])
+        yield stroke(wanted_mm=[np.full((4, 2), value), np.zeros((0, 2))])
+    yield stroke(settings="{", id="\0")
+
+
+def a_pass(poses=((20, 20, 0), (30, 20, -2), (40, 20, -2)), **more):
+    return brushsvg.Pass("a", np.array(poses, float).reshape(-1, 3), **more)
+
+
+def plan(*passes, **more):
+    return brushsvg.Plan("round-6", "", more.pop("sheet_mm", (100, 100)), list(passes), **more)
+
+
+def plans():
+    yield plan(a_pass())
+    yield brushsvg.Plan()
+    yield plan()
+    yield plan(a_pass(()))
+    yield plan(a_pass([(3, 3, -2)]))
+    yield plan(a_pass(arcs=[brushsvg.Arc(-1, 5, (0, 0), 1)]))
+    yield plan(a_pass(arcs=[brushsvg.Arc(1, 2, (35, 20), 1)] * 3))
+    yield plan(a_pass(settings="{", extra="[]"), extra="{")
+    for value in (NAN, INF, -INF, 1e300, 1e6, -1e6):
+        yield plan(a_pass([(0, 0, 0), (value, 0, -2)]))
+        yield plan(a_pass([(0, 0, 0), (9, 0, value)]))
+        yield plan(a_pass(speed_mm_s=value), sheet_mm=(value, value))
+        yield plan(a_pass(arcs=[brushsvg.Arc(1, 2, (value, 0), 1)]))
+
+
+def marks():
+    sound = brushsvg.simulate(plan(a_pass()), brush())
+    yield sound
+    yield brushsvg.Marks()
+    empty = brushsvg.Marks()
+    empty.passes = [_core.PassMarks()]
+    yield empty
+    for value in (NAN, INF, 1e300, 5.5e9):
+        far = brushsvg.simulate(plan(a_pass()), brush())
+        far.outline_mm = [np.full((4, 2), value), np.zeros((0, 2))]
+        yield far
+
+
+def designs():
+    yield brushsvg.read_drawing(FOLDER / "d.svg")
+    yield Design((0, 0), [])
+    yield Design((NAN, INF), [])
+
+
+def cells():
+    sound = brushsvg.find_cell("grbl-3axis")
+    yield sound
+    for value in (NAN, INF, -1, 1e300):
+        yield replace(sound, heights=replace(sound.heights, safe_mm=value, clearance_mm=value))
+        yield replace(sound, speeds=replace(sound.speeds, travel_mm_s=value, paint_mm_s=value))
+        yield replace(sound, paper=replace(sound.paper, origin_mm=(value, 0, 0)))
+        yield replace(sound, blending=replace(sound.blending, tolerance_mm=value))
+        yield replace(sound, workspace=replace(sound.workspace, margin_mm=value, reach_mm=(value, 1)))
+    yield replace(sound, decimals=-400)
+    yield replace(sound, decimals=10**6)
+    yield replace(sound, language="basic")
+
+
+def rings():
+    square = np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])
+    yield [square]
+    yield []
+    yield [np.zeros((0, 2)), np.zeros((1, 2)), square[:2]]
+    yield [square[::-1], square[[0, 2, 1, 3]]]
+    for value in (NAN, INF, -INF, 1e300, 5.5e9):
+        yield [np.where(square == 9, value, square)]
+
+
+FOLDER = Path(tempfile.mkdtemp())
+OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
+(FOLDER / "d.svg").write_text(
+    f'{OPEN}<path id="p" fill="none" stroke="red" stroke-width="3" d="M9 9h40"/></svg>'
+)
+(FOLDER / "broken.svg").write_text(OPEN + "<g>" * 2000)
+(FOLDER / "none.svg").write_bytes(b"")
+(FOLDER / "noise.dxf").write_bytes(bytes(range(256)) * 50)
+(FOLDER / "broken.toml").write_text("name = [[[[")
+(FOLDER / "broken.json").write_text("[" * 100_000)
+FILES = [FOLDER / name for name in ("broken.svg", "none.svg", "noise.dxf", "missing.svg", "broken.toml")]
+PATHS = [
+    *FILES,
+    FOLDER / "broken.json",
+    FOLDER,
+    "",
+    "\0",
+    "a/b/c.ngc",
+    "/dev/null/x.ngc",
+    FOLDER / "x.varnish",
+]
+TEXTS = [
+    "",
+    "\0",
+    "[" * 100_000,
+    '{"format": "brushsvg/plan", "version": 1}',
+    '{"format": "brushsvg/plan", "version": 1, "brush": "", "sheet_mm": [1e9, 1], "passes": []}',
+    '{"format": "brushsvg/plan", "version": 1, "brush": "", "sheet_mm": [9, 9], "passes": [{"stroke": "a", '
+    '"poses_mm": [[1e7, 0, 0]]}]}',
+    '{"format": "brushsvg/marks", "version": 1, "outline_mm": [[[1e300, 0]]], "passes": []}',
+    '{"format": "brushsvg/marks", "version": 1, "passes": [{"stroke": "a", "pose": [1e300], "contact_mm": [[0, 0]], '
+    '"heading_rad": [0], "depth_mm": [0], "taut": [true]}]}',
+]
+SOUND_CELL = (Path(brushsvg.__file__).parent / "data" / "cells" / "grbl-3axis.toml").read_text()
+NAMES = ["", "\0", "no-such", "../x", "a" * 5000, *PATHS]
+
+SHEETS = [(100, 100), (0, 0), (NAN, 9), (1e300, 1e300)]
+COLOURS = [["#000000"], [], ["varnish"], ["#0"], ["#zzzzzz"]]
+FONT = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="9"><font-face units-per-em="9"/>'
+    '<glyph unicode="A" d="M0 0L5 9"/></font></svg>'
+)
+
+# public name: what each of its arguments is, the first a sound one; all others are tried one at a time
+ARGUMENTS = {
+    "Arc": [[1, *NUMBERS], [2, *NUMBERS], [(0, 0), (NAN, INF), (1e300, 0)], [1, *NUMBERS]],
+    "Brush": [],
+    "Cell": [],
+    "Compensated": [],
+    "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
+    "Marks": [],
+    "Pass": [
+        ["a", *TEXTS],
+        [np.zeros((2, 3)), np.zeros((0, 3)), np.zeros((2, 2)), [[NAN] * 3]],
+        [20.0, *NUMBERS],
+    ],
+    "Plan": [["b", *TEXTS], ["", *TEXTS], [(9, 9), (NAN, INF), (9,)], [[a_pass()], []], ["{}", *TEXTS]],
+    "ReadOptions": [],
+    "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
+    "area": [rings],
+    "brush_names": [],
+    "cell_names": [],
+    "compensate": [
+        lambda: ([each] for each in some_strokes()),
+        brushes,
+        [(100, 100), (NAN, NAN), (-1, 0), (1e300, INF)],
+        ["closed", "none", "constant", "refined", "varnish", ""],
+        [0.05, *NUMBERS],
+        [None, *NUMBERS],
+        [20.0, *NUMBERS],
+    ],
+    "coverage": [
+        marks,
+        brushes,
+        [(0, 0, 30, 30), (0, 0, 0, 0), (NAN, 0, 9, 9), (0, 0, INF, 9), (1e300, 0, 9, 9), (0, 0, 1e6, 1e6)],
+        [4.0, *NUMBERS],
+    ],
+    "find_brush": [["round-6", *NAMES]],
+    "find_cell": [["grbl-3axis", *NAMES]],
+    "flatten": [some_strokes, [0.01, *NUMBERS]],
+    "marks_png": [marks, brushes, SHEETS, COLOURS],
+    "marks_svg": [marks, SHEETS, COLOURS],
+    "overlap": [rings, rings],
+    "read_cell": [
+        [*PATHS, SOUND_CELL, "name = [[[[", "[" * 10_000, *TEXTS, SOUND_CELL.replace("= 5", "= 1e400")]
+    ],
+    "read_drawing": [[FOLDER / "d.svg", *PATHS]],
+    "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
+    "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
+    "simulate": [plans, brushes, [0.02, *NUMBERS]],
+    "strokes": [designs],
+    "text_svg": [["AA", *TEXTS], [FONT.encode(), b"", b"\0" * 99, b"OTTO" + bytes(99), FONT[:99].encode()]],
+    "trace_outlines": [marks, brushes],
+    "unite": [rings],
+    "wanted_outline": [some_strokes, [0.01, *NUMBERS]],
+    "within_reach": [
+        lambda: ([each] for each in some_strokes()),
+        brushes,
+        ["clamp", "passes", "refuse", "varnish"],
+    ],
+    "write_cell": [cells],
+    "write_marks": [marks],
+    "write_plan": [plans],
+    "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
+}
+
+
+def calls(name):
+    """Arguments of each call: sound ones with one of them nonsense, or of a wrong type, or all the same nonsense."""
+    choices = [
+        list(choice() if callable(choice) else choice) + WRONG_TYPES for choice in ARGUMENTS.get(name, [])
+    ]
+    sound = [choice[0] for choice in choices]
+    yield sound
+    for index, choice in enumerate(choices):
+        for value in choice[1:]:
+            yield [*sound[:index], value, *sound[index + 1 :]]
+    for value in WRONG_TYPES:
+        for count in range(len(choices) + 1):
+            yield [value] * count
+
+
+def methods(name):
+    """(words for it, callable) of the methods of a class, on values of its own."""
+    made = {
+        "Brush": brushes,
+        "Stroke": some_strokes,
+        "Plan": plans,
+        "Marks": marks,
+        "Pass": lambda: (each for one in plans() for each in one.passes),
+    }.get(name, tuple)
+    for value in made():
+        for attribute in dir(value):
+            if attribute.startswith("_"):
+                continue
+            yield f"{name}.{attribute}", value, attribute
+
+
+def is_of_wrong_type(value) -> bool:
+    return any(value is each for each in WRONG_TYPES)
+
+
+def outcome(call, words, wrong_type=False) -> str | None:
+    """What it ended in, if that is wrong."""
+    try:
+        call()
+    except (brushsvg.Error, TypeError):
+        return None
+    except (AttributeError, ValueError) as error:
+        return None if wrong_type else f"{words}: {type(error).__name__}: {str(error)[:200]}"
+    except BaseException as error:  # every other kind is what is looked for
+        return f"{words}: {type(error).__name__}: {str(error)[:200]}"
+    return None
+
+
+def main(names):
+    for name in names:
+        public = getattr(brushsvg, name)
+        if not callable(public):
+            continue
+        for count, arguments in enumerate(calls(name)):
+            words = f"{name}({', '.join(repr(each)[:60] for each in arguments)})"
+            print(words, file=sys.stderr, flush=True)  # what was last begun, should the process end here
+            if count == 0 and arguments:
+                public(*arguments)  # the sound one: what it is to be nonsense beside
+            wrong_type = any(map(is_of_wrong_type, arguments))
+            if wrong := outcome(lambda f=public, given=arguments: f(*given), words, wrong_type):
+                print(wrong, flush=True)
+        if not inspect.isclass(public):
+            continue
+        for words, value, attribute in methods(name):
+            print(words, file=sys.stderr, flush=True)
+            found = None
+
+            def read(value=value, attribute=attribute):
+                nonlocal found
+                found = getattr(value, attribute)
+
+            if wrong := outcome(read, words):
+                print(wrong, flush=True)
+            if not callable(found):
+                for nonsense in itertools.chain(NUMBERS, WRONG_TYPES):
+                    if (
+                        wrong := outcome(
+                            lambda v=value, a=attribute, n=nonsense: setattr(v, a, n),
+                            f"{words} = {nonsense!r}",
+                        )
+                    ) and "AttributeError" not in wrong:  # what cannot be set
+                        print(wrong, flush=True)
+                continue
+            for nonsense in [(), *((each,) for each in [*NUMBERS, *WRONG_TYPES])]:
+                if wrong := outcome(
+                    lambda f=found, n=nonsense: f(*n),
+                    f"{words}{nonsense!r}",
+                    any(map(is_of_wrong_type, nonsense)),
+                ):
+                    print(wrong, flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,30 @@
+"""Whatever the public names are given ends in a result or in Error: no crash, no hang, no other traceback."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from nonsense import ARGUMENTS
+
+import brushsvg
+
+BATCHES = 6
+LONG_S = 300  # a hang, and not a measure of speed
+
+
+def test_no_public_name_is_forgotten():
+    assert set(ARGUMENTS) == set(brushsvg.__all__) - {"__version__"}
+
+
+@pytest.mark.parametrize("batch", range(BATCHES))
+def test_nonsense_ends_in_a_result_or_a_sentence(batch):
+    done = subprocess.run(
+        [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS)[batch::BATCHES]],
+        capture_output=True,
+        text=True,
+        errors="replace",
+        timeout=LONG_S,
+    )
+    assert done.returncode == 0, done.stderr.splitlines()[-5:]
+    assert done.stdout == ""
