@@ -66,6 +66,8 @@ def random_cell(random, dialect: str):
     elif random.random() < 0.8:
         leans = random.uniform(-1, 1, 2) * (0 if random.random() < 0.4 else 1.3 if dialect != "urscript" else 9)
         paper = Paper(tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360))))
+    if random.random() < 0.25 and dialect != "grbl-servo":
+        paper = _about_the_robot(random)
     cell = replace(cell, paper=paper)
     if random.random() < 0.6 and dialect in ("linuxcnc", "urscript"):
         radius = float(random.uniform(0.2, 5)) if dialect == "urscript" else 0.0
@@ -74,6 +76,18 @@ def random_cell(random, dialect: str):
     if random.random() < 0.5:
         cell = _with_paint(random, cell)
     return cell
+
+
+ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper that lies about the robot
+
+
+def _about_the_robot(random) -> Paper:
+    """The robot's origin over or under the sheet: ways between strokes lead past it, too close for its reach."""
+    from .places import turned_deg
+
+    rotation = (*random.uniform(-1.2, 1.2, 2).tolist(), float(random.uniform(0, 360)))
+    origin = np.array([*random.uniform((0, 0), SHEET), random.uniform(-12, 12)])
+    return Paper(tuple((-turned_deg(*rotation) @ origin).tolist()), rotation, flatness_mm=ABOUT)
 
 
 def _servo(random, lowest: float, safe: float) -> Servo:
@@ -97,6 +111,9 @@ def _with_space(random, cell):
 
     if random.random() < 0.3:
         return replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
+    if cell.paper.flatness_mm == ABOUT:
+        reach = (float(random.uniform(12, 32)), 400.0)
+        return replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=reach))
     pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}
     frame = paper_of({"paper": pose}, 0.0)
     safe, low = cell.heights.safe_mm, cell.heights.lowest_mm

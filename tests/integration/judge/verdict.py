@@ -64,6 +64,11 @@ class Job:
         return LAST_MM + self.servo_mm[0] / 2
 
     @cached_property
+    def near_mm(self) -> float:
+        """To the way of a visit: a servo goes it in steps."""
+        return 1.5 * OFF_MM + sum(self.servo_mm) / 2
+
+    @cached_property
     def fastest_mm_s(self) -> float:
         return min(self.brush_mm_s, self.cell["speeds"]["paint_mm_s"])
 
@@ -274,7 +279,7 @@ def _low(way: Way, job: Job):
         if b[2] >= a[2] and max(abs(a[0] - b[0]), abs(a[1] - b[1])) < 1e-6:
             continue  # straight up for the robot, though the paper leans
         ends = np.array([way.starts[k], way.ends[k]])
-        if any(_to_path(ends, visit).max() < 0.15 for visit in job.stations):
+        if any(_to_path(ends, visit).max() < job.near_mm for visit in job.stations):
             continue
         yield f"sideways {sideways[k]:.2f} mm in the air at {low[k]:.2f} mm, line {legs[way.leg[k]].line}"
         return
@@ -305,7 +310,7 @@ def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
     found = []
     for touch in way.touches:
         beside = (touch[:, :2] <= 0).any(axis=1) | (touch[:, :2] >= (width, height)).any(axis=1)
-        if beside.all() and any(_to_path(touch, visit).max() < 0.15 for visit in job.stations):
+        if beside.all() and any(_to_path(touch, visit).max() < job.near_mm for visit in job.stations):
             continue
         found.append(touch)
     return found
