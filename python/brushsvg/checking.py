@@ -15,6 +15,8 @@ from .errors import Error
 from .frame import moved
 from .limits import broken_limits, workspace_problems
 from .machine import as_run, off_sheet
+from .posts.text import NAMED, spelled
+from .program import names_of_stations
 from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
@@ -27,16 +29,14 @@ class Ran:
     """What a program paints: its passes as they are programmed and as they are run, with corners cut.
 
     problems: (stroke, sentence) for each thing that must not be; visits: for each stroke the stations that are visited
-    before it; begun: for each pass which poses are but the lift with which a servo's way begins; first_stroke: the
-    number of the first one.
+    before it; lines: for each pass the line of the program that leads to each pose.
     """
 
     plan: object
     marks: object
     problems: Problems
     visits: tuple
-    begun: tuple
-    first_stroke: int
+    lines: tuple
 
 
 def slack_mm(cell: Cell) -> float:
@@ -47,7 +47,7 @@ def slack_mm(cell: Cell) -> float:
 def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
     """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
     problems: Problems = []
-    meant, cut, begun, numbers = [], [], [], []
+    meant, cut, lines = [], [], []
     slack = slack_mm(cell)
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
@@ -62,17 +62,30 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
         for on in found if stroke else ():
             poses, radii, speed, arcs = _pass(section, track, on, cell)
+            deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
+            just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
+            poses[just_over, 2] = -deepest_mm
             joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
             cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
-            lines = np.array([section.steps[number].line for number in track.step[on]])
-            begun.append(np.r_[lines[1:] == lines[:-1], False])
-            numbers.append(int(stroke[1]))
+            lines.append(np.array([section.steps[number].line for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
     problems += broken_limits(plan, brush, _rounded(cell), z_offset_mm) + off_sheet(marks, brush, sheet_mm)
-    visits, first = _visits(read, cell), numbers[0] if numbers else 1
-    return Ran(plan, marks, list(dict.fromkeys(problems)), visits, tuple(begun), first)
+    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines))
+
+
+def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
+    """A sentence where strokes are missing, too many or in another order: all from the first to the count-th follow."""
+    number = first_stroke - 1
+    for section in read.sections:
+        if found := _stroke(section):
+            number += 1
+            if (int(found[1]), int(found[2])) != (number, count):
+                told = f"line {section.line}: stroke {found[1]} of {found[2]}"
+                return [(_name(section), f"{told} stands where stroke {number} of {count} should")]
+    left = f"stroke {count} is" if number == count - 1 else f"strokes {number + 1} to {count} are"
+    return [("", f"{left} missing at the end")] if number < count else []
 
 
 def walked(
@@ -111,18 +124,25 @@ def _astray(track: Track, cell: Cell, sheet_mm, z_offset_mm: float) -> list[str]
 
 def _visits(read: Readback, cell: Cell) -> tuple:
     """For each stroke's section the stations that the program visits before it."""
-    by_name = {station.name: station for station in cell.stations}
+    by_title = {_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()}
     found, waiting = [], []
     for section in read.sections:
         if section.title.startswith("paint: "):
-            name = _name(section)
-            if name not in by_name:
-                raise Error(f"cell {cell.name} has no station {name!r}, which the program visits")
-            waiting.append(by_name[name])
+            if (title := _title(section.title)) not in by_title:
+                name = _name(section)
+                raise Error(
+                    f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits"
+                )
+            waiting.append(by_title[title])
         elif _stroke(section):
             found.append(tuple(waiting))
             waiting = []
     return tuple(found)
+
+
+def _title(text: str) -> str:
+    """As much of a title as stands in a program of any language."""
+    return spelled(text)[: len("paint: ") + NAMED]
 
 
 @dataclass(frozen=True)
@@ -136,11 +156,12 @@ class Track:
 
 def _stroke(section: ReadSection) -> re.Match | None:
     """Its number, if it is that of a stroke."""
-    return re.match(r"stroke (\d{1,6}) of ", section.title)
+    return re.match(r"stroke (\d{1,6}) of (\d{1,7}): ", section.title)
 
 
 def _name(section: ReadSection) -> str:
-    return section.title.partition(": ")[2] or section.title
+    before, colon, name = section.title.partition(": ")
+    return name if colon else before
 
 
 def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:

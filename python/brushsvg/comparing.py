@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 
 import numpy as np
@@ -11,25 +12,25 @@ from .cell import Cell
 from .checking import Problems, Ran, chords, slack_mm
 from .errors import Error
 from .paint import visits
-from .posts.gcode import AT_ONCE, BRACKETS
-from .posts.text import plain
+from .posts.text import spelled
 
 STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a brush does not show it
 
 
-def with_plan(ran: Ran, expected, cell: Cell) -> tuple[list[int | None], Problems]:
+def with_plan(ran: Ran, expected, cell: Cell, first_stroke: int = 1) -> tuple[list[int | None], Problems]:
     """For each pass that was read which of a plan in loads it is (None: none), and (stroke, sentence) for whatever is
     missing, in another order, elsewhere, at another speed or with other paint.
 
     Passes before the program's first stroke were painted before. Error when the plan has no such stroke.
     """
-    first, count = ran.first_stroke, len(expected.passes)
+    first, count = first_stroke, len(expected.passes)
     if first > count:
         raise Error(f"the program goes on with stroke {first}, the drawing has strokes 1 to {count}")
     due = expected.passes[first - 1 :]
     partners, problems = _partners(ran.plan.passes, due)
-    pairs = [(a_pass, due[k]) for a_pass, k in zip(ran.plan.passes, partners, strict=True) if k is not None]
-    problems += [said for pair in pairs for said in _strayed(*pair, cell)]
+    rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
+    for a_pass, lines, k in rows:
+        problems += _strayed(a_pass, lines, due[k], cell) if k is not None else []
     if not problems:
         asked = visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
         problems += _paint(ran, due, asked)
@@ -38,7 +39,7 @@ def with_plan(ran: Ran, expected, cell: Cell) -> tuple[list[int | None], Problem
 
 def _partners(passes, due) -> tuple[list[int | None], Problems]:
     """For each pass the number of the one of due that has its name, in order where there are several."""
-    names, wanted = [_written(a_pass.stroke) for a_pass in passes], [_written(each.stroke) for each in due]
+    names, wanted = [spelled(a_pass.stroke) for a_pass in passes], [spelled(each.stroke) for each in due]
     if len(names) == len(wanted) and all(map(_same, names, wanted)):
         return list(range(len(due))), []
     left = dict(enumerate(wanted))
@@ -70,31 +71,33 @@ def _same(written: str, name: str) -> bool:
     return written == name or (written.endswith("...") and name.startswith(written[:-3]))
 
 
-def _written(name: str) -> str:
-    """A name as programs of any language may have it."""
-    return plain(name, 1000).translate(BRACKETS).translate(AT_ONCE)
-
-
-def _strayed(a_pass, meant, cell: Cell) -> Problems:
-    """Where a pass that was read does not run where it should, or not as fast."""
+def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
+    """Where a pass that was read, its poses in these lines of the program, does not run where it should, in the order
+    in which it should, or not as fast."""
     meant = _with_circles_of(a_pass, meant)
-    limit_mm = max(STRAY_MM, slack_mm(cell)) + (cell.servo.step_mm if cell.servo else 0.0)
-    away_mm = _pose_by_pose(a_pass, meant)
-    if away_mm > limit_mm:  # it may yet be the same path, with other poses on it
-        found, asked = _round(a_pass), _round(meant)
-        away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
+    limit_mm = max(STRAY_MM, slack_mm(cell))
+    # a servo's height goes in steps, beside the line by half of one
+    steepness = limit_mm / (limit_mm + cell.servo.step_mm) if cell.servo else 1.0
     problems = []
-    if away_mm > limit_mm:
-        sentence = (
-            f"the program runs {away_mm:.2f} mm away from where the drawing asks it to: it was changed, or made "
-            "with other flags or of another drawing"
-        )
-        problems.append((a_pass.stroke, sentence))
+    if _pose_by_pose(a_pass, meant) > limit_mm:  # it may yet be the same path, with other poses on it
+        (found, owner), (asked, _) = _round(a_pass), _round(meant)
+        found, asked = found * (1, 1, steepness), asked * (1, 1, steepness)
+        at = follows(found, asked, limit_mm)
+        if at is not None:
+            away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
+            problems.append((a_pass.stroke, f"line {lines[owner[at]]}: {_astray(away_mm, limit_mm)}"))
     is_dab = not np.ptp(meant.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
     if abs(a_pass.speed_mm_s - meant.speed_mm_s) > 0.1 and not is_dab:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
         problems.append((a_pass.stroke, f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"))
     return problems
+
+
+def _astray(away_mm: float, limit_mm: float) -> str:
+    changed = "it was changed, or made with other flags or of another drawing"
+    if away_mm > limit_mm:
+        return f"the program runs {away_mm:.2f} mm away from where the drawing asks it to: {changed}"
+    return f"from here on the stroke is not painted once, from its start to its end, as the drawing asks: {changed}"
 
 
 def _with_circles_of(a_pass, meant):
@@ -139,17 +142,93 @@ def _corners(a_pass) -> tuple[np.ndarray, dict[int, object]]:
     return poses[~inner], {int(numbers[arc.first]): arc for arc in a_pass.arcs}
 
 
-def _round(a_pass) -> np.ndarray:
-    """The poses, those on a circle with chords between them."""
+def _round(a_pass) -> tuple[np.ndarray, np.ndarray]:
+    """The poses, those on a circle with chords between them; and for each point the pose that it leads to."""
     poses = np.asarray(a_pass.poses_mm)
     centres = {k: (*arc.centre_mm, arc.direction) for arc in a_pass.arcs for k in range(arc.first, arc.last)}
     if not centres:
-        return poses
-    points = [poses[0]]
+        return poses, np.arange(len(poses))
+    points, owner = [poses[0]], [0]
     for k in range(len(poses) - 1):
-        points += chords(poses[k], poses[k + 1], centres[k]) if k in centres else []
-        points.append(poses[k + 1])
-    return np.array(points)
+        between = chords(poses[k], poses[k + 1], centres[k]) if k in centres else []
+        points += [*between, poses[k + 1]]
+        owner += [k + 1] * (len(between) + 1)
+    return np.array(points), np.array(owner)
+
+
+def follows(found: np.ndarray, asked: np.ndarray, limit_mm: float) -> int | None:
+    """None where one can go along both paths (n, 3) and (m, 3) of straight moves at once, from their starts to their
+    ends, never back on either, and never farther from each other than the limit; else the point of found to which the
+    first move leads on which that is over.
+
+    Decided exactly, as Alt and Godau do: a move of each make a cell, of which the pairs of places within the limit are
+    a convex part. A cell is entered from the move of found before it, or from the move of asked before it, and what
+    matters is how early on the other move that can be.
+    """
+    found, asked = (
+        (path if len(path) > 1 else np.repeat(path, 2, axis=0)).tolist() for path in (found, asked)
+    )
+    if math.dist(found[0], asked[0]) > limit_mm:
+        return 0
+    cells = len(asked) - 1
+    entered: dict[
+        int, float
+    ] = {}  # by the move of asked: how early on it, coming from the move of found before
+    for j in range(cells):
+        free = _within(found[0], asked[j], asked[j + 1], limit_mm)
+        if free is None or free[0] > 0.0:
+            break
+        entered[j] = 0.0
+        if free[1] < 1.0:
+            break
+    for i in range(len(found) - 1):
+        begin, end = found[i], found[i + 1]
+        left: dict[int, float] = {}
+        below = None  # how early on the move of found, coming from the move of asked before
+        if entered.get(0) == 0.0 and (free := _within(asked[0], begin, end, limit_mm)) and free[0] == 0.0:
+            below = 0.0
+        columns = sorted(entered)
+        j = columns[0]
+        while j < cells:
+            early = entered.get(j)
+            if early is None and below is None:
+                after = bisect.bisect(columns, j)
+                if after == len(columns):
+                    break
+                j = columns[after]
+                continue
+            if free := _within(end, asked[j], asked[j + 1], limit_mm):
+                least = free[0] if below is not None else max(free[0], early)
+                if least <= free[1]:
+                    left[j] = least
+            free = _within(asked[j + 1], begin, end, limit_mm)
+            if free is None:
+                below = None
+            else:
+                least = free[0] if early is not None else max(free[0], below)
+                below = least if least <= free[1] else None
+            j += 1
+        if not left:
+            return i + 1
+        entered = left
+    is_whole = cells - 1 in entered and math.dist(found[-1], asked[-1]) <= limit_mm
+    return None if is_whole else len(found) - 1
+
+
+def _within(point: list, begin: list, end: list, limit_mm: float) -> tuple[float, float] | None:
+    """The part of a move, from 0 to 1, that is within the limit of a point."""
+    ax, ay, az = begin[0] - point[0], begin[1] - point[1], begin[2] - point[2]
+    bx, by, bz = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
+    square, along = bx * bx + by * by + bz * bz, ax * bx + ay * by + az * bz
+    over = ax * ax + ay * ay + az * az - limit_mm * limit_mm
+    if square < 1e-18:
+        return (0.0, 1.0) if over <= 0.0 else None
+    root = along * along - square * over
+    if root < 0.0:
+        return None
+    root = math.sqrt(root)
+    first, last = (-along - root) / square, (-along + root) / square
+    return (max(first, 0.0), min(last, 1.0)) if first <= 1.0 and last >= 0.0 else None
 
 
 def _along(poses: np.ndarray) -> np.ndarray:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .cell import Cell
 from .checking import Problems, slack_mm, walked
 from .jobs import border, paper_height
+from .machine import border_header, height_header
 from .moves import Program, duration_s
+from .program import Job
 from .readback import Readback
+from .readback.header import Made
 from .rewriting import differing_line
 
 
@@ -23,21 +26,26 @@ class Looked:
 
 
 def look_at_border(
-    text: str, read: Readback, around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float
+    text: str, read: Readback, made: Made, brush, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> Looked:
-    """An air run round (left, bottom, right, top) [mm]. Error when a corner is outside the workspace."""
-    again = border(around_mm, brush, cell, sheet_mm, z_offset_mm)
+    """An air run round what its header says. Error when a corner is outside the workspace."""
+    again = border(made.border_mm, brush, cell, sheet_mm, z_offset_mm)
+    job, notes = Job(z_offset_mm), made.notes
+    header = border_header(made.title, brush.name, made.strokes, sheet_mm, notes, made.border_mm, again, job)
+    again = replace(again, header=header)
     sections = [*walked(read, brush, cell, sheet_mm, z_offset_mm)]
     return _looked(text, again, sections, cell, cell.heights.safe_mm, "safe height")
 
 
-def look_at_heights(text: str, read: Readback, heights_mm, brush, cell: Cell, sheet_mm) -> Looked:
-    """Strokes from the highest to the lowest height [mm], a step apart, each of which may be the first on the paper.
+def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) -> Looked:
+    """Strokes at the heights that its header says, each of which may be the first on the paper.
 
     Error when they do not fit on the sheet or go deeper than brush or cell allow.
     """
-    highest_mm, lowest_mm, step_mm = heights_mm
+    sheet_mm = made.sheet_mm
+    highest_mm, lowest_mm, step_mm = made.heights_mm
     again = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    again = replace(again, header=height_header(brush.name, sheet_mm, made.heights_mm, again))
     sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     return _looked(text, again, sections, cell, lowest_mm, "height of the lowest stroke")
 

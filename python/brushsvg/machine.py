@@ -16,8 +16,8 @@ from .cell_file import find_cell
 from .errors import Error
 from .files import write_files
 from .limits import beyond_edges, broken_limits
-from .moves import Program, duration_s, in_robot_frame
-from .paint import in_loads, painted_mm, visits
+from .moves import Program, duration_s, in_robot_frame, painting_mm
+from .paint import in_loads, visits
 from .posts import POSTS, Post
 from .program import WHOLE_JOB, Job, program, unchecked_program
 from .report import clock
@@ -197,17 +197,51 @@ def encode(
     plan = in_loads(plan, brush, cell)
     job = replace(job, visits=visits(plan, cell, job.first_stroke))
     made = _held(program(plan, brush, cell, (), job), plan)
-    count = len(plan.passes)
-    header = (
-        f"title: {title or 'untitled'}",
-        f"brush: {plan.brush}, {count} strokes",
-        "sheet: {:g} x {:g} mm".format(*plan.sheet_mm),
+    header = header_of(title or "untitled", brush.name, plan, notes, made, job)
+    return text_of(post, replace(made, header=header))
+
+
+def header_of(title: str, brush: str, plan, notes, made: Program, job: Job) -> tuple[str, ...]:
+    """The header of a program made of a plan in loads; its passes before the first one of the job are only counted."""
+    return (
+        f"title: {title}",
+        f"brush: {brush}, {len(plan.passes)} strokes",
+        _sheet_line(plan.sheet_mm),
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
         *about(made, job),
-        f"length: {sum(map(painted_mm, plan.passes[job.first_stroke - 1 :])):.0f} mm on the paper",
+        f"length: {painting_mm(made):.0f} mm on the paper",
     )
-    return text_of(post, replace(made, header=header))
+
+
+def border_header(
+    title: str, brush: str, count: int, sheet_mm, notes, around_mm, made: Program, job: Job
+) -> tuple[str, ...]:
+    """The header of an air run round (left, bottom, right, top) [mm] of a job of so many strokes."""
+    left, bottom, right, top = around_mm
+    return (
+        f"title: {title}",
+        f"brush: {brush}, {count} strokes",
+        _sheet_line(sheet_mm),
+        *notes,
+        f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
+        *about(made, job),
+    )
+
+
+def height_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
+    """The header of strokes from the highest to the lowest height [mm], a step apart."""
+    return (
+        "title: how high the paper lies",
+        f"brush: {brush}, {sum(1 for _ in made.sections())} strokes",
+        _sheet_line(sheet_mm),
+        "heights: {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
+        *about(made),
+    )
+
+
+def _sheet_line(sheet_mm) -> str:
+    return "sheet: {:g} x {:g} mm".format(*sheet_mm)
 
 
 def _held(made: Program, plan) -> Program:

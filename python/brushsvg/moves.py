@@ -121,6 +121,15 @@ def duration_s(program: Program) -> float:
     return total_s
 
 
+def painting_mm(program: Program) -> float:
+    """Length of the tool's path on the paper, circles as they are run."""
+    total_mm, here = 0.0, None
+    for move in (move for section in program.sections() for move in section.moves):
+        total_mm += float(distances(move, here)[-1]) if move.meaning == "paint" else 0.0
+        here = move.points_mm[-1]
+    return total_mm
+
+
 def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
     """From rest to rest: v rises at the acceleration, stays, falls; a short way never reaches the speed."""
     a = cell.speeds.acceleration_mm_s2

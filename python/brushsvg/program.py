@@ -12,6 +12,7 @@ from .cell import Cell, Station, robot_from_paper
 from .errors import Error
 from .limits import broken_limits
 from .moves import Arc, Move, Program, Section, Wait, rise_over
+from .posts.text import told_apart
 from .written import Written, as_written
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
@@ -72,12 +73,19 @@ def approach_mm_s(brush, cell: Cell) -> float:
     return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
 
 
+def names_of_stations(cell: Cell) -> dict[Station, str]:
+    """What a program calls each: no two alike."""
+    names = told_apart([station.name for station in cell.stations])
+    return dict(zip(cell.stations, names, strict=True))
+
+
 def visit(station: Station, brush, cell: Cell) -> Section:
     """To the paint and back up to safe height; a person does the rest where the station is served by hand."""
+    name = names_of_stations(cell).get(station, station.name)
     safe, speeds = cell.heights.safe_mm, cell.speeds
     steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
     if station.by_hand:
-        return Section(f"paint: {station.name}", (*steps, Wait(None, f"dip the brush: {station.name}")))
+        return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
     rim = station.rim_mm + cell.heights.clearance_mm
     press_mm_s = min(speeds.press_mm_s, brush.max_speed_mm_s)
     steps += [
@@ -92,7 +100,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
         steps.append(Move("wipe", np.array(station.wipe_mm, dtype=float), press_mm_s))
         last = station.wipe_mm[-1]
     steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
-    return Section(f"paint: {station.name}", tuple(steps))
+    return Section(f"paint: {name}", tuple(steps))
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,27 +11,43 @@ import numpy as np
 from . import _core
 from .cell import Cell
 from .checking import Ran
-from .machine import text_of
+from .machine import header_of, text_of
 from .moves import Program
 from .posts import POSTS
 from .program import Job, unchecked_program
 
 
-def again(ran: Ran, brush, cell: Cell, z_offset_mm: float) -> Program | None:
-    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch."""
+def again(
+    ran: Ran, brush, cell: Cell, z_offset_mm: float, first_stroke: int = 1, told: Told | None = None
+) -> Program | None:
+    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch. Without
+    a header, unless its words are told."""
     if not ran.visits or len(ran.visits) != len(ran.plan.passes):
         return None
-    before = ran.first_stroke - 1
+    before = first_stroke - 1
     passes = ran.plan.passes
     if cell.servo:
-        passes = [_without(*each) for each in zip(passes, ran.begun, strict=True)]
+        passes = [_without(*each) for each in zip(passes, ran.lines, strict=True)]
     plan = SimpleNamespace(sheet_mm=ran.plan.sheet_mm, passes=[None] * before + list(passes))
-    return unchecked_program(plan, brush, cell, (), Job(z_offset_mm, before + 1, ((),) * before + ran.visits))
+    job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
+    made = unchecked_program(plan, brush, cell, (), job)
+    if told is None:
+        return made
+    return replace(made, header=header_of(told.title, brush.name, plan, told.notes, made, job))
 
 
-def _without(a_pass, begun: np.ndarray):
+@dataclass(frozen=True)
+class Told:
+    """What of a header stands in no line of the program."""
+
+    title: str
+    notes: tuple[str, ...]
+
+
+def _without(a_pass, lines: np.ndarray):
     """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone."""
-    poses = np.asarray(a_pass.poses_mm)[~begun]
+    poses = np.asarray(a_pass.poses_mm)[np.r_[lines[1:] != lines[:-1], True]]
+    poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
     steps = np.diff(poses, axis=0)
     still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
     inner = np.zeros(len(poses), dtype=bool)
@@ -41,8 +58,8 @@ def _without(a_pass, begun: np.ndarray):
 def differing_line(text: str, program: Program, cell: Cell) -> str | None:
     """A sentence on the first line that brushsvg would write otherwise for the same poses; None where there is none.
 
-    Numbers may differ by what rounding twice does to the last digit. The header is not looked at. Of a servo's ways,
-    whose heights were rounded to whole values, only the ends are.
+    Numbers may differ by what rounding twice does to the last digit, time and length in the header by a little more.
+    Of a servo's ways, whose heights were rounded to whole values, only the ends are looked at.
     """
     ours, theirs = _body(text), _body("".join(text_of(POSTS[cell.language], program)))
     if cell.servo:
@@ -69,34 +86,40 @@ def _near(line: str, place: int) -> str:
 
 
 def _body(text: str) -> list[tuple[int, str]]:
-    lines = enumerate(text.splitlines(), 1)
-    titles = r"\(?(stroke \d|paint: |border |end: )"
-    return [
-        (number, line)
-        for number, line in lines
-        if line.strip() and (re.match(titles, line) or not re.match(r"\(|  # (?!stroke|paint)", line))
-    ]
+    return [(number, line) for number, line in enumerate(text.splitlines(), 1) if line]
 
 
-_WAY = re.compile(r"(G1 X\S+ Y\S+) S\d+")
+_FEED = re.compile(r"F\d+\.\d")
+_WAY = re.compile(r"(G1 X\S+ Y\S+) S(\d+)")
 _LIFT = re.compile(r"M3 S(\d+)|G4 P(\d+\.\d+)")
 LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits
 
 
 def _folded(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """A servo's lines: ways that follow each other as the last one, lifts and waits as the last with the sum."""
+    """A servo's lines: ways that follow each other as the last one, lifts one way with their waits as the last with the
+    sum. Of feeds those that something is run with; ways to where the tool is are none."""
     out: list[tuple[int, str]] = []
-    last, value, waited_s = "", "", 0.0
+    last, value, rises, waited_s, here, feed, told_feed = "", 0, 0, 0.0, "", None, ""
     for number, line in lines:
-        if way := _WAY.fullmatch(line):
-            kind, told = "way", way[1]
-        elif lift := _LIFT.fullmatch(line):
+        if _FEED.fullmatch(line):
+            feed = (number, line) if line != told_feed else None
+            continue
+        way, lift = _WAY.fullmatch(line), _LIFT.fullmatch(line)
+        if way and (way[1], int(way[2])) == (here, value):
+            continue
+        if feed:
+            out.append(feed)
+            last, told_feed, feed = "", feed[1], None
+        kind, told = "", line
+        if way:
+            kind, told, here, value = "way", way[1], way[1], int(way[2])
+        elif lift:
             kind = "lift"
-            value, waited_s = (value, waited_s) if last == kind else ("", 0.0)
-            value, waited_s = lift[1] or value, waited_s + float(lift[2] or 0)
-            told = f"M3 S{value or 0} G4 P{waited_s:.3f}"
-        else:
-            kind, told = "", line
+            change = int(lift[1]) - value if lift[1] else 0
+            if last != kind or change * rises < 0:
+                last, rises, waited_s = "", 0, 0.0
+            value, rises, waited_s = value + change, change or rises, waited_s + float(lift[2] or 0)
+            told = f"M3 S{value} G4 P{waited_s:.3f}"
         if kind and kind == last:
             out[-1] = (out[-1][0], told)
         else:
@@ -111,7 +134,14 @@ _NUMBER = re.compile(r"([A-Z]|\br=)?(-?\d+(?:\.\d+)?)")
 LEAST_BLEND_M, BLENDS, BLENDS_PER_M = 1e-5, 0.05, 2e5
 
 
+_ABOUT = re.compile(
+    r"(\(|  # )(?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)?"
+)
+
+
 def _alike(line: str, expected: str, waits_s: float) -> bool:
+    if (about := _ABOUT.fullmatch(line)) and (asked := _ABOUT.fullmatch(expected)):
+        return _nearly(about, asked, 0.05 if waits_s else 0.01)
     if _NUMBER.sub(r"\g<1>0", line) != _NUMBER.sub(r"\g<1>0", expected):
         return False
     for (letter, found), (_, wanted) in zip(_NUMBER.findall(line), _NUMBER.findall(expected), strict=True):
@@ -124,6 +154,19 @@ def _alike(line: str, expected: str, waits_s: float) -> bool:
                 slack = max(LEAST_BLEND_M, max(BLENDS, BLENDS_PER_M * 10.0**-decimals) * float(wanted))
         else:
             slack = letter == "S"  # a servo's values; codes and numbers of strokes are what they are
+        if re.match(r"-?0\d", found):
+            return False
         if len(found.partition(".")[2]) != decimals or abs(float(found) - float(wanted)) > slack:
             return False
     return True
+
+
+def _nearly(found: re.Match, asked: re.Match, part: float) -> bool:
+    """Whether two times, or two lengths, are the same up to a part of them and two of their last unit."""
+    if (found[1], found[5] is None) != (asked[1], asked[5] is None):
+        return False
+    seconds = [
+        sum(int(each[k] or 0) * unit for k, unit in ((2, 3600), (3, 60), (4, 1))) for each in (found, asked)
+    ]
+    value, wanted = (int(found[5]), int(asked[5])) if asked[5] else seconds
+    return abs(value - wanted) <= max(60 if asked[2] else 2, part * wanted)

@@ -269,7 +269,7 @@ def test_a_plan_is_a_drawing_too(desk, capsys):
     plan["passes"][1]["poses_mm"][2][0] += 0.5
     (desk / "plan.json").write_text(json.dumps(plan))
     status, _, err = call(capsys, "check", "two.ngc", "plan.json")
-    assert status == 1 and "hook [1]: the program runs 0." in err[0]
+    assert status == 1 and re.search(r"hook .1.: line \d+: the program runs 0\.50 mm", err[0])
 
 
 def test_a_resumed_program_is_told_what_it_should_have_painted(desk, capsys):
@@ -281,9 +281,253 @@ def test_a_resumed_program_is_told_what_it_should_have_painted(desk, capsys):
     assert status == 1 and any("third: the program does not paint this stroke" in line for line in err)
     (desk / "two.ngc").write_text(text.replace("(stroke 2 of", "(stroke 900000 of"))
     status, _, err = call(capsys, "check", "two.ngc", "two.svg")
-    assert status == 1 and "goes on with stroke 900000, the drawing has strokes 1 to 3" in err[0]
+    assert status == 1 and "stroke 900000 of 3 stands where stroke 2 of 3 should" in err[0]
     status, _, err = call(capsys, "check", "two.ngc")
-    assert status == 1 and "brushsvg would write" in err[0]
+    assert status == 1 and "stroke 900000 of 3 stands where" in err[0], (
+        "its header says so, without the drawing"
+    )
+
+
+def sections(text: str) -> list[str]:
+    """The header with what is set first, and each stroke with what follows it."""
+    return re.split(r"(?m)^(?=\(stroke )", text)
+
+
+THREE = DRAWING.replace("</g>", '<path id="third" d="M20 20 h60"/></g>')
+
+
+@pytest.mark.parametrize("drawing", [(), ("two.svg",)])
+@pytest.mark.parametrize(
+    ("lost", "words"),
+    [
+        ([1], "line 14: stroke 2 of 3 stands where stroke 1 of 3 should"),
+        ([1, 2], "line 14: stroke 3 of 3 stands where stroke 1 of 3 should"),
+        ([2], "stroke 3 of 3 stands where stroke 2 of 3 should"),
+    ],
+)
+def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, words):
+    """Which they are its header tells, whether the drawing is there or not."""
+    (desk / "two.svg").write_text(THREE)
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    parts = sections((desk / "two.ngc").read_text())
+    (desk / "two.ngc").write_text("".join(part for k, part in enumerate(parts) if k not in lost))
+    status, _, err = call(capsys, "check", "two.ngc", *drawing)
+    assert status == 1 and words in "\n".join(err)
+
+
+def test_strokes_that_are_lost_at_the_end_are_counted(desk, capsys):
+    (desk / "two.svg").write_text(THREE)
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    for lost, words in (
+        ("3", "stroke 3 is missing at the end"),
+        ("2", "strokes 2 to 3 are missing at the end"),
+    ):
+        (desk / "two.ngc").write_text(re.sub(rf"(?s)\(stroke {lost} .*(?=M2)", "", text))
+        status, _, err = call(capsys, "check", "two.ngc")
+        assert status == 1 and words in "\n".join(err)
+
+
+def painted_otherwise(text: str, how: str) -> str:
+    """The first stroke's straight moves on the paper, from a to z, in another order."""
+    lines = text.splitlines()
+    first = lines.index("F1200.0") + 1
+    last = next(k for k in range(first, len(lines)) if not lines[k].startswith("G1"))
+    moves = lines[first:last]
+    some = len(moves) // 2
+    begin, end = lines[first - 2], moves[-1]  # landed, and lifted
+    moves = {
+        "backwards": [*moves[-2::-1], begin],
+        "to and fro": moves[:some] + moves[some - 4 : some - 1][::-1] + moves[some - 4 :],
+        "thrice": [*moves, *moves[-2::-1], begin, *moves],
+        "two lines swapped": [*moves[: some - 1], moves[some], moves[some - 1], *moves[some + 1 :]],
+        "the first half": [*moves[:some], re.sub(r"Z.*", "Z0.0000", moves[some - 1])],
+    }[how]
+    text = "\n".join(lines[:first] + moves + lines[last:]) + "\n"
+    if how == "backwards":  # it comes down where it was lifted
+        return text.replace(begin[3:-7], "@").replace(end[3:-7], begin[3:-7]).replace("@", end[3:-7])
+    return text
+
+
+@pytest.mark.parametrize("how", ["backwards", "to and fro", "thrice", "two lines swapped", "the first half"])
+def test_the_order_along_a_stroke_counts(desk, capsys, how):
+    """A drawing whose paint would look much the same, but that was painted otherwise: nothing is away from its line."""
+    (desk / "two.svg").write_text(DRAWING.replace('stroke-width="3"', 'stroke-width="4"'))
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    (desk / "two.ngc").write_text(painted_otherwise(text, how))
+    status, _, err = call(capsys, "check", "two.ngc", "two.svg")
+    words = r"curve: line \d+: (the program runs|from here on the stroke is not painted once)"
+    assert status == 1 and any(re.search(words, line) for line in err), err
+
+
+HEADER = [
+    (r"2 strokes\)", "20 strokes)", "stroke 1 of 2 stands where stroke 1 of 20 should"),
+    (r"\(sheet: 120", "(sheet: 130", "would write '.sheet: 120 x 70 mm"),
+    (r"\(title: two", "(title: one", "would write '.title: two"),
+    (r"\(warnings: 0", "(warnings: 2", "would write '.warnings: 0"),
+    (r"\(warnings: 0", "(warnings: no", "its header is damaged"),
+    (r", linuxcnc\)", ", grbl)", "would write '.cell: linuxcnc-3axis, linuxcnc"),
+    (r"z 0 touches", "z 1 touches", "would write ..frame: the sheet's lower left corner, mm; z 0 touches"),
+    (r"about \d+ s", "about 3 s", "would write '.time: about"),
+    (r"about \d+ s", "about 3 min", "would write '.time: about"),
+    (r"length: \d+", "length: 100", "would write '.length:"),
+    (r"\(length: .*\n", "", "would write '.length:"),
+    (r"\(time: .*\n", r"\g<0>\g<0>", "would write '.length:"),
+    (r"\(cell:", "(resumed: from stroke 2)\n(cell:", "stroke 1 of 2 stands where stroke 2 of 2 should"),
+    (r"\(cell:", "(order: any)\n(cell:", "its header is damaged"),
+    (r"\(cell:", "(paper: +0.5 mm against the cell's)\n(cell:", "would write|mm away from where"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "words"), HEADER)
+def test_a_header_says_what_the_program_does(desk, capsys, old, new, words):
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    (desk / "two.ngc").write_text(edited(old, new)((desk / "two.ngc").read_text()))
+    status, _, err = call(capsys, "check", "two.ngc", "two.svg")
+    assert status == 1 and any(re.search(words, line) for line in err), err
+
+
+@pytest.mark.parametrize(
+    "title",
+    ["a ~ b", "what?", "go!", "50 %", "a" * 80, "a\tb", "a\x18b", "a\xc3\xa4b", "a (b", "a) G0 Z-5 (b"],
+)
+def test_what_grbl_acts_on_is_refused_wherever_it_stands(desk, capsys, title):
+    """In the header, whose title nobody else tells, and in a stroke's name."""
+    assert call(capsys, "convert", "two.svg", "two.gcode", "--cell", "grbl-3axis")[0] == 0
+    text = (desk / "two.gcode").read_text()
+    for changed in (
+        text.replace("(title: two)", f"(title: {title})"),
+        text.replace(": curve)", f": {title})"),
+    ):
+        (desk / "two.gcode").write_bytes(changed.encode("latin-1"))
+        assert call(capsys, "check", "two.gcode")[0] == 1, title
+
+
+UNWRITTEN = {
+    "linuxcnc-3axis": [
+        (r"\n", "\r\n"),
+        (r"(?m)^M2", "M02"),
+        (r"(?m)^G1 ", "G01 "),
+        (r"(?m)^G1 ", "g1 "),
+        (r"(?m)^G1 ", "/G1 "),
+        (r"(?m)^G1 ", "N10 G1 "),
+        (r"(?m)^G1 X", "G1X"),
+        (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1 "),
+        (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1 ;down"),
+        (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1 (down)"),
+        (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1*77"),
+        (r"(?m)^(G1 X\S+ Y\S+ Z)-(\d)", r"\1-0\2"),
+        (r"(?m)^G0 Z10", "G0 Z010"),
+        (r"(?m)^(\(stroke 2)", r"(all is well)\n\1"),
+        (r"(?m)^(\(stroke 2)", r"(MSG, all is well)\n\1"),
+        (r"(?m)^(\(stroke 2)", r"; all is well\n\1"),
+        (r"(?m)^(\(stroke 2)", r"%\n\1"),
+        (r"(?m)^(\(stroke 2)", r"M2\n\1"),
+        (r"(?m)^(\(stroke 2)", r"o100 call\n\1"),
+        (r"(?m)^(\(stroke 2)", r"#1=5\n\1"),
+        (r"\A", "%\n"),
+        (r"\Z", "%\n"),
+        (r"\Z", "(all is well)\n"),
+    ],
+    "ur5e": [
+        (r"\n", "\r\n"),
+        (r"\A", "# all is well\n"),
+        (r"\Z", "# all is well\n"),
+        (r"\Z", "brushsvg()\n"),
+        (r"(?m)^(  # stroke 2)", r"  # all is well\n\1"),
+        (r"(?m)^  # stroke 2", "    # stroke 2"),
+        (r"(?m)^  # stroke 2", "  #stroke 2"),
+        (r"(?m)^  movel", "   movel"),
+        (r"(?m)^  movel(.*)$", r"  movel\1 # down"),
+        (r"(?m)^  movel(.*)$", r"  movel\1 "),
+        (r"(?m)^  movel\(on_paper\(", "  movel(on_paper(0"),
+        (r"(?m)^end$", "end\nend"),
+    ],
+}
+
+
+@pytest.mark.parametrize("name", UNWRITTEN)
+def test_what_is_never_written_is_refused(desk, capsys, name):
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    for old, new in UNWRITTEN[name]:
+        (desk / program).write_bytes(edited(old, new)(text).encode())
+        assert call(capsys, "check", program)[0] == 1, (old, new)
+
+
+STATIONS = [
+    ["Tusche gr\u00fcn", "Tusche grun"],
+    ["\u58a8", "\u6731"],
+    ["\U0001f3a8", "\U0001f58c\ufe0f", "?"],
+    ["ink (black)", "ink [black]", 'ink "black"', "ink \\ black"],
+    ["\u0301", "\u0302\u0301", "-"],
+    ["stroke 1 of 2: curve", "paint: ink", "station 2, ink", "M2"],
+    ["n" * 199 + "1", "n" * 199 + "2"],
+    ["a-b", "a~b", "a", "~!%"],
+    ["MSG, hello", "(PRINT,1", "#5220"],
+]
+
+
+@pytest.mark.parametrize("hand", [False, True])
+@pytest.mark.parametrize("cell", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
+def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
+    """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
+    if hand and cell == "grbl-servo":
+        return  # its brush falls while the program waits
+    suffix = LANGUAGES[cell]
+    for names in STATIONS:
+        colours = [f"#00000{k}" for k in range(len(names))]
+        how = "by_hand = true" if hand else "depth_mm = 5"
+        text = (SHIPPED / f"{cell}.toml").read_text() + '[reload]\nwhen = "stroke"\n'
+        for name, colour in zip(names, colours, strict=True):
+            table = f'place_mm = [-15, 10]\ncolours = ["{colour}"]\n{how}\n'
+            text += f"[[stations]]\nname = {json.dumps(name, ensure_ascii=False)}\n{table}"
+        (desk / "mine.toml").write_text(text, encoding="utf-8")
+        paths = "".join(
+            f'<path d="M20 {20 + 9 * k} h30" stroke="{colour}"/>' for k, colour in enumerate(colours)
+        )
+        before, _, _ = DRAWING.partition("<path")
+        (desk / "some.svg").write_text(f"{before}{paths}</g></svg>")
+        words = ("some.svg", f"some{suffix}", "--cell", "mine.toml")
+        status, _, err = call(capsys, "convert", *words)
+        assert status == 0, err
+        for drawing in (("some.svg",), ()):
+            status, _, err = call(capsys, "check", words[1], *drawing, "--cell", "mine.toml")
+            assert (status, err) == (0, []), names
+        told = re.findall(r"(?m)^(?:\(|  # )(paint: .*)$", (desk / words[1]).read_text())
+        assert len(set(told)) == len(names)
+
+
+def test_another_station_is_told_with_its_line(desk, capsys):
+    stations = "".join(
+        f'[[stations]]\nname = "{name}"\nplace_mm = [{x}, 10]\ndepth_mm = 5\ncolours = ["{colour}"]\n'
+        for name, x, colour in (("\u58a8", -10, "#000000"), ("\u6731", -20, "#ff0000"))
+    )
+    text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "stroke"\n' + stations
+    (desk / "mine.toml").write_text(text, encoding="utf-8")
+    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    for new, words in (
+        ("paint: station 2, ?", "would write|the program visits station 2"),
+        ("paint: station 3, ?", "line 14: cell linuxcnc-3axis has no station 'station 3, .', which"),
+    ):
+        (desk / "two.ngc").write_text(edited("paint: station 1, \\?", new)(text))
+        status, _, err = call(capsys, "check", "two.ngc", "two.svg", "--cell", "mine.toml")
+        assert status == 1 and any(re.search(words, line) for line in err), err
+
+
+def test_strokes_of_any_name_are_known_again(desk, capsys):
+    paths = "".join(
+        f'<path id="{name}" d="M20 {10 + 9 * k} h30"/>' for k, name in enumerate(["\u0301", "\u58a8", "a: b"])
+    )
+    before, _, _ = DRAWING.partition("<path")
+    (desk / "some.svg").write_text(f"{before}{paths}</g></svg>", encoding="utf-8")
+    for name, suffix in LANGUAGES.items():
+        assert call(capsys, "convert", "some.svg", f"some{suffix}", "--cell", name)[0] == 0
+        status, _, err = call(capsys, "check", f"some{suffix}", "some.svg")
+        assert (status, err) == (0, [])
 
 
 def test_a_program_of_another_language_is_refused(desk, capsys):

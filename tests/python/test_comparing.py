@@ -1,5 +1,7 @@
 """How far a path that was read lies from the one that was meant."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +9,7 @@ from hypothesis import strategies as some
 
 from brushsvg import _core
 from brushsvg.cell_file import find_cell
-from brushsvg.comparing import IN_A_BOX, _farthest, _strayed
+from brushsvg.comparing import IN_A_BOX, _farthest, _strayed, follows
 
 
 def by_every_move(points, path):
@@ -58,16 +60,102 @@ def turned(poses, centre_mm, direction=1):
     )
 
 
+def strayed(a_pass, meant):
+    return _strayed(a_pass, np.arange(1, 1 + len(a_pass.poses_mm)), meant, find_cell())
+
+
 def test_a_circle_is_the_same_with_fewer_poses_on_it():
     whole, short = turned(ARC, (5, 5)), turned(np.delete(ARC, 2, axis=0), (5, 5))
-    assert _strayed(short, whole, find_cell()) == []
+    assert strayed(short, whole) == []
 
 
 @pytest.mark.parametrize("away_mm", [0.001, 0.5])
 def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(away_mm):
     whole = turned(ARC, (5, 5))
-    told = _strayed(turned(ARC, (5 + away_mm, 5)), whole, find_cell())
+    told = strayed(turned(ARC, (5 + away_mm, 5)), whole)
     assert len(told) == (away_mm > 0.02)
     lens = [(0, 5, -2), (5, 5, -2), (8, 5.5, -2), (8, 9, -2)]
     one, other = turned(lens, (6.25, 6.75)), turned(lens, (6.25, 6.75), -1)
-    assert "mm away from where the drawing asks it to" in _strayed(other, one, find_cell())[0][1]
+    assert "mm away from where the drawing asks it to" in strayed(other, one)[0][1]
+
+
+STEP_MM = 0.05
+
+
+def dense(path):
+    """Points of a path, less than STEP_MM apart."""
+    parts = [path[:1]]
+    for begin, end in itertools.pairwise(path):
+        count = max(1, int(np.ceil(np.linalg.norm(end - begin) / STEP_MM)))
+        parts.append(begin + (end - begin) * (np.arange(1, count + 1) / count)[:, None])
+    return np.vstack(parts)
+
+
+def leash_mm(one, other):
+    """How far apart two that walk from point to point have to be, at least: no less than on the paths themselves, and
+    more by a step at most."""
+    away = np.linalg.norm(one[:, None] - other[None], axis=2)
+    reached = np.empty_like(away)
+    for i in range(len(one)):
+        for j in range(len(other)):
+            before = [reached[a, b] for a, b in ((i - 1, j), (i, j - 1), (i - 1, j - 1)) if a >= 0 and b >= 0]
+            reached[i, j] = max(away[i, j], min(before, default=0.0))
+    return reached[-1, -1]
+
+
+@settings(deadline=None, max_examples=150)
+@given(
+    some.integers(0, 10_000),
+    some.integers(1, 6),
+    some.sampled_from(["same", "other poses", "scrubbed", "backwards", "swapped", "shorter", "any"]),
+    some.sampled_from([0.0, 0.1, 0.4]),
+    some.sampled_from([0.06, 0.2, 0.5, 1.0]),
+)
+def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves, how, away_mm, limit_mm):
+    random = np.random.default_rng(seed)
+    asked = np.cumsum(
+        random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0
+    )  # on itself, and standing still
+    some_ = int(random.integers(0, moves + 1))
+    found = {
+        "same": asked,
+        "other poses": dense(asked)[
+            np.unique(np.r_[0, random.integers(0, len(dense(asked)), 4), -1 % len(dense(asked))])
+        ],
+        "scrubbed": np.vstack([asked[: some_ + 1], asked[:some_][::-1], asked]),
+        "backwards": asked[::-1],
+        "swapped": asked[random.permutation(moves + 1)],
+        "shorter": asked[: some_ + 1],
+        "any": np.cumsum(random.choice([-0.7, 0.0, 0.7], (3, 3)), axis=0),
+    }[how]
+    found = found + away_mm * random.uniform(-1, 1, found.shape)
+    leash = leash_mm(dense(found), dense(asked))
+    at = follows(found, asked, limit_mm)
+    if at is None:
+        assert leash <= limit_mm + STEP_MM
+    else:
+        assert leash > limit_mm - 1e-9 and 0 <= at < max(len(found), 2)
+
+
+def test_the_place_where_a_path_leaves_the_other_is_told():
+    asked = np.array([(x, 0.0, -1.0) for x in range(10)])
+    scrubbed = np.vstack([asked[:6], asked[3:5][::-1], asked[3:]])
+    assert follows(scrubbed, asked, 0.02) in (6, 7)
+    assert follows(asked[::-1], asked, 0.02) == 0
+    assert follows(asked[:-1], asked, 0.02) == len(asked) - 2
+    assert follows(np.vstack([asked, asked[-2:]]), asked, 0.02) in (len(asked), len(asked) + 1)
+    assert follows(asked[::3], asked, 0.02) is None
+
+
+def test_long_paths_take_no_more_than_what_lies_beside_them(monkeypatch):
+    """Of the cells of two paths few are looked at: a page is compared in its own time, not in the square of it."""
+    from brushsvg import comparing
+
+    t = np.linspace(0, 60, 3000)
+    asked = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
+    found = np.repeat(asked, 2, axis=0)
+    counted = []
+    within = comparing._within
+    monkeypatch.setattr(comparing, "_within", lambda *some_: counted.append(1) or within(*some_))
+    assert follows(found, asked, 0.02) is None
+    assert len(counted) < 8 * len(found)

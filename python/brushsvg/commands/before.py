@@ -23,15 +23,12 @@ def border_file(args) -> None:
     cell = machine.as_exact_as(cell, work.options.tolerance_mm)
     with about(args.input):
         post = machine.post_for(suffix_of(args.output), cell)
-        left, bottom, right, top = around_mm = around(machine.bounds_mm(marks, work.brush))
+        around_mm = around(machine.bounds_mm(marks, work.brush))
         made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
-        header = (
-            f"title: border of {work.title or 'untitled'}",
-            f"brush: {work.brush.name}, {len(work.plan.passes)} strokes",
-            "sheet: {:g} x {:g} mm".format(*work.plan.sheet_mm),
-            *convert.notes(work),
-            f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
-            *machine.about(made, Job(args.z_offset)),
+        title, count = f"border of {work.title or 'untitled'}", len(work.plan.passes)
+        job = Job(args.z_offset)
+        header = machine.border_header(
+            title, work.brush.name, count, work.plan.sheet_mm, convert.notes(work), around_mm, made, job
         )
         text = machine.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
@@ -47,13 +44,8 @@ def height_file(args) -> None:
     with about(cell.name):
         post = machine.post_for(suffix_of(args.output), cell)
         made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
-        header = (
-            "title: how high the paper lies",
-            f"brush: {brush.name}, {sum(1 for _ in made.sections())} strokes",
-            "sheet: {:g} x {:g} mm".format(*args.sheet),
-            f"heights: {args.highest:.10g} to {args.lowest:.10g} mm, {args.step:.10g} mm apart",
-            *machine.about(made),
-        )
+        heights_mm = (args.highest, args.lowest, args.step)
+        header = machine.height_header(brush.name, args.sheet, heights_mm, made)
         text = machine.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
     write({args.output: text})

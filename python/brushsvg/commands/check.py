@@ -46,19 +46,20 @@ def check_file(args) -> None:
         if sheet_mm is None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
-        problems = ran.problems
-        again = rewriting.again(ran, brush, cell, z_offset_mm)
+        problems = ran.problems + checking.misnumbered(read, made.first_stroke, made.strokes)
+        told = rewriting.Told(*_told_by(made, work))
+        again = rewriting.again(ran, brush, cell, z_offset_mm, made.first_stroke, told)
         changed = again and rewriting.differing_line(text, again, cell)
         problems = problems + ([("", changed)] if changed else [])
         strokes, drawn = None, None
         if work:
             loads = convert.in_loads(work, cell).plan
-            which, unlike = comparing.with_plan(ran, loads, cell)
+            which, unlike = comparing.with_plan(ran, loads, cell, made.first_stroke)
             problems = problems + unlike
             if work.strokes is not None:
                 whole = convert.whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
-                drawn = work.strokes if ran.first_stroke == 1 else None
+                drawn = work.strokes if made.first_stroke == 1 else None
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
             outlined = convert.outlined(ran.marks, brush, stage)
@@ -67,6 +68,20 @@ def check_file(args) -> None:
         suffix = ".json" if args.json else ".txt"
         tell(convert.report_text(suffix, shown, ran.marks, cell, drawn=drawn, seconds=seconds))
     _refuse_or_allow(args, problems, work is None)
+
+
+def _told_by(made, work: convert.Work | None) -> tuple[str, tuple[str, ...]]:
+    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as of a
+    program that was made of a plan."""
+    if (
+        work is None
+        or work.strokes is None
+        or not made.notes[:1]
+        or not made.notes[0].startswith("compensation")
+    ):
+        return made.title, made.notes
+    order = [note for note in made.notes if note.startswith("order")]
+    return work.title or "untitled", (*convert.notes(work), *order)
 
 
 def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: float) -> None:
@@ -86,12 +101,12 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
         if made.border_mm:
             left, bottom, right, top = made.border_mm
             looked = job_check.look_at_border(
-                text, read, made.border_mm, brush, cell, made.sheet_mm, z_offset_mm
+                text, read, made, brush, cell, work.plan.sheet_mm if work else made.sheet_mm, z_offset_mm
             )
             problems = looked.problems + (_beside(made, work) if work else [])
             does = f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
         else:
-            looked = job_check.look_at_heights(text, read, made.heights_mm, brush, cell, made.sheet_mm)
+            looked = job_check.look_at_heights(text, read, made, brush, cell)
             problems = looked.problems
             highest, lowest, step = made.heights_mm
             does = f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"

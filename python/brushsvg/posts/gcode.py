@@ -7,12 +7,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..moves import SAFE_MEANINGS, Move, Program, Wait
-from .text import feed_mm_min, number, plain, rows
+from .text import AT_ONCE, BRACKETS, feed_mm_min, number, plain, rows
 
 LINE_LIMIT = 120  # LinuxCNC reads 255 characters; this also fits a screen
 GRBL_LINE_LIMIT = 70  # grbl 1.1 keeps 80 characters of a line, builds with less memory 70
-BRACKETS = {ord("("): "[", ord(")"): "]"}
-AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
 MODES = "G21 G90 G94 G17 G40 G80"
 
 

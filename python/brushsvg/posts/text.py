@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+BRACKETS = {ord("("): "[", ord(")"): "]"}
+AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
+NAMED = 40  # letters of a name that no line of a program is too short for
 ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, whatever a stroke's length
 
 
@@ -19,6 +23,24 @@ def plain(text: str, room: int) -> str:
         letter if " " <= letter <= "~" else " " if letter.isspace() else "?" for letter in letters
     )
     return letters if len(letters) <= room else letters[: room - 3] + "..."
+
+
+def spelled(text: str) -> str:
+    """A text with no letter that some language leaves out: what any program makes of it, until it is cut."""
+    return plain(text, len(text) * 18).translate(BRACKETS).translate(AT_ONCE)
+
+
+def told_apart(names: Sequence[str]) -> list[str]:
+    """The names, with their number where a program would write them like another one, or as nothing at all."""
+    short = [spelled(name)[:NAMED] for name in names]
+    has_own = [
+        short.count(each) == 1 and re.search("[0-9A-Za-z]", each) and not each.startswith("station ")
+        for each in short
+    ]
+    return [
+        name if own else f"station {number}, {name}"
+        for number, (name, own) in enumerate(zip(names, has_own, strict=True), 1)
+    ]
 
 
 def number(value: float, decimals: int) -> str:

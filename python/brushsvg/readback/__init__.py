@@ -34,9 +34,10 @@ class Step(NamedTuple):
 
 @dataclass
 class ReadSection:
-    """What stands under one of our comments."""
+    """What stands under one of our comments, in a line of the file, from 1."""
 
     title: str
+    line: int = 0
     steps: list[Step] = field(default_factory=list)
 
 
@@ -63,7 +64,7 @@ class Readback:
         if re.match(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", text, re.IGNORECASE):
             raise Error(f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on")
         if text.startswith(("stroke ", "paint: ", "border ")):
-            self.sections.append(ReadSection(text))
+            self.sections.append(ReadSection(text, number))
 
 
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
@@ -74,7 +75,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     if post is None or suffix not in post.extensions:
         speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
         raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}")
-    if odd := re.search(r"[^\n -~]", text.replace("\r\n", "\n")):
+    if odd := re.search(r"[^\n -~]", text):
         number = text.count("\n", 0, odd.start()) + 1
         raise Error(f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text")
     return _READERS[cell.language](text, cell)

@@ -12,6 +12,7 @@ from ..errors import Error
 class Made:
     """What a program's header says of how it was made; tolerance_mm None: it does not say.
 
+    strokes: how many the job has; notes: the lines that tell how it was planned, as they are written.
     border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
     that find the paper; None for programs that paint.
     """
@@ -26,6 +27,8 @@ class Made:
     compensation: str
     tolerance_mm: float | None
     lag_mm: float | None
+    strokes: int = 0
+    notes: tuple[str, ...] = ()
     border_mm: tuple[float, ...] | None = None
     heights_mm: tuple[float, ...] | None = None
 
@@ -46,6 +49,10 @@ def made(text: str) -> Made:
     lag = _said(header, "compensation", r".*, lag (\S+) mm", (0.0, 1000.0)) if has_lag else None
     if how is None:
         raise _damaged("compensation", header["compensation"])
+    _said(header, "warnings", r"(\d+)(?:, \d+ of them damaged geometry)?", (0, 1e6))
+    if header.get("order", "nearest first") != "nearest first":
+        raise _damaged("order", header["order"])
+    strokes = re.search(r", (\d{1,7}) strokes$", header["brush"])
     return Made(
         title=header["title"],
         brush=header["brush"].rpartition(", ")[0] or header["brush"],
@@ -57,6 +64,10 @@ def made(text: str) -> Made:
         compensation=how[1],
         tolerance_mm=tolerance[0] if tolerance else None,
         lag_mm=lag[0] if lag else None,
+        strokes=int(strokes[1]) if strokes else 0,
+        notes=tuple(
+            f"{word}: {header[word]}" for word in ("compensation", "warnings", "order") if word in header
+        ),
         border_mm=(border[0], border[2], border[1], border[3]) if border else None,
         heights_mm=tuple(heights) if heights else None,
     )
