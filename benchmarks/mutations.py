@@ -1,6 +1,6 @@
 """A thousand damaged programs for every dialect and job, judged and checked: the table of docs/machines.md.
 
-    python benchmarks/mutations.py [COUNT of each job]
+python benchmarks/mutations.py [COUNT of each job]
 """
 
 import sys
@@ -36,7 +36,9 @@ def main() -> None:
     wrong = [case for case in whole.cases if (case.verdict == "harmless") == bool(case.refusals)]
     wrong = [case for case in wrong if case.verdict != "neither"]
     for case in wrong[:200]:
-        print(f"\n{case.dialect}, {case.job}, {case.damage}: {case.verdict}: {case.why} {' / '.join(case.refusals)}")
+        print(
+            f"\n{case.dialect}, {case.job}, {case.damage}: {case.verdict}: {case.why} {' / '.join(case.refusals)}"
+        )
         print(*case.changed, sep="\n")
     print(*whole.crashes, sep="\n")
 

@@ -103,6 +103,11 @@ class Workspace:
     tilt_limit_deg: float = _number("how far the paper's normal may lean from the robot's z axis", 0, 180)
     box_mm: tuple = _key("two opposite corners of a box in the robot's frame", (2, 3), default=())
     reach_mm: tuple = _key("least and greatest distance from the robot's origin", (2,), 0, 1e5, default=())
+    keep_out_mm: tuple = _key(
+        "boxes in the robot's frame that the tool must not go through, each by two opposite corners",
+        (None, 2, 3),
+        default=(),
+    )
 
 
 @dataclass(frozen=True)

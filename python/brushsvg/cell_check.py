@@ -10,7 +10,8 @@ import numpy as np
 from .cell import NEEDED_BY, RELOADS, Cell, Station, robot_from_paper, value_mm
 from .errors import Error
 from .frame import moved, normal_tilt_deg
-from .limits import workspace_problems
+from .limits import astray
+from .ways import ways
 
 COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
 
@@ -54,6 +55,10 @@ def _check_workspace(cell: Cell) -> None:
     box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
     if box_mm and not all(low < high for low, high in zip(*box_mm, strict=True)):
         raise Error("the first corner must be the lower one in x, y and z", where="workspace.box_mm")
+    for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
+        if not all(low < high for low, high in zip(*corners, strict=True)):
+            sentence = f"box {number}: the first corner must be the lower one in x, y and z"
+            raise Error(sentence, where="workspace.keep_out_mm")
     if reach_mm and not reach_mm[0] < reach_mm[1]:
         raise Error("the least distance must be below the greatest", where="workspace.reach_mm")
 
@@ -149,6 +154,12 @@ def _check_servo(cell: Cell) -> None:
             f"one value changes the height by {value:.2g} mm, outside the range [0, {COARSEST_VALUE_MM:g}] mm: depths "
             "would be off by half of it",
             where="servo.table",
+        )
+    if cell.heights.clearance_mm < 2 * value:
+        raise Error(
+            f"clearance_mm {cell.heights.clearance_mm:g} is outside the range [{2 * value:.2g}, "
+            f"{cell.heights.safe_mm:g}] mm: one value of the servo changes the height by {value:.2g} mm",
+            where="heights.clearance_mm",
         )
 
 
@@ -257,6 +268,6 @@ def remarks(cell: Cell) -> list[tuple[str, str]]:
 
 def _corner(cell: Cell) -> list[tuple[str, str]]:
     """The sheet's corner may be out of reach, where nothing is painted near it."""
-    corner = np.array([(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)])
-    sentences = workspace_problems(corner, replace(cell, servo=None))
+    corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
+    sentences = astray(corner, robot_from_paper(cell), replace(cell, servo=None))
     return [("workspace", f"over the sheet's lower left corner {said}") for said in sentences]

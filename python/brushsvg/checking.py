@@ -13,11 +13,12 @@ from .blends import blend_radii
 from .cell import Blending, Cell, robot_from_paper, value_mm
 from .errors import Error
 from .frame import moved
-from .limits import broken_limits, workspace_problems
+from .limits import astray, astray_between, broken_limits, height_astray
 from .machine import as_run, off_sheet
 from .posts.text import NAMED, spelled
 from .program import names_of_stations
 from .readback import Readback, ReadSection
+from .ways import ways
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
@@ -71,7 +72,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
-    problems += broken_limits(plan, brush, _rounded(cell), z_offset_mm) + off_sheet(marks, brush, sheet_mm)
+    problems += broken_limits(plan, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
     return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines))
 
 
@@ -100,26 +101,36 @@ def walked(
     for section in read.sections:
         track = _track(section, frame, here)
         said = [*_careless(section, track, brush, cell, here, paper_mm)]
-        yield section, track, said + _astray(track, cell, sheet_mm, z_offset_mm)
+        yield section, track, said + _astray(section, track, here, cell, sheet_mm, z_offset_mm)
         here = track.points[-1] if len(track.points) else here
 
 
 def _rounded(cell: Cell) -> Cell:
     """The cell with limits that what was rounded keeps, too."""
-    slack = slack_mm(cell)
-    heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack)
-    return replace(
-        cell,
-        heights=heights,
-        workspace=replace(cell.workspace, margin_mm=cell.workspace.margin_mm + slack),
-    )
+    heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack_mm(cell))
+    return replace(cell, heights=heights)
 
 
-def _astray(track: Track, cell: Cell, sheet_mm, z_offset_mm: float) -> list[str]:
-    """Sentences for the workspace's sides that any move of a section is beyond, in the air as well."""
-    if not len(track.points):
-        return []
-    return workspace_problems(track.points, _rounded(cell), z_offset_mm, sheet_mm)
+def _astray(
+    section: ReadSection, track: Track, here: np.ndarray | None, cell: Cell, sheet_mm, z_offset_mm: float
+) -> list[str]:
+    """Sentences for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
+    slack, points = slack_mm(cell), track.points
+    said = []
+    for step in section.steps:  # without a place: from wherever the tool is, straight up to here
+        if np.isnan(step.x + step.y) and not np.isnan(step.z):
+            said += height_astray(step.z, cell, slack)
+    if not len(points):
+        return said
+    frame = robot_from_paper(cell, z_offset_mm)
+    if here is not None:
+        said += astray_between(here, points[0], frame, cell, slack)
+    circles = []
+    for number in [k for k, centre in enumerate(track.centres) if centre is not None]:
+        on = np.flatnonzero(track.step == number)
+        start = points[on[0] - 1] if on[0] else here
+        circles.append((start, points[on[-1]], track.centres[number]))
+    return said + astray(ways([points], circles), frame, cell, sheet_mm, slack)
 
 
 def _visits(read: Readback, cell: Cell) -> tuple:

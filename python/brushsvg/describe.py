@@ -114,17 +114,10 @@ def cell_page(cell) -> str:
         ("workspace", f"the sheet and {workspace.margin_mm:g} mm around it"),
     ]
     if workspace.box_mm:
-        low, high = workspace.box_mm
-        rows.append(
-            (
-                "",
-                "x {:g} to {:g}, y {:g} to {:g}, z {:g} to {:g} mm".format(
-                    *itertools.chain(*zip(low, high, strict=True))
-                ),
-            )
-        )
+        rows.append(("", _box(*workspace.box_mm)))
     if workspace.reach_mm:
         rows.append(("", "{:g} to {:g} mm from the robot's origin".format(*workspace.reach_mm)))
+    rows += [("", f"not in {_box(*corners)}") for corners in workspace.keep_out_mm]
     joints = f"cut by {blending.tolerance_mm:g} mm at most" if blending.tolerance_mm else "met exactly"
     rows.append(("joints of moves", joints))
     if cell.tool:
@@ -138,6 +131,11 @@ def cell_page(cell) -> str:
     width = max(len(name) for name, _ in rows)
     lines = [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
     return "\n".join(lines)
+
+
+def _box(low, high) -> str:
+    sides = itertools.chain(*zip(low, high, strict=True))
+    return "x {:g} to {:g}, y {:g} to {:g}, z {:g} to {:g} mm".format(*sides)
 
 
 def _paper(paper) -> str:

@@ -23,7 +23,7 @@ def rotation(rotation_deg) -> np.ndarray:
     for axis, angle in enumerate(np.asarray(rotation_deg, dtype=float)):
         quarter = angle % 360 / 90
         c, s = (
-            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][int(quarter)]
+            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][int(quarter) % 4]
             if quarter == int(quarter)
             else (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
         )

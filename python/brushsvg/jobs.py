@@ -9,9 +9,8 @@ import numpy as np
 
 from .cell import Cell, robot_from_paper
 from .errors import Error
-from .limits import workspace_problems
 from .moves import Move, Program, Section, Wait, rise_over
-from .program import approach_mm_s, over
+from .program import approach_mm_s, astray_in, over
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
 SPEED_MM_S = 15.0
@@ -31,7 +30,7 @@ def around(bounds_mm) -> tuple[float, float, float, float]:
 def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
     """An air run: at safe height round (left, bottom, right, top) [mm] of what will be painted, corner by corner.
 
-    Error when a corner is outside the workspace.
+    Error when it leaves the workspace.
     """
     left, bottom, right, top = around_mm
     height = cell.heights.safe_mm
@@ -39,7 +38,6 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
         [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)], dtype=float
     )
     path = np.column_stack([corners, np.full(len(corners), height)])
-    _refuse_outside(path, cell, sheet_mm, z_offset_mm)
 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
@@ -52,7 +50,8 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
         yield Section("border of the job, at safe height", (start, *steps))
 
     frame = robot_from_paper(cell, z_offset_mm)
-    return Program((), cell, frame, sections, height, rise_over(cell, sheet_mm, frame))
+    made = Program((), cell, frame, sections, height, rise_over(cell, sheet_mm, frame))
+    return _refuse_astray(made, sheet_mm)
 
 
 def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
@@ -90,7 +89,6 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
                 Move("retract", over(last[0], safe), speeds.travel_mm_s),
             )
         )
-    _refuse_outside(np.vstack([move.points_mm for each in steps for move in each]), cell, sheet_mm)
 
     def sections() -> Iterator[Section]:
         for number, (height, each) in enumerate(zip(heights, steps, strict=True), 1):
@@ -99,7 +97,8 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             )
 
     frame = robot_from_paper(cell)
-    return Program((), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame))
+    made = Program((), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame))
+    return _refuse_astray(made, sheet_mm)
 
 
 def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
@@ -124,6 +123,7 @@ def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
     return [(LANE_MM + pitch * (k // rows), height - LANE_MM * (1 + k % rows)) for k in range(count)]
 
 
-def _refuse_outside(points: np.ndarray, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> None:
-    for sentence in workspace_problems(points, cell, z_offset_mm, sheet_mm):
+def _refuse_astray(made: Program, sheet_mm) -> Program:
+    for _, sentence in astray_in(made, sheet_mm):
         raise Error(sentence)
+    return made

@@ -15,11 +15,11 @@ from .cell import Cell, robot_from_paper
 from .cell_file import find_cell
 from .errors import Error
 from .files import write_files
-from .limits import beyond_edges, broken_limits
+from .limits import beyond_edges
 from .moves import Program, duration_s, in_robot_frame, painting_mm
 from .paint import in_loads, visits
 from .posts import POSTS, Post
-from .program import WHOLE_JOB, Job, program, unchecked_program
+from .program import WHOLE_JOB, Job, forbidden, program, unchecked_program
 from .report import clock
 from .written import as_written
 
@@ -30,7 +30,7 @@ def problems(
     plan, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB
 ) -> list[tuple[str, str]]:
     """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
-    found = broken_limits(plan, brush, cell, job.z_offset_mm) + off_sheet(marks, brush, plan.sheet_mm)
+    found = forbidden(plan, brush, cell, job) + off_sheet(marks, brush, plan.sheet_mm)
     return found or shifted_by_blends(plan, brush, cell, tolerance_mm)
 
 
@@ -157,13 +157,21 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
 
 def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
     """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
-    taut = np.asarray(run.taut, dtype=bool)
+    ran, planned = _under_way(run), _under_way(meant)
+    taut = np.asarray(run.taut, dtype=bool)[ran]
     if not taut.any():
         return 0.0
-    pose = np.interp(np.asarray(run.pose)[taut], np.arange(len(at)), at)
-    planned = _core.widest_points(meant, brush)
-    there = np.column_stack([np.interp(pose, meant.pose, planned[:, axis]) for axis in (0, 1)])
-    return float(np.linalg.norm(_core.widest_points(run, brush)[taut] - there, axis=1).max())
+    pose = np.interp(np.asarray(run.pose)[ran][taut], np.arange(len(at)), at)
+    widest = _core.widest_points(meant, brush)[planned]
+    there = np.column_stack([np.interp(pose, np.asarray(meant.pose)[planned], axis) for axis in widest.T])
+    return float(np.linalg.norm(_core.widest_points(run, brush)[ran][taut] - there, axis=1).max())
+
+
+def _under_way(trace) -> slice:
+    """The rows from where the brush was set down to where it is lifted: all rows of a landing or lift on the spot are
+    of one pose, by which no place can be found."""
+    pose = np.asarray(trace.pose)
+    return slice(int(np.searchsorted(pose, pose[0], "right")) - 1, int(np.searchsorted(pose, pose[-1])) + 1)
 
 
 def post_for(suffix: str, cell: Cell) -> Post:

@@ -55,6 +55,11 @@ class Section:
     steps: tuple[Move | Wait, ...]
 
     @property
+    def name(self) -> str:
+        """Of the stroke or the station."""
+        return self.title.partition(": ")[2] or self.title
+
+    @property
     def moves(self) -> tuple[Move, ...]:
         return tuple(step for step in self.steps if isinstance(step, Move))
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .blends import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .cell import Cell, Station, robot_from_paper
 from .errors import Error
-from .limits import broken_limits
+from .limits import broken_limits, height_astray, walked_astray
 from .moves import Arc, Move, Program, Section, Wait, rise_over
+from .posts import POSTS
 from .posts.text import told_apart
 from .written import Written, as_written
 
@@ -38,11 +39,33 @@ def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WH
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    for where, sentence in broken_limits(plan, brush, cell, job.z_offset_mm):
+    for where, sentence in forbidden(plan, brush, cell, job):
         raise Error(sentence, where=where)
     if not 1 <= job.first_stroke <= len(plan.passes):
         raise Error(f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job")
     return unchecked_program(plan, brush, cell, header, job)
+
+
+def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[tuple[str, str]]:
+    """(stroke or station, sentence) for each limit that is broken anywhere on the way of the whole job, whichever
+    stroke it begins with, or on that of a visit to any station; empty when the robot may run it."""
+    found = broken_limits(plan, brush, cell)
+    if not all(np.isfinite(a_pass.poses_mm).all() for a_pass in plan.passes):
+        return found
+    made = unchecked_program(plan, brush, cell, (), replace(job, first_stroke=1))
+    found += astray_in(made, plan.sheet_mm)
+    for station in cell.stations:
+        found += walked_astray([visit(station, brush, cell)], made.robot_from_frame, cell, plan.sheet_mm)
+    return list(dict.fromkeys(found))
+
+
+def astray_in(made: Program, sheet_mm) -> list[tuple[str, str]]:
+    """The sentences for a program's ways, its rise before the first move included."""
+    found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
+    post = POSTS.get(made.cell.language)
+    if post and post.in_robot_frame:  # else it rises to the safe height over the paper
+        found += [("", said) for said in height_astray(made.rise_in_robot_mm, made.cell)]
+    return found
 
 
 def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
@@ -86,8 +109,9 @@ def visit(station: Station, brush, cell: Cell) -> Section:
     steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
     if station.by_hand:
         return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
-    rim = station.rim_mm + cell.heights.clearance_mm
-    press_mm_s = min(speeds.press_mm_s, brush.max_speed_mm_s)
+    # a vessel may stand lower than the paper, under which nothing is fast
+    rim = max(station.rim_mm, 0.0) + cell.heights.clearance_mm
+    press_mm_s = min(speeds.press_mm_s, speeds.paint_mm_s, brush.max_speed_mm_s)
     steps += [
         Move("approach", over(station.place_mm, rim), approach_mm_s(brush, cell)),
         Move("dip", over(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),
@@ -99,6 +123,8 @@ def visit(station: Station, brush, cell: Cell) -> Section:
     if station.wipe_mm:
         steps.append(Move("wipe", np.array(station.wipe_mm, dtype=float), press_mm_s))
         last = station.wipe_mm[-1]
+        if last[2] < rim:
+            steps.append(Move("dip", over(last, rim), press_mm_s))
     steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
     return Section(f"paint: {name}", tuple(steps))
 

@@ -100,7 +100,9 @@ def test_the_judge_reads_as_linuxcnc_does(name, tmp_path):
         known = [False] * 3  # where the tool was before the program, nobody knows
         for leg, theirs in zip(ours, legs, strict=False):
             assert leg.kind == theirs[0]
-            known = [is_so or abs(a - b) < 2e-4 for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True)]
+            known = [
+                is_so or abs(a - b) < 2e-4 for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True)
+            ]
             for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True):
                 assert not is_so or a == pytest.approx(b, abs=2e-4), (damage, leg, theirs)
             if leg.kind != "rapid":

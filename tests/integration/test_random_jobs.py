@@ -12,7 +12,9 @@ FIRST = 100
 @pytest.mark.parametrize("dialect", CELLS)
 def test_whatever_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
     with quick_check() as check:
-        all_ = [tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + JOBS)]
+        all_ = [
+            tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + JOBS)
+        ]
     assert [job for job in all_ if job.wrong] == []
     assert [job for job in all_ if job.denied] == []
     assert sum(not job.refused for job in all_) > JOBS / 3, "most are written"

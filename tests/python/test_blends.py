@@ -143,3 +143,16 @@ def test_a_very_fine_tolerance_is_no_reason_to_refuse(tolerance, tmp_path):
     """Rows of marks that are straight in between were compared as if they were the mark."""
     robot = Path(__file__).parents[2] / "examples" / "robot.svg"
     assert main(["convert", str(robot), str(tmp_path / "out.ngc"), "--tolerance", tolerance]) == 0
+
+
+@pytest.mark.parametrize("cell", ["linuxcnc-3axis", "ur5e"])
+@pytest.mark.parametrize("first_mm", [0.0, -3.0])
+@pytest.mark.parametrize("last_mm", [0.0, -4.0])
+def test_a_plan_may_begin_and_end_pressed_down(first_mm, last_mm, cell):
+    """All rows of a landing or lift on the spot have one pose: they were held against each other's places, and the
+    mark seemed to move by its own lag."""
+    poses = [(40, 40, first_mm), (60, 40, -4), (100, 40, -4), (130, 40.5, -4), (131, 40.5, last_mm)]
+    plan = _core.Plan("round-6", "", (200.0, 100.0), [_core.Pass("a", np.array(poses, float), 20.0)])
+    brush = find_brush("round-6")
+    tight = replace(find_cell(cell), workspace=find_cell().workspace)
+    assert problems(plan, brush, _core.simulate(plan, brush), tight, 0.05) == []

@@ -308,6 +308,7 @@ def test_right_angles_are_exact_and_tilt_is_the_normals():
     assert (rotation((0, 0, 90)) == [[0, -1, 0], [1, 0, 0], [0, 0, 1]]).all()
     assert (rotation((90, 0, 90)) @ [0, 1, 0] == [0, 0, 1]).all()
     assert normal_tilt_deg(frame_of_pose((0, 0, 0), (0, 30, 77))) == pytest.approx(30)
+    assert (rotation((0, 0, -1e-15)) == np.eye(3)).all(), "so little below 0 is 360 once it is rounded"
 
 
 def test_rotation_vectors_turn_as_the_matrix_does():

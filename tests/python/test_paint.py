@@ -11,10 +11,9 @@ from brushsvg.brushes import find_brush
 from brushsvg.cell import Reload, Station
 from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
-from brushsvg.limits import broken_limits
 from brushsvg.moves import Wait
 from brushsvg.paint import in_loads, painted_mm, too_long, visits
-from brushsvg.program import visit
+from brushsvg.program import forbidden, visit
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
@@ -122,7 +121,7 @@ def test_a_station_out_of_the_box_is_refused():
     boxed = replace(
         cell, workspace=replace(cell.workspace, box_mm=((-15.0, -50.0, -30.0), (500.0, 200.0, 60.0)))
     )
-    broken = broken_limits(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
+    broken = forbidden(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
     assert (
         "black",
         "the tool goes to x -20.0 mm, outside the range [-15, 500] mm of the box of cell linuxcnc-3axis",
@@ -249,6 +248,6 @@ def test_a_station_on_the_sheet_or_far_from_it_is_refused():
     ):
         cell = cell_with(Reload("stroke"), Station("ink", place, depth_mm=5.0))
         told = [
-            sentence for where, sentence in broken_limits(plan_of((9, "", "")), BRUSH, cell) if where == "ink"
+            sentence for where, sentence in forbidden(plan_of((9, "", "")), BRUSH, cell) if where == "ink"
         ]
         assert len(told) == 1 and words in told[0]

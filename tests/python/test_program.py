@@ -7,9 +7,8 @@ import pytest
 
 from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
-from brushsvg.limits import broken_limits
 from brushsvg.moves import SAFE_MEANINGS, duration_s
-from brushsvg.program import Job, program, unchecked_program
+from brushsvg.program import Job, forbidden, program, unchecked_program
 
 
 def plan_of(*poses, speed=20.0, sheet=(100.0, 60.0)):
@@ -98,7 +97,7 @@ def test_a_job_may_begin_later_and_the_paper_lie_higher():
 )
 def test_limits_are_named_with_stroke_and_number(poses, words):
     plan = plan_of(STROKE, poses)
-    broken = broken_limits(plan, BRUSH, find_cell())
+    broken = forbidden(plan, BRUSH, find_cell())
     assert [(where, words in sentence) for where, sentence in broken] == [("s2", True)]
     with pytest.raises(Error) as refusal:
         program(plan, BRUSH, find_cell())
@@ -107,14 +106,14 @@ def test_limits_are_named_with_stroke_and_number(poses, words):
 
 
 def test_speed_limits_and_nothing_to_paint():
-    too_fast = broken_limits(plan_of(STROKE, speed=51.0), brush_of(80.0), find_cell())
+    too_fast = forbidden(plan_of(STROKE, speed=51.0), brush_of(80.0), find_cell())
     assert too_fast == [("s1", "speed 51.0 mm/s is outside the range (0, 50.0] mm/s of cell linuxcnc-3axis")]
-    too_fast = broken_limits(plan_of(STROKE, speed=51.0), BRUSH, find_cell())
+    too_fast = forbidden(plan_of(STROKE, speed=51.0), BRUSH, find_cell())
     assert too_fast == [("s1", "speed 51.0 mm/s is outside the range (0, 25.0] mm/s of brush hog")]
     with pytest.raises(Error, match="brush hog"):
         program(plan_of(STROKE, speed=25.1), BRUSH, find_cell())
-    assert len(broken_limits(plan_of(STROKE, speed=float("nan")), BRUSH, find_cell())) == 1
-    assert broken_limits(plan_of(), BRUSH, find_cell()) == [("", "there is nothing to paint")]
+    assert len(forbidden(plan_of(STROKE, speed=float("nan")), BRUSH, find_cell())) == 1
+    assert forbidden(plan_of(), BRUSH, find_cell()) == [("", "there is nothing to paint")]
 
 
 @pytest.mark.parametrize("limit", [40.0, 25.0, 3.0])
@@ -127,9 +126,9 @@ def test_no_move_on_the_way_down_or_up_is_faster_than_the_brush_may_go(limit):
 
 
 def test_the_workspace_ends_where_it_says():
-    assert broken_limits(plan_of([(-30, -30, 0), (130, 90, -1)]), BRUSH, find_cell()) == []
+    assert forbidden(plan_of([(-30, -30, 0), (130, 90, -1)]), BRUSH, find_cell()) == []
 
 
 def test_a_pass_that_never_presses_is_refused():
-    (found,) = broken_limits(plan_of([(10, 10, 0), (20, 10, 0)]), brush_of(25.0), find_cell())
+    (found,) = forbidden(plan_of([(10, 10, 0), (20, 10, 0)]), brush_of(25.0), find_cell())
     assert found[1] == "the brush is never pressed to the paper: nothing would be painted"

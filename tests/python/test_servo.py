@@ -1,17 +1,21 @@
 """G-code for a brush on a servo: the values that come out paint at the heights that went in."""
 
+import itertools
 import re
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from programs import call
 from test_gcode import TWO, text_of
 
-from brushsvg.cell_file import find_cell
+from brushsvg.cell import Reload, Servo, Station
+from brushsvg.cell_file import find_cell, read_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.jobs import border
-from brushsvg.posts.gcode_servo import value_at
+from brushsvg.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.program import Job, program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
@@ -54,6 +58,62 @@ def test_the_lift_alone_takes_its_time():
     up_s = 2 / 6 + CELL.heights.clearance_mm / 6 + (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 50
     lifts = 7  # up before anything; approach, land, press, release, lift, retract
     assert waited == pytest.approx(down_s + up_s + lifts * CELL.servo.settle_s, abs=0.06)
+
+
+@pytest.mark.parametrize(("values", "step_mm"), [(80, 0.5), (150, 0.25), (1000, 0.1)])
+def test_no_lift_is_faster_than_told_by_the_values_as_they_are_written(values, step_mm):
+    """A lift after a line begins where the line's last part was held, half a step away, and values are whole: waits
+    were those of the plan's heights, up to a half too short."""
+    cell = replace(CELL, servo=Servo(((-10.0, 0.0), (0.0, 0.6 * values), (5.0, float(values))), step_mm, 0.0))
+    poses = np.array([(10, 10, 0), (10, 10, -1), (14, 10, -3.3), (16, 11, -1.7), (16, 11, 0)])
+    plan = SimpleNamespace(
+        sheet_mm=(100.0, 60.0), passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=())]
+    )
+    brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
+    lines = "".join(grbl_servo(program(plan, brush, cell))).splitlines()
+    table, height, feed, lifts = np.array(cell.servo.table), None, None, 0
+    for line, after in itertools.pairwise(lines):
+        words = dict(re.findall(r"([FSP])(-?[\d.]+)", line.split("(")[0]))
+        feed = float(words.get("F", feed or 0)) / (60 if "F" in words else 1)
+        if "S" not in words:
+            continue
+        before, height = height, np.interp(float(words["S"]), table[:, 1], table[:, 0])
+        if line.startswith("M3") and before is not None:
+            lifts += 1
+            assert abs(height - before) / float(after.removeprefix("G4 P")) <= feed + 1e-9
+    assert lifts > 8
+
+
+@pytest.mark.parametrize("rim_mm", [-5.0, 0.0])
+@pytest.mark.parametrize("language", ["grbl-servo", "grbl-3axis"])
+def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, capsys, language, rim_mm):
+    """Its programs went down to it and up again as in the air, and were refused when they were read back; so was a dip
+    faster than the cell paints."""
+    ink = Station(
+        "ink", (-10.0, 10.0), surface_mm=-5.5, depth_mm=2.0, rim_mm=rim_mm, wipe_mm=((-8.0, 10.0, rim_mm),)
+    )
+    cell = find_cell(language)
+    cell = replace(cell, name="mine", stations=(ink,), reload=Reload("stroke"))
+    cell = replace(cell, speeds=replace(cell.speeds, paint_mm_s=4.0, press_mm_s=6.0))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_text(write_cell(cell))
+    drawing = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="30mm" viewBox="0 0 60 30">'
+    (tmp_path / "a.svg").write_text(drawing + '<path d="M15 15 h30" stroke="#000" stroke-width="3"/></svg>')
+    assert call(capsys, "convert", "a.svg", "a.nc", "--cell", "mine.toml")[0] == 0
+    status, out, err = call(capsys, "check", "a.nc", "a.svg", "--cell", "mine.toml")
+    assert (status, err) == (0, []), err
+    assert "nothing forbids to run it" in out
+
+
+def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
+    coarse = replace(
+        CELL, servo=Servo(((-10.0, 0.0), (5.0, 50.0))), heights=replace(CELL.heights, clearance_mm=0.5)
+    )
+    with pytest.raises(
+        Error, match=r"clearance_mm 0\.5 is outside the range \[0\.6, 5\] mm: one value"
+    ) as refusal:
+        read_cell(write_cell(coarse))
+    assert refusal.value.where == "heights.clearance_mm"
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Generator, Iterator
 
 import numpy as np
 
@@ -33,11 +34,12 @@ def grbl_servo(program: Program) -> Iterator[str]:
     yield f"{MODES}\n"
     feed = f"F{feed_mm_min(program.cell.speeds.travel_mm_s):.1f}\n"
     yield f"G1 {feed}"
-    here = None
+    here, value = None, 0
     for section in program.sections():
         if here is None:  # up before going anywhere
             here = np.array([0.0, 0.0, program.rise_mm])
-            yield f"M3 S{value_at(servo, here[2])}\n"
+            value = int(value_at(servo, here[2]))
+            yield f"M3 S{value}\n"
             yield f"G4 P{number(servo.settle_s, 3)}\n" if servo.settle_s else ""
         yield "\n" + grbl_comment(section.title)
         for step in section.steps:
@@ -48,7 +50,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
             if wanted != feed:
                 yield wanted
                 feed = wanted
-            yield from _lines(step, here, servo, decimals)
+            value = yield from _lines(step, here, value, servo, decimals)
             here = step.points_mm[-1]
     yield "\n" + grbl_comment(SERVO_END)
 
@@ -59,32 +61,50 @@ def value_at(servo: Servo, height_mm):
     return np.rint(np.interp(height_mm, heights, values)).astype(int)
 
 
-def _lines(move: Move, here: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
+def height_at(servo: Servo, value: float) -> float:
+    """The height that a value gives."""
+    values, heights = zip(*sorted((value, height) for height, value in servo.table), strict=True)
+    return float(np.interp(value, values, heights))
+
+
+def _lines(
+    move: Move, here: np.ndarray, value: int, servo: Servo, decimals: int
+) -> Generator[str, None, int]:
+    """A move's lines, and the value that the servo has afterwards; value: that before."""
     path = np.vstack([here, move.points_mm])
     still = np.abs(np.diff(path[:, :2], axis=0)).max(axis=1) < 0.5 * 10.0**-decimals
     for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
         if not still[run[0]]:
-            yield from _ways(path[run[0] : run[-1] + 2], servo, decimals)
+            value = yield from _ways(path[run[0] : run[-1] + 2], servo, decimals)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for k in run:
-            yield from _lift(path[k, 2], path[k + 1, 2], move.speed_mm_s, step_mm, servo)
+            value = yield from _lift(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
+    return value
 
 
-def _lift(from_mm: float, to_mm: float, speed_mm_s: float, step_mm: float, servo: Servo) -> Iterator[str]:
-    """The lift alone: step by step, waiting as long as the way takes at the speed, then until the servo rests."""
-    if from_mm == to_mm:
-        return
+def _lift(
+    from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
+) -> Generator[str, None, int]:
+    """The lift alone: step by step, waiting as long as the way takes at the speed, then until the servo rests. The way
+    is that between the values, which are whole: after a line it begins where its last part was held."""
+    feed_mm_s = feed_mm_min(speed_mm_s) / 60
     count = max(1, int(np.ceil(abs(to_mm - from_mm) / step_mm - 1e-9)))
+    has_moved = False
     for k in range(1, count + 1):
-        yield f"M3 S{value_at(servo, from_mm + (to_mm - from_mm) * k / count)}\n"
-        yield f"G4 P{number(max(abs(to_mm - from_mm) / count / speed_mm_s, 0.001), 3)}\n"
-    if servo.settle_s:
+        before, value = value, int(value_at(servo, from_mm + (to_mm - from_mm) * k / count))
+        if value == before:
+            continue
+        way_mm = abs(height_at(servo, value) - height_at(servo, before))
+        yield f"M3 S{value}\nG4 P{number(math.ceil(1e3 * way_mm / feed_mm_s) / 1e3, 3)}\n"
+        has_moved = True
+    if servo.settle_s and has_moved:
         yield f"G4 P{number(servo.settle_s, 3)}\n"
+    return value
 
 
-def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
-    """Straight lines, each in parts on which the height is the one half way along the part."""
+def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Generator[str, None, int]:
+    """Straight lines, each in parts on which the height is the one half way along the part; the last part's value."""
     pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
     for first in range(0, len(path) - 1, ROWS_AT_ONCE):
         part = path[first : first + ROWS_AT_ONCE + 1]
@@ -94,4 +114,6 @@ def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Iterator[str]:
         number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
         ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
         heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
-        yield from rows(pattern, np.column_stack([ends, value_at(servo, heights)]), decimals)
+        values = value_at(servo, heights)
+        yield from rows(pattern, np.column_stack([ends, values]), decimals)
+    return int(values[-1])

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 import re
 
-import numpy as np
-
 from ..cell import Cell, value_mm
 from ..errors import Error
-from ..posts.gcode_servo import SERVO_END
+from ..posts.gcode_servo import SERVO_END, height_at
 from . import Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
@@ -28,10 +26,9 @@ def read_gcode(text: str, cell: Cell) -> Readback:
 class _Reader:
     def __init__(self, cell: Cell):
         self.out = Readback()
-        self.servo = sorted(cell.servo.table, key=lambda row: row[1]) if cell.servo else None
+        self.servo = cell.servo
         # between two values, and two parts of a way, no more than this is written at once
         self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
-        self.value_mm = value_mm(cell) if cell.servo else 0.0
         self.lift: tuple[int, float, float] | None = (
             None  # which step, how far, how long it has been waited for
         )
@@ -125,17 +122,17 @@ class _Reader:
         self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
 
     def _waited(self, seconds: float) -> None:
-        """So long after the lift alone: as fast as the feed says, or faster, values being whole and times rounded."""
+        """So long after the lift alone: as fast as the feed says, or faster where that is too short."""
         at, way_mm, before_s = self.lift
         waited_s = before_s + seconds
-        speed = max((way_mm - self.value_mm) / (waited_s + 5e-4), self.feed_mm_s)
+        speed = max(way_mm / waited_s, self.feed_mm_s) if waited_s > 0 else math.inf
         steps = self.out.section().steps
         steps[at] = steps[at]._replace(speed_mm_s=speed)
         self.lift = at, way_mm, waited_s
 
     def _height(self, number: int, value: float) -> float:
-        heights, known = [row[0] for row in self.servo], [row[1] for row in self.servo]
-        low, high = round(known[0]), round(known[-1])
+        known = [row[1] for row in self.servo.table]
+        low, high = round(min(known)), round(max(known))
         if not low <= value <= high:
             raise Error(f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo")
-        return float(np.interp(value, known, heights))
+        return height_at(self.servo, value)

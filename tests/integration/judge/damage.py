@@ -236,7 +236,9 @@ MODES = {
 def mode(page, random):
     """Units, absolute places, planes, the path's mode: another, or none."""
     if page.is_robot:
-        old, new = _pick(random, (("set_tcp(", "set_tpc("), ("pose_trans(paper", "pose_trans(here"), ("paper = ", "p = ")))
+        old, new = _pick(
+            random, (("set_tcp(", "set_tpc("), ("pose_trans(paper", "pose_trans(here"), ("paper = ", "p = "))
+        )
         return _word(page, random, old, new)
     old = _pick(random, list(MODES))
     return _word(page, random, old, _pick(random, MODES[old]))
@@ -254,11 +256,26 @@ def _word(page, random, old: str, new: str):
 def offset(page, random):
     """A line more that shifts, scales or turns all that follows; or a robot's paper and tool."""
     if page.is_robot:
-        k = _pick(random, [k for k in page.code if re.search(r"set_tcp|  paper =|return pose_trans", page.lines[k])])
-        return _at_number(page, random, [k], lambda n: f"{float(n) + random.choice((-0.1, -0.001, 0.001, 0.1)):.7f}")
+        k = _pick(
+            random, [k for k in page.code if re.search(r"set_tcp|  paper =|return pose_trans", page.lines[k])]
+        )
+        return _at_number(
+            page, random, [k], lambda n: f"{float(n) + random.choice((-0.1, -0.001, 0.001, 0.1)):.7f}"
+        )
     line = _pick(
         random,
-        ("G92 X0 Y0", "G92 X10 Y10 Z0", "G92 Z-1", "G55", "G54", "G91", "G20", "G18", "G43 H1", "G10 L2 P1 X5 Y5"),
+        (
+            "G92 X0 Y0",
+            "G92 X10 Y10 Z0",
+            "G92 Z-1",
+            "G55",
+            "G54",
+            "G91",
+            "G20",
+            "G18",
+            "G43 H1",
+            "G10 L2 P1 X5 Y5",
+        ),
     )
     return _more(page, random, line)
 
@@ -271,10 +288,16 @@ def _more(page, random, line: str) -> list[str]:
 def m_code(page, random):
     if page.is_robot:
         return _more(
-            page, random, _pick(random, ("  halt", "  sleep(0.500)", "  set_digital_out(0, True)", '  textmsg("x")'))
+            page,
+            random,
+            _pick(random, ("  halt", "  sleep(0.500)", "  set_digital_out(0, True)", '  textmsg("x")')),
         )
     if random.random() < 0.5:
-        return _more(page, random, _pick(random, ("M0", "M1", "M2", "M3", "M3 S500", "M4 S200", "M5", "M6 T1", "M30", "M8")))
+        return _more(
+            page,
+            random,
+            _pick(random, ("M0", "M1", "M2", "M3", "M3 S500", "M4 S200", "M5", "M6 T1", "M30", "M8")),
+        )
     old = _pick(random, ("M2", "M3", "M0"))
     return _word(page, random, old, _pick(random, ("M0", "M5", "M30", "M3", "M4", "M9", "M48")))
 
@@ -300,7 +323,16 @@ def title(page, random):
     return _with(page, k, line[:at] + _pick(random, "abcxyz0123456789") + line[at + 1 :])
 
 
-WORDS = ("looked at by hand", "slower here", "tuesday", "see page 3", "half of it done", "check this", "blue ink", "ok")
+WORDS = (
+    "looked at by hand",
+    "slower here",
+    "tuesday",
+    "see page 3",
+    "half of it done",
+    "check this",
+    "blue ink",
+    "ok",
+)
 
 
 def remark(page, random):
@@ -317,7 +349,16 @@ def blank(page, random):
 
 
 ACTING = {
-    "linuxcnc": ("MSG, hi", "DEBUG, #1", "msg,look", " LOGOPEN,x.txt", "PRINT,#5", "LOGCLOSE", "PROBEOPEN f.txt", "x (y"),
+    "linuxcnc": (
+        "MSG, hi",
+        "DEBUG, #1",
+        "msg,look",
+        " LOGOPEN,x.txt",
+        "PRINT,#5",
+        "LOGCLOSE",
+        "PROBEOPEN f.txt",
+        "x (y",
+    ),
     "grbl": ("why?", "stop!", "go~", "50%", "50 \x18 x", "caf\xe9", "?", "!"),
 }
 

@@ -13,7 +13,8 @@ from .moves import Leg, RefusedError, Run
 
 WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
 ACTS = re.compile(
-    r"\s*((MSG|DEBUG|PRINT|LOG|LOGOPEN|LOGAPPEND|PROBEOPEN|PY|PYRUN|AXIS|ABORT)\s*,|LOGCLOSE|PROBECLOSE)", re.I
+    r"\s*((MSG|DEBUG|PRINT|LOG|LOGOPEN|LOGAPPEND|PROBEOPEN|PY|PYRUN|AXIS|ABORT)\s*,|LOGCLOSE|PROBECLOSE)",
+    re.I,
 )
 GROUPS = {
     "linuxcnc": (

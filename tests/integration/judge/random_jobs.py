@@ -43,9 +43,7 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
         return Tried(dialect, number, (str(refusal),))
     if said := converted(source, program, "--cell", toml, *flags):
         return Tried(dialect, number, tuple(said))
-    planned = [
-        flag for k, flag in enumerate(flags) if "--z-offset" not in flags[max(0, k - 1) : k + 1]
-    ]
+    planned = [flag for k, flag in enumerate(flags) if "--z-offset" not in flags[max(0, k - 1) : k + 1]]
     wrong: list[str] = []
     text = program.read_text(encoding="latin-1")
     # the plan's own file is written without the machine's limits, which the program has passed

@@ -27,14 +27,17 @@ def random_svg(random) -> str:
             )
 
         kind = int(random.integers(6))
-        path = f"M{x:.3f} {y:.3f} " + (
-            f"L{near()}",
-            f"L{near()} L{near()} L{near()}",
-            f"C{near()} {near()} {near()}",
-            f"L{x:.3f} {y:.3f}",
-            f"L{near(far=8)} L{near(far=8)} Z",
-            f"Q{near()} {near()} T{near()}",
-        )[kind]
+        path = (
+            f"M{x:.3f} {y:.3f} "
+            + (
+                f"L{near()}",
+                f"L{near()} L{near()} L{near()}",
+                f"C{near()} {near()} {near()}",
+                f"L{x:.3f} {y:.3f}",
+                f"L{near(far=8)} L{near(far=8)} Z",
+                f"Q{near()} {near()} T{near()}",
+            )[kind]
+        )
         width, colour = random.uniform(1.2, 4.5), random.choice(("#000000", "#ff0000"))
         drawn.append(
             f'<path id="s{number}" d="{path}" fill="none" stroke="{colour}" stroke-width="{width:.2f}"/>'
@@ -49,7 +52,9 @@ def random_cell(random, dialect: str):
     safe = round(float(random.uniform(4, 25)), 2)
     clear = round(float(random.uniform(0.3, 2.5)), 2)
     lowest = -round(float(random.uniform(5, 10)), 2)
-    cell = replace(cell, name="mine", heights=replace(cell.heights, safe_mm=safe, clearance_mm=clear, lowest_mm=lowest))
+    cell = replace(
+        cell, name="mine", heights=replace(cell.heights, safe_mm=safe, clearance_mm=clear, lowest_mm=lowest)
+    )
     speeds = replace(
         cell.speeds,
         travel_mm_s=float(random.uniform(30, 200)),
@@ -61,11 +66,17 @@ def random_cell(random, dialect: str):
     paper = Paper()
     if dialect == "grbl-servo":
         if random.random() < 0.4:
-            paper = Paper((*random.uniform(-300, 300, 2).tolist(), 0.0), (0.0, 0.0, float(random.uniform(0, 360))))
+            paper = Paper(
+                (*random.uniform(-300, 300, 2).tolist(), 0.0), (0.0, 0.0, float(random.uniform(0, 360)))
+            )
         cell = replace(cell, servo=_servo(random, lowest, safe))
     elif random.random() < 0.8:
-        leans = random.uniform(-1, 1, 2) * (0 if random.random() < 0.4 else 1.3 if dialect != "urscript" else 9)
-        paper = Paper(tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360))))
+        leans = random.uniform(-1, 1, 2) * (
+            0 if random.random() < 0.4 else 1.3 if dialect != "urscript" else 9
+        )
+        paper = Paper(
+            tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360)))
+        )
     if random.random() < 0.25 and dialect != "grbl-servo":
         paper = _about_the_robot(random)
     cell = replace(cell, paper=paper)
@@ -122,7 +133,9 @@ def _with_space(random, cell):
     box, reach = (), ()
     if random.random() < 0.6:
         room = random.uniform(0, 50, (2, 3))
-        box = tuple(map(tuple, (np.r_[[corners.min(axis=0) - room[0], corners.max(axis=0) + room[1]]]).tolist()))
+        box = tuple(
+            map(tuple, (np.r_[[corners.min(axis=0) - room[0], corners.max(axis=0) + room[1]]]).tolist())
+        )
     if random.random() < 0.7:
         away = np.linalg.norm(corners, axis=1)
         middle = moved(frame, np.array([[SHEET[0] / 2, SHEET[1] / 2, 0.0]]))[0]
@@ -142,11 +155,18 @@ def _with_paint(random, cell):
         depth = float(random.uniform(0.5, 3.0))
         if surface - depth < lowest:
             continue
-        x = -float(random.uniform(2, 30)) if random.random() < 0.7 else SHEET[0] + float(random.uniform(2, 25))
+        x = (
+            -float(random.uniform(2, 30))
+            if random.random() < 0.7
+            else SHEET[0] + float(random.uniform(2, 25))
+        )
         wipes = ()
         if random.random() < 0.5:
             heights = random.uniform(rim, safe, 2)
-            wipes = tuple((x + (k + 1) * float(random.uniform(-5, 5)), y + 2.0 * k, float(z)) for k, z in enumerate(heights))
+            wipes = tuple(
+                (x + (k + 1) * float(random.uniform(-5, 5)), y + 2.0 * k, float(z))
+                for k, z in enumerate(heights)
+            )
         station = Station(name, (x, y), colours, False, surface, depth, rim, 0.2, 0.3, wipes)
         stations.append(station)
     if not any(not station.colours for station in stations):

@@ -291,5 +291,3 @@ class _Robot:
                 acceleration=float(found[9]),
             )
         )
-
-

@@ -87,7 +87,13 @@ class Job:
             bottom = station.get("surface_mm", 0.0) - station.get("depth_mm", 0.0)
             wipes = [tuple(point) for point in station.get("wipe_mm", ())]
             end = wipes[-1][:2] if wipes else (x, y)
-            way = [(x, y, safe), (x, y, bottom), (x, y, station.get("rim_mm", 0.0) + clear), *wipes, (*end, safe)]
+            way = [
+                (x, y, safe),
+                (x, y, bottom),
+                (x, y, station.get("rim_mm", 0.0) + clear),
+                *wipes,
+                (*end, safe),
+            ]
             if station.get("by_hand"):
                 way = [(x, y, safe), (x, y, safe)]
             ways.append(np.array(way, dtype=float))
@@ -102,7 +108,9 @@ class Job:
 
     def interpret(self, text: str) -> Run:
         if self.language == "urscript":
-            return run_urscript(text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell))
+            return run_urscript(
+                text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
+            )
         dialect = "linuxcnc" if self.language == "linuxcnc" else "grbl"
         servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None
         return run_gcode(text, dialect, self.start, servo, self.cell["speeds"]["travel_mm_s"])
@@ -202,7 +210,9 @@ def _beyond(way: Way, job: Job):
     workspace = cell["workspace"]
     slack = SLACK_MM + job.servo_mm[0] / 2
     margin = np.array([workspace["margin_mm"]] * 2) + SLACK_MM
-    over = np.maximum(-margin - points[:, :2], points[:, :2] - margin - np.array(job.plan["sheet_mm"])).max(axis=1)
+    over = np.maximum(-margin - points[:, :2], points[:, :2] - margin - np.array(job.plan["sheet_mm"])).max(
+        axis=1
+    )
     if over.max() > 0:
         yield f"{over.max():.3f} mm beyond the sheet's margin, line {_line(way, over.argmax() + 1)}"
     least = points[:, 2].min()
@@ -230,7 +240,9 @@ def _fast(way: Way, job: Job):
     speeds = np.array([legs[k].speed_mm_s for k in way.leg])
     low = np.minimum(way.starts[:, 2], way.ends[:, 2]) <= job.touch_mm
     still = np.linalg.norm(way.ends - way.starts, axis=1) < 1e-6
-    fast = low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01))
+    fast = (
+        low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01))
+    )
     if fast.any():
         k = int(fast.argmax())
         yield f"fast while touching: {kinds[k]} at {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
@@ -273,7 +285,11 @@ def _low(way: Way, job: Job):
     safe, legs = job.cell["heights"]["safe_mm"], way.run.legs
     low, high = np.minimum(way.starts[:, 2], way.ends[:, 2]), np.maximum(way.starts[:, 2], way.ends[:, 2])
     sideways = np.linalg.norm(way.ends[:, :2] - way.starts[:, :2], axis=1)
-    bad = (low < safe - 0.05 - job.servo_mm[0] / 2) & (high > job.touch_mm + job.servo_mm[1]) & (sideways > OFF_MM)
+    bad = (
+        (low < safe - 0.05 - job.servo_mm[0] / 2)
+        & (high > job.touch_mm + job.servo_mm[1])
+        & (sideways > OFF_MM)
+    )
     for k in np.flatnonzero(bad):
         a, b = legs[way.leg[k]].start, legs[way.leg[k]].end
         if b[2] >= a[2] and max(abs(a[0] - b[0]), abs(a[1] - b[1])) < 1e-6:
@@ -346,7 +362,9 @@ def off_mm(stroke: np.ndarray, wanted: np.ndarray, sound: np.ndarray | None) -> 
         last = len(stroke) - (n - 1 - int(same[-1]) if len(same) else n)
         if first < last:
             middle = stroke[max(0, first - 1) : last + 1]
-            gap = _to_path(middle[:: max(1, len(middle) // 200)], wanted[:: max(1, len(wanted) // 2000)]).max()
+            gap = _to_path(
+                middle[:: max(1, len(middle) // 200)], wanted[:: max(1, len(wanted) // 2000)]
+            ).max()
             if gap > 3 * OFF_MM:
                 return float(gap)
     if walkable(stroke, wanted, near):
@@ -411,7 +429,11 @@ def cuts(way: Way, job: Job) -> np.ndarray:
     reaching, leaving = steps.copy(), steps.copy()
     for k, leg in enumerate(legs):
         if leg.kind == "arc":
-            here = places.moved(job.back, np.array([leg.start, leg.end])) if way.run.blends_by_radius else np.array([leg.start, leg.end])
+            here = (
+                places.moved(job.back, np.array([leg.start, leg.end]))
+                if way.run.blends_by_radius
+                else np.array([leg.start, leg.end])
+            )
             for side, into in ((0, leaving), (1, reaching)):
                 spoke = here[side, :2] - leg.centre
                 into[k] = (-leg.turn * spoke[1], leg.turn * spoke[0], 0.0)
@@ -525,7 +547,11 @@ def judged(text: str, whole: Sound) -> tuple[str, str]:
     if not same_facts(facts(way.run), whole.facts):
         return "neither", "the header or a title says something else"
     told = _told(way, whole.job)
-    return ("harmless", "") if _same(told, whole.steps, whole.job) else ("neither", "other moves, yet not dangerous")
+    return (
+        ("harmless", "")
+        if _same(told, whole.steps, whole.job)
+        else ("neither", "other moves, yet not dangerous")
+    )
 
 
 def _told(way: Way, job: Job) -> list:
@@ -569,7 +595,9 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
         return True
     if not ours or not theirs or len(ours) + len(theirs) > 60:
         return False
-    if {leg.kind for leg, _ in ours + theirs} - {"feed", "rapid", "process"} or len({leg.kind for leg, _ in ours + theirs}) > 1:
+    if {leg.kind for leg, _ in ours + theirs} - {"feed", "rapid", "process"} or len(
+        {leg.kind for leg, _ in ours + theirs}
+    ) > 1:
         return False
     if max(leg.speed_mm_s for leg, _ in ours) > min(leg.speed_mm_s for leg, _ in theirs) * 1.001:
         return False
@@ -597,5 +625,7 @@ def _alike(one, other, near: float, job: Job) -> bool:
     return all(abs(p - q) <= near for p, q in zip((*a.start, *a.end), (*b.start, *b.end), strict=True))
 
 
-def job_of(cell: dict, plan_json: str, brush_mm_s: float, z_offset_mm: float = 0.0, first_stroke: int = 1) -> Job:
+def job_of(
+    cell: dict, plan_json: str, brush_mm_s: float, z_offset_mm: float = 0.0, first_stroke: int = 1
+) -> Job:
     return Job(cell, json.loads(plan_json), brush_mm_s, z_offset_mm, first_stroke)

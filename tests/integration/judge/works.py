@@ -25,7 +25,8 @@ OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewB
 
 def lines(*paths: str, width="2") -> str:
     drawn = "".join(
-        f'<path id="p{k}" d="{d}" fill="none" stroke="#000" stroke-width="{width}"/>' for k, d in enumerate(paths, 1)
+        f'<path id="p{k}" d="{d}" fill="none" stroke="#000" stroke-width="{width}"/>'
+        for k, d in enumerate(paths, 1)
     )
     return f"{OPEN}{drawn}</svg>"
 
@@ -51,7 +52,9 @@ def _turned(cell):
 
 def _leaning(cell):
     if cell.language == "grbl-servo":
-        return replace(cell, servo=replace(cell.servo, table=((-10.0, 900.0), (-2.0, 660.0), (0.0, 600.0), (5.0, 400.0))))
+        return replace(
+            cell, servo=replace(cell.servo, table=((-10.0, 900.0), (-2.0, 660.0), (0.0, 600.0), (5.0, 400.0)))
+        )
     paper = Paper(origin_mm=(-30.0, -450.0, 12.5), rotation_deg=(1.0, -0.7, 10.0))
     return replace(cell, paper=paper)
 
@@ -76,17 +79,21 @@ WORKS = {
     "two lines": Work(lines("M20 25 L48 27", "M20 35 L50 33")),
     "a curve": Work(lines("M18 30 C28 10 42 10 52 32", "M20 40 C30 36 40 44 50 40", width="3")),
     "corners": Work(lines("M20 38 L34 14 L48 38", "M27 28 L42 28")),
-    "circles": Work(lines("M20 38 L34 16 L48 38", "M22 42 L44 42"), ("--compensation", "constant", "--lag", "4")),
+    "circles": Work(
+        lines("M20 38 L34 16 L48 38", "M22 42 L44 42"), ("--compensation", "constant", "--lag", "4")
+    ),
     "a dab and a hook": Work(lines("M25 20 L25 20", "M30 16 L44 16 L44 30", "M25 38 L32 38")),
     "askew": Work(lines("M20 25 L46 30", "M24 34 C34 30 40 40 48 36"), change=_turned),
     "leaning": Work(lines("M20 22 L46 30", "M24 34 L34 38 L48 33"), change=_leaning),
-    "paint": Work(
-        lines("M20 20 L44 22", "M22 30 L44 31").replace('#000"', '#ff0000"', 1), change=_painted
-    ),
+    "paint": Work(lines("M20 20 L44 22", "M22 30 L44 31").replace('#000"', '#ff0000"', 1), change=_painted),
     "higher, in another order": Work(
-        lines("M20 20 L30 20", "M50 40 L40 40", "M34 22 L46 22"), ("--z-offset", "0.3", "--order", "nearest"), change=_higher
+        lines("M20 20 L30 20", "M50 40 L40 40", "M34 22 L46 22"),
+        ("--z-offset", "0.3", "--order", "nearest"),
+        change=_higher,
     ),
-    "a plan, resumed": Work(lines("M20 20 L32 20", "M20 30 L34 28", "M20 40 L30 40"), ("--from-stroke", "2"), by_plan=True),
+    "a plan, resumed": Work(
+        lines("M20 20 L32 20", "M20 30 L34 28", "M20 40 L30 40"), ("--from-stroke", "2"), by_plan=True
+    ),
 }
 
 
@@ -123,7 +130,11 @@ def make(name: str, dialect: str, folder: Path) -> Made:
     svg = put(folder / "drawing.svg", work.svg)
     plan, program = folder / "plan.json", folder / f"program{suffix}"
     flags = work.flags
-    planned = [flag for k, flag in enumerate(flags) if not {"--z-offset", "--from-stroke"} & set(flags[max(0, k - 1) : k + 1])]
+    planned = [
+        flag
+        for k, flag in enumerate(flags)
+        if not {"--z-offset", "--from-stroke"} & set(flags[max(0, k - 1) : k + 1])
+    ]
     assert not (said := converted(svg, plan, "--cell", cell, *planned)), said
     source = plan if work.by_plan else svg
     assert not (said := converted(source, program, "--cell", cell, *flags)), said
@@ -131,4 +142,6 @@ def make(name: str, dialect: str, folder: Path) -> Made:
     brush = json.loads(plan.read_text())["brush"]
     job = job_for(cell_toml, plan.read_text(), brush, flags)
     whole = sound(text, job)
-    return Made(name, dialect, whole, folder / f"damaged{suffix}", (source, "--cell", cell, *work.check_flags))
+    return Made(
+        name, dialect, whole, folder / f"damaged{suffix}", (source, "--cell", cell, *work.check_flags)
+    )

@@ -1,0 +1,249 @@
+"""Limits of place hold along the way: strokes, ways between them, visits, circles, rises; in every command alike."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from programs import call
+
+from brushsvg import _core, limits
+from brushsvg.brushes import find_brush
+from brushsvg.cell import Reload, Station
+from brushsvg.cell_file import find_cell, read_cell, write_cell
+from brushsvg.errors import Error
+from brushsvg.jobs import border, paper_height
+from brushsvg.limits import astray, astray_between
+from brushsvg.program import forbidden
+from brushsvg.ways import ways
+
+BRUSH = find_brush("round-6")
+SHEET = (600.0, 200.0)
+BAR, PAIR = (
+    f'<svg xmlns="http://www.w3.org/2000/svg" width="600mm" height="200mm" viewBox="0 0 600 200">'
+    f'<path d="{d}" fill="none" stroke="#000" stroke-width="3" id="{name}"/>{more}</svg>'
+    for d, name, more in (
+        ("M40 100 H560", "bar", ""),
+        ("M20 100 H60", "left", '<path id="right" d="M540 100 h40" stroke="#000" stroke-width="3"/>'),
+    )
+)
+
+
+def robot(**workspace):
+    """A robot that stands in the middle of its paper."""
+    cell = find_cell("ur5e")
+    paper = replace(cell.paper, origin_mm=(-300.0, -100.0, 20.0), example=False)
+    limits = {"box_mm": (), "reach_mm": (), "margin_mm": 30.0, "tilt_limit_deg": 15.0} | workspace
+    return replace(cell, name="mine", paper=paper, workspace=replace(cell.workspace, **limits))
+
+
+RING = {"reach_mm": (150.0, 850.0)}
+POST = {"keep_out_mm": (((-40.0, -40.0, -50.0), (40.0, 40.0, 300.0)), ((0.0, 300.0, 0.0), (1.0, 301.0, 1.0)))}
+AWAY = r"the tool goes (?:0|20|16|40)\.\d mm away from the robot's origin, outside the range \[150, 850\] mm"
+KEPT = r"the tool goes through x \S+, y \S+, z \S+ mm, in box 1 that cell mine keeps it out of: x -40 to 40, "
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bar.svg").write_text(BAR)
+    (tmp_path / "pair.svg").write_text(PAIR)
+    (tmp_path / "free.toml").write_text(write_cell(robot()))
+    return tmp_path
+
+
+@pytest.mark.parametrize(("limits", "words"), [(RING, AWAY), (POST, KEPT)])
+@pytest.mark.parametrize(("name", "of_stroke"), [("bar", "bar: "), ("pair", "right: on the way there ")])
+def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, limits, words):
+    """Both ends were asked, and not the way; between strokes nothing was."""
+    (desk / "mine.toml").write_text(write_cell(robot(**limits)))
+    drawing, cell = f"{name}.svg", ("--cell", "mine.toml")
+    for command in ("convert", "border"):
+        program = f"{command}.script"
+        status, _, err = call(capsys, command, drawing, program, *cell)
+        told = of_stroke if command == "convert" else ""
+        assert status == 1 and re.search(f"{drawing}: {told}{words}", err[-1]), err
+        assert not (desk / program).exists()
+        assert call(capsys, command, drawing, program, "--cell", "free.toml")[0] == 0
+        status, _, err = call(capsys, "check", program, *cell)
+        assert status == 1 and any(re.search(told + words, line) for line in err), err
+
+
+def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes(desk, capsys):
+    """A clip between the first two lanes, lower than neither of them."""
+    clip = robot(keep_out_mm=(((-300.0, 90.0, 30.0), (-200.0, 92.0, 45.0)),))
+    (desk / "mine.toml").write_text(write_cell(clip))
+    height = ("height", "job.script", "--sheet", "600x200")
+    status, _, err = call(capsys, *height, "--cell", "mine.toml")
+    assert (
+        status == 1 and "on the way there the tool goes through" in err[0] and "y 91.0, z 40.0 mm" in err[0]
+    )
+    assert call(capsys, *height, "--cell", "free.toml")[0] == 0
+    status, _, err = call(capsys, "check", "job.script", "--cell", "mine.toml")
+    assert status == 1 and any("on the way there the tool goes through" in line for line in err)
+
+
+@pytest.mark.parametrize("language", ["linuxcnc-3axis", "ur5e"])
+@pytest.mark.parametrize(
+    ("box", "who"),
+    [
+        (((-6.0, 30.0, 5.0), (-4.0, 50.0, 100.0)), "s: on the way there the tool goes"),  # from the paint
+        (((-21.0, 39.0, -20.0), (-19.0, 41.0, -4.5)), "ink: the tool goes"),  # at the bottom of the vessel
+        (((-16.0, 39.0, -20.0), (-15.0, 41.0, 5.5)), "ink: the tool goes"),  # between the points of a wipe
+    ],
+)
+def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, capsys, language, box, who):
+    ink = Station(
+        "ink", (-20.0, 40.0), depth_mm=5.0, rim_mm=4.0, wipe_mm=((-18.0, 40.0, 5.0), (-12.0, 40.0, 5.0))
+    )
+    cell = find_cell(language)
+    cell = replace(
+        cell,
+        name="mine",
+        paper=replace(cell.paper, origin_mm=(0.0, 0.0, 0.0), example=False),
+        workspace=replace(find_cell().workspace, tilt_limit_deg=15.0),
+        stations=(ink,),
+        reload=Reload("stroke"),
+    )
+    (desk / "free.toml").write_text(write_cell(cell))
+    (desk / "mine.toml").write_text(
+        write_cell(replace(cell, workspace=replace(cell.workspace, keep_out_mm=(box,))))
+    )
+    (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M40 160 H90").replace('"bar"', '"s"'))
+    program = "s.script" if language == "ur5e" else "s.ngc"
+    status, _, err = call(capsys, "convert", "s.svg", program, "--cell", "mine.toml")
+    assert status == 1 and any(f"s.svg: {who}" in line for line in err), err
+    assert call(capsys, "convert", "s.svg", program, "--cell", "free.toml")[0] == 0
+    status, _, err = call(capsys, "check", program, "s.svg", "--cell", "mine.toml")
+    assert status == 1 and any(f"{program}: {who}" in line for line in err), err
+
+
+ROUND = np.array([(50, 30, -2), (50, -20, -2)], dtype=float)  # the lower one at the edge of a margin of 30 mm
+
+
+def plan_of(poses, arcs=(), name="a"):
+    return _core.Plan(BRUSH.name, "", SHEET, [_core.Pass(name, poses, 20.0, arcs=list(arcs))])
+
+
+@pytest.mark.parametrize(("turn", "words"), [(1, "x 25.0 mm"), (-1, "x 75.0 mm")])
+def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, words):
+    cell = find_cell()
+    boxed = replace(
+        cell, workspace=replace(cell.workspace, box_mm=((40.0, -50.0, -50.0), (60.0, 50.0, 50.0)))
+    )
+    arc = _core.Arc(0, 1, (50.0, 5.0), turn)
+    assert forbidden(plan_of(ROUND), BRUSH, boxed) == []
+    ((where, sentence),) = forbidden(plan_of(ROUND, [arc]), BRUSH, boxed)
+    assert where == "a" and sentence.startswith(f"the tool goes to {words}, outside the range [40, 60] mm")
+
+
+def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
+    """All of its poses lie within."""
+    poses = np.array([(40, -25, -2), (60, -25, -2)], dtype=float)
+    below = _core.Arc(0, 1, (50.0, -25.0), 1)
+    assert forbidden(plan_of(poses), BRUSH, find_cell()) == []
+    ((_, sentence),) = forbidden(plan_of(poses, [below]), BRUSH, find_cell())
+    assert "5.00 mm beyond the lower edge of the workspace" in sentence
+
+
+def test_a_rise_on_paper_that_leans_ends_below_the_box():
+    """The highest place over the sheet is asked for before anything; nothing is painted there."""
+    cell = find_cell()
+    leans = replace(
+        cell,
+        paper=replace(cell.paper, rotation_deg=(10.0, 0.0, 0.0)),
+        workspace=replace(
+            cell.workspace, tilt_limit_deg=15.0, box_mm=((-99.0, -99.0, -99.0), (700.0, 300.0, 40.0))
+        ),
+    )
+    low = plan_of(np.array([(50, 20, 0), (80, 20, -2)], dtype=float))
+    ((where, sentence),) = forbidden(low, BRUSH, leans)
+    assert (
+        where == ""
+        and "before the first move the tool goes to z 49.8 mm, outside the range [-99, 40]" in sentence
+    )
+
+
+def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
+    """The reach had no room for the rounding of a program, which check then refused."""
+    cell = replace(robot(), decimals=3)
+    (desk / "free.toml").write_text(write_cell(cell))
+    assert call(capsys, "convert", "bar.svg", "bar.json", "--cell", "free.toml")[0] == 0
+    poses = np.array(_core.read_plan((desk / "bar.json").read_text()).passes[0].poses_mm)
+    high = poses[[0, -1]] * (1, 1, 0) + (-300.0, -100.0, 20.0 + cell.heights.safe_mm)
+    poses += (-300.0, -100.0, 20.0)
+    far = float(np.linalg.norm(np.vstack([poses, high]), axis=1).max())
+    left, right = poses[:, 0].min(), poses[:, 0].max()
+    box = ((float(left), -200.0, -50.0), (float(right), 200.0, 20.0 + cell.heights.safe_mm))
+    exact = replace(cell.workspace, reach_mm=(0.0, far), box_mm=box)
+    (desk / "mine.toml").write_text(write_cell(replace(cell, workspace=exact)))
+    assert call(capsys, "convert", "bar.json", "bar.script", "--cell", "mine.toml")[0] == 0
+    status, _, err = call(capsys, "check", "bar.script", "bar.json", "--cell", "mine.toml")
+    assert (status, err) == (0, [])
+
+
+def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
+    near = robot(keep_out_mm=(((-10.0, 0.015, 0.0), (10.0, 50.0, 100.0)),))
+    path = ways([[(-100, 0, 50), (100, 0, 50)]])
+    assert near.blending.tolerance_mm == 0.01
+    assert len(astray(path, np.eye(4), near)) == 1
+    exact = replace(near, blending=replace(near.blending, tolerance_mm=0.005))
+    assert astray(path, np.eye(4), exact) == []
+
+
+def test_a_way_between_two_places_says_only_what_they_do_not():
+    cell = robot(**RING)
+    assert astray_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell) == [
+        "on the way there the tool goes 0.0 mm away from the robot's origin, outside the range [150, 850] mm of the "
+        "reach of cell mine"
+    ]
+    assert astray_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
+
+
+def test_a_number_tells_that_it_is_outside():
+    cell = robot(reach_mm=(150.0, 850.0))
+    (said,) = astray(ways([[(850.0004, 0, 0)]]), np.eye(4), cell)
+    assert "goes 850.0004 mm away" in said
+
+
+def test_boxes_to_keep_out_of_are_written_read_and_named(desk, capsys):
+    cell = robot(**POST)
+    assert read_cell(write_cell(cell)) == cell
+    (desk / "mine.toml").write_text(write_cell(cell))
+    assert "not in x -40 to 40, y -40 to 40, z -50 to 300 mm" in call(capsys, "cell", "show", "mine.toml")[1]
+    turned = robot(keep_out_mm=(((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ((0.0, 0.0, 5.0), (1.0, 1.0, 1.0))))
+    with pytest.raises(Error, match="box 2: the first corner must be the lower one") as refusal:
+        read_cell(write_cell(turned))
+    assert refusal.value.where == "workspace.keep_out_mm"
+
+
+def test_jobs_before_the_first_stroke_ask_their_whole_way():
+    cell = robot(keep_out_mm=(((-1.0, -200.0, 0.0), (1.0, 200.0, 300.0)),))
+    with pytest.raises(Error, match=r"the tool goes through x -?0\.0"):
+        border((20.0, 20.0, 580.0, 180.0), BRUSH, cell, SHEET)
+    assert len(list(border((20.0, 20.0, 280.0, 180.0), BRUSH, cell, SHEET).sections())) == 1
+    assert len(list(paper_height(BRUSH, cell, SHEET, 1.0, -1.0, 0.1).sections())) == 21
+
+
+def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
+    """Vessel and wipe lie beside it, and the tip, full of paint, went across at the height of the rim."""
+    ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-10.0, 40.0, 5.0), (-10.0, 80.0, 5.0)))
+    cell = replace(find_cell(), stations=(ink,), reload=Reload("stroke"))
+    assert forbidden(plan_of(ROUND), BRUSH, cell) == []
+    across = replace(ink, wipe_mm=((50.0, -10.0, 5.0), (80.0, -10.0, 5.0)))
+    found = forbidden(plan_of(ROUND), BRUSH, replace(cell, stations=(across,)))
+    assert found == [("ink", "its wipe goes over the sheet of 600 x 200 mm")]
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 10_000])
+def test_ways_are_asked_whichever_are_asked_together(monkeypatch, at_once):
+    """Strokes on both sides of the robot, each way from one side to the other through it."""
+    monkeypatch.setattr(limits, "MOVES_AT_ONCE", at_once)
+    sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
+    passes = [
+        _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0)
+        for k, x in enumerate(sides)
+    ]
+    told = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
+    assert [where for where, _ in told] == ["s2", "s4", "s5"]
+    assert all(sentence.startswith("on the way there") for _, sentence in told)

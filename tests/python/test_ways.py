@@ -1,0 +1,137 @@
+"""How far lines and circles reach, by formula, held against a thousand places on each, found in another way."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from brushsvg.blends import blend_radii, blended
+from brushsvg.cell import Blending
+from brushsvg.frame import frame_of_pose, moved
+from brushsvg.ways import bounds, from_origin, place_inside, ways, ways_in
+
+COUNT = 1500
+LENGTH = st.floats(-300, 300)
+POINT = st.tuples(LENGTH, LENGTH, LENGTH)
+ANGLE = st.floats(-180, 180)
+FRAME = st.builds(frame_of_pose, POINT, st.tuples(ANGLE, ANGLE, ANGLE))
+
+
+FLAT = st.just(0.0)
+
+
+@st.composite
+def circles(draw, rise=FLAT):
+    """(start, end, (x, y, turn)) and how far it turns [rad], which the formula has to find again."""
+    x, y, z = draw(POINT)
+    radius, first = draw(st.floats(0.5, 300)), draw(st.floats(-4, 4))
+    turn, sweep = draw(st.sampled_from([1, -1])), draw(st.floats(0.01, 6.2))
+    places = [complex(x, y) + cmath.rect(radius, angle) for angle in (first, first + turn * sweep)]
+    start, end = (
+        (place.real, place.imag, height) for place, height in zip(places, (z, z + draw(rise)), strict=True)
+    )
+    return start, end, (x, y, turn), sweep
+
+
+def sampled(circle) -> np.ndarray:
+    """Places along a circle: its start turned about its centre, step by step."""
+    start, end, (x, y, turn), sweep = circle
+    shares = np.linspace(0, 1, COUNT)
+    spoke = complex(start[0] - x, start[1] - y)
+    on = complex(x, y) + spoke * np.exp(1j * turn * sweep * shares)
+    return np.column_stack([on.real, on.imag, start[2] + (end[2] - start[2]) * shares])
+
+
+def both(frame, start, end, circle):
+    """A line and a circle, and places on them, in a frame."""
+    line = np.linspace(start, end, COUNT)
+    return (
+        ways_in(frame, ways([[start, end]], [circle[:3]])),
+        moved(frame, np.vstack([line, sampled(circle)])),
+        max(math.dist(start, end), np.linalg.norm(np.diff(sampled(circle), axis=0), axis=1).sum()) / COUNT,
+    )
+
+
+@given(FRAME, POINT, POINT, circles())
+def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start, end, circle):
+    some, places, step_mm = both(frame, start, end, circle)
+    low, high = bounds(some)
+    assert low == pytest.approx(places.min(axis=0), abs=step_mm) and (low <= places.min(axis=0) + 1e-9).all()
+    assert (
+        high == pytest.approx(places.max(axis=0), abs=step_mm) and (high >= places.max(axis=0) - 1e-9).all()
+    )
+    away = np.linalg.norm(places, axis=1)
+    nearest, farthest = from_origin(some)
+    assert nearest == pytest.approx(away.min(), abs=step_mm) and nearest <= away.min() + 1e-9
+    assert farthest == pytest.approx(away.max(), abs=step_mm) and farthest >= away.max() - 1e-9
+
+
+@given(FRAME, POINT, POINT, circles(), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
+def test_whoever_goes_through_a_box_is_found_there(frame, start, end, circle, corner, size):
+    low, high = np.array(corner), np.add(corner, size)
+    some, places, step_mm = both(frame, start, end, circle)
+    place = place_inside(some, low, high)
+    if ((places > low + 1e-9) & (places < high - 1e-9)).all(axis=1).any():
+        assert place is not None
+    if place is not None:
+        assert (place > low - 1e-9).all() and (place < high + 1e-9).all()
+        assert np.linalg.norm(places - place, axis=1).min() <= step_mm, "it lies on the way"
+
+
+@given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
+def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
+    """Only programs that were changed have one; all that circle and climb span is asked instead."""
+    some, places = ways_in(frame, ways([], [circle[:3]])), moved(frame, sampled(circle))
+    low, high = bounds(some)
+    assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
+    away = np.linalg.norm(places, axis=1)
+    assert from_origin(some)[0] <= away.min() + 1e-9 and from_origin(some)[1] >= away.max() - 1e-9
+    box = np.array(corner), np.add(corner, size)
+    if ((places > box[0]) & (places < box[1])).all(axis=1).any():
+        assert place_inside(some, *box) is not None
+
+
+def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
+    """As machines run it, and as no places of its ends tell."""
+    some = ways([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
+    low, high = bounds(some)
+    assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))
+    assert from_origin(some) == pytest.approx((math.hypot(4, 2), math.hypot(10, 2)))
+    assert place_inside(some, (3.9, -1, -3), (4.1, 1, -1)) == pytest.approx([4, 0, -2], abs=0.2)
+
+
+def test_ways_that_stay_in_a_place_or_run_along_a_side():
+    box = (0, 0, 0), (10, 10, 10)
+    assert place_inside(ways([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
+    assert place_inside(ways([[(5, 5, 15)]]), *box) is None
+    assert place_inside(ways([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, "along a side is not inside"
+    assert place_inside(ways([[(-5, 5, 9.9), (15, 5, 9.9)]]), *box) == pytest.approx([5, 5, 9.9])
+    assert place_inside(ways([]), *box) is None
+
+
+@given(st.floats(0.05, 3.0), st.floats(5, 200), st.floats(5, 200), st.floats(1e-3, 2))
+def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, after_mm, tolerance_mm):
+    """What the limits allow for: no place of the triangle of a joint is farther from the two moves."""
+    path = np.array(
+        [(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)]
+    )
+    radii = blend_radii(path, Blending(tolerance_mm))
+    cut = blended(path, radii)[0]
+    if len(cut) < 5:
+        return
+    third_side = np.linspace(cut[1], cut[3], 101)
+    starts, ends = path[:-1], path[1:]
+    along = ends - starts
+    for place in third_side:
+        share = np.clip(((place - starts) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
+        away = np.linalg.norm(place - (starts + share[:, None] * along), axis=1).min()
+        assert away <= 2 * tolerance_mm + 1e-9
+
+
+def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
+    half = ways([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
+    assert place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
+    assert place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
