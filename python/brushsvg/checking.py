@@ -226,14 +226,16 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
     steps = [section.steps[number] for number in owner]
     is_end = np.r_[np.diff(owner) != 0, True]
     radii = np.where(is_end, [step.blend_mm for step in steps], 0.0)
-    speeds = [step.speed_mm_s for step in steps[1:] or steps]
-    speed = max((speed for speed in speeds if np.isfinite(speed)), default=0.0)
+    speeds = [step.speed_mm_s for step in steps[1:] or steps if np.isfinite(step.speed_mm_s)]
+    # a stroke is landed no faster than it is painted
+    landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
+    speed = max(speeds, default=0.0)
     # on paper that leans straight down is straight down only up to rounding: the slower feed tells what was meant
     sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
     slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
     for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
         poses[k + 1, :2] = poses[k, :2]
-    return poses, radii, speed, _arcs(owner, track.centres)
+    return poses, radii, max(speed, landed_mm_s), _arcs(owner, track.centres)
 
 
 def _arcs(owner: np.ndarray, centres: list) -> list:

@@ -87,7 +87,7 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
             away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
             problems.append((a_pass.stroke, f"line {lines[owner[at]]}: {_astray(away_mm, limit_mm)}"))
     is_dab = not np.ptp(meant.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
-    if abs(a_pass.speed_mm_s - meant.speed_mm_s) > 0.1 and not is_dab:
+    if a_pass.speed_mm_s > meant.speed_mm_s + 0.1 and not is_dab:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
         problems.append((a_pass.stroke, f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"))
     return problems

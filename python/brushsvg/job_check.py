@@ -34,7 +34,7 @@ def look_at_border(
     header = border_header(made.title, brush.name, made.strokes, sheet_mm, notes, made.border_mm, again, job)
     again = replace(again, header=header)
     sections = [*walked(read, brush, cell, sheet_mm, z_offset_mm)]
-    return _looked(text, again, sections, cell, cell.heights.safe_mm, "safe height")
+    return _looked(text, read, again, sections, cell, cell.heights.safe_mm, "safe height")
 
 
 def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) -> Looked:
@@ -47,10 +47,12 @@ def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) ->
     again = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
     again = replace(again, header=height_header(brush.name, sheet_mm, made.heights_mm, again))
     sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
-    return _looked(text, again, sections, cell, lowest_mm, "height of the lowest stroke")
+    return _looked(text, read, again, sections, cell, lowest_mm, "height of the lowest stroke")
 
 
-def _looked(text: str, again: Program, sections, cell: Cell, lowest_mm: float, what: str) -> Looked:
+def _looked(
+    text: str, read: Readback, again: Program, sections, cell: Cell, lowest_mm: float, what: str
+) -> Looked:
     problems: Problems = []
     for section, track, said in sections:
         problems += [(section.title, sentence) for sentence in said]
@@ -63,6 +65,6 @@ def _looked(text: str, again: Program, sections, cell: Cell, lowest_mm: float, w
                     f"line {line}: height {height_mm:.2f} mm is below the {what}, {lowest_mm:g} mm",
                 )
             )
-    if changed := differing_line(text, again, cell):
+    if changed := differing_line(text, read, again, cell):
         problems.append(("", changed))
     return Looked(problems, duration_s(again))

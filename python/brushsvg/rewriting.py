@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -15,19 +16,32 @@ from .machine import header_of, text_of
 from .moves import Program
 from .posts import POSTS
 from .program import Job, unchecked_program
+from .readback import Act, Readback, read_program
 
 
 def again(
-    ran: Ran, brush, cell: Cell, z_offset_mm: float, first_stroke: int = 1, told: Told | None = None
+    ran: Ran,
+    brush,
+    cell: Cell,
+    z_offset_mm: float,
+    first_stroke: int = 1,
+    told: Told | None = None,
+    speeds_mm_s: list[float] | None = None,
 ) -> Program | None:
     """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch. Without
-    a header, unless its words are told."""
+    a header, unless its words are told. speeds_mm_s: of the strokes, where it is known how they were meant.
+    """
     if not ran.visits or len(ran.visits) != len(ran.plan.passes):
         return None
     before = first_stroke - 1
     passes = ran.plan.passes
     if cell.servo:
         passes = [_without(*each) for each in zip(passes, ran.lines, strict=True)]
+    if speeds_mm_s:
+        passes = [
+            _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs)
+            for each, speed in zip(passes, speeds_mm_s, strict=True)
+        ]
     plan = SimpleNamespace(sheet_mm=ran.plan.sheet_mm, passes=[None] * before + list(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
     made = unchecked_program(plan, brush, cell, (), job)
@@ -55,28 +69,62 @@ def _without(a_pass, lines: np.ndarray):
     return _core.Pass(a_pass.stroke, poses[~inner], a_pass.speed_mm_s)
 
 
-def differing_line(text: str, program: Program, cell: Cell) -> str | None:
-    """A sentence on the first line that brushsvg would write otherwise for the same poses; None where there is none.
+def differing_line(
+    text: str, read: Readback, program: Program, cell: Cell, knows_speeds: bool = True
+) -> str | None:
+    """A sentence on the first line that does something else than what brushsvg would write; None where there is none.
 
-    Numbers may differ by what rounding twice does to the last digit, time and length in the header by a little more.
-    Of a servo's ways, whose heights were rounded to whole values, only the ends are looked at.
+    However the numbers are written, places may be off by what a brush does not show, feeds may be lower, and what does
+    nothing may be missing or stand twice. Of a servo's ways in paint, whose heights were rounded to whole values, only
+    the ends are looked at. knows_speeds: those of the program are what was meant, not what was read.
     """
-    ours, theirs = _body(text), _body("".join(text_of(POSTS[cell.language], program)))
+    theirs_text = "".join(text_of(POSTS[cell.language], program))
+    again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
+    circles = any(act.kind == "circle" for act in again.acts)
+    if lost := sorted(again.modes - read.modes - ({"G80"} if circles else {"G80", "G17", "G91.1"})):
+        return f"{lost[0]} is missing before the first move"
+    ours, theirs = read.acts, again.acts
     if cell.servo:
         ours, theirs = _folded(ours), _folded(theirs)
-    for k in range(max(len(ours), len(theirs))):
-        number, line = ours[k] if k < len(ours) else (0, "")
-        expected = theirs[k][1] if k < len(theirs) else ""
-        if line != expected and not _alike(line, expected, LIFTS_S if cell.servo else 0.0):
-            if not line:
-                return f"the line {expected.strip()[:60]!r} is missing at the end"
-            same = next(
-                (n for n, (a, b) in enumerate(zip(line, expected, strict=False)) if a != b), len(line)
-            )
-            found, wanted = _near(line, same), _near(expected, same)
-            instead = f"brushsvg would write {wanted!r}" if expected else "nothing should follow"
-            return f"line {number}: {found!r}: for these strokes and this cell {instead}"
+    like = _Alike(cell, knows_speeds)
+    here: tuple = ()
+    i, k = 0, 0
+    while i < len(ours) or k < len(theirs):
+        a = ours[i] if i < len(ours) else None
+        b = theirs[k] if k < len(theirs) else None
+        if a and b and like.is_same(a, b):
+            i, k, here = i + 1, k + 1, a.place or here
+        elif a and like.is_idle(a, ours[i - 1] if i else None, here):
+            i += 1
+        elif b and like.is_idle(b, theirs[k - 1] if k else None, here):
+            k += 1
+        elif a and b and like.is_on_the_way(a, here, b) and like.is_slow(a, b):
+            i, here = i + 1, a.place
+        elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b):
+            k += 1
+        else:
+            return _differs(text.splitlines(), theirs_text.splitlines(), a, b, like)
     return None
+
+
+def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, like: _Alike) -> str:
+    line, expected = (lines[act.line - 1] if act else "" for lines, act in ((ours, a), (theirs, b)))
+    if not a:
+        return f"the line {expected.strip()[:60]!r} is missing at the end"
+    if (
+        b
+        and a.at_most
+        and b.at_most
+        and not like.is_slow(a, b)
+        and math.isfinite(a.at_most[0])
+        and like.is_same(a._replace(at_most=b.at_most), b)
+    ):
+        speeds = f"runs at {a.at_most[0]:.1f} mm/s: for these strokes and this cell brushsvg would write"
+        return f"line {a.line}: {line.strip()[:60]!r} {speeds} {b.at_most[0]:.1f} mm/s"
+    at = next((n for n, (x, y) in enumerate(zip(line, expected, strict=False)) if x != y), len(line))
+    found, wanted = _near(line, at), _near(expected, at)
+    instead = f"brushsvg would write {wanted!r}" if b else "nothing should follow"
+    return f"line {a.line}: {found!r}: for these strokes and this cell {instead}"
 
 
 def _near(line: str, place: int) -> str:
@@ -85,88 +133,134 @@ def _near(line: str, place: int) -> str:
     return ("..." if first else "") + line.strip()[first : first + 60]
 
 
-def _body(text: str) -> list[tuple[int, str]]:
-    return [(number, line) for number, line in enumerate(text.splitlines(), 1) if line]
-
-
-_FEED = re.compile(r"F\d+\.\d")
-_WAY = re.compile(r"(G1 X\S+ Y\S+) S(\d+)")
-_LIFT = re.compile(r"M3 S(\d+)|G4 P(\d+\.\d+)")
-LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits
-
-
-def _folded(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """A servo's lines: ways that follow each other as the last one, lifts one way with their waits as the last with the
-    sum. Of feeds those that something is run with; ways to where the tool is are none."""
-    out: list[tuple[int, str]] = []
-    last, value, rises, waited_s, here, feed, told_feed = "", 0, 0, 0.0, "", None, ""
-    for number, line in lines:
-        if _FEED.fullmatch(line):
-            feed = (number, line) if line != told_feed else None
-            continue
-        way, lift = _WAY.fullmatch(line), _LIFT.fullmatch(line)
-        if way and (way[1], int(way[2])) == (here, value):
-            continue
-        if feed:
-            out.append(feed)
-            last, told_feed, feed = "", feed[1], None
-        kind, told = "", line
-        if way:
-            kind, told, here, value = "way", way[1], way[1], int(way[2])
-        elif lift:
-            kind = "lift"
-            change = int(lift[1]) - value if lift[1] else 0
-            if last != kind or change * rises < 0:
-                last, rises, waited_s = "", 0, 0.0
-            value, rises, waited_s = value + change, change or rises, waited_s + float(lift[2] or 0)
-            told = f"M3 S{value} G4 P{waited_s:.3f}"
-        if kind and kind == last:
-            out[-1] = (out[-1][0], told)
-        else:
-            out.append((number, told))
-        last = kind
+def _folded(acts: list[Act]) -> list[Act]:
+    """A servo's acts: ways in paint that follow each other as the last one, lifts one way with their waits as the last
+    with the sum."""
+    out: list[Act] = []
+    value, rises, place = 0.0, 0.0, ()
+    up = next((act.same[0] for act in acts if act.kind == "lift"), None)
+    for act in acts:
+        last = out[-1] if out else None
+        if act.kind == "way":
+            if (act.place, act.same[0]) == (place, value):
+                continue
+            value, place = act.same[0], act.place
+            if last and last.kind == "way" and up not in (value, last.same[0]):
+                out[-1] = act._replace(at_most=(max(act.at_most[0], last.at_most[0]),))
+                continue
+        elif act.kind in ("lift", "wait"):
+            change = act.same[0] - value if act.kind == "lift" else 0.0
+            waited_s = 0.0 if act.kind == "lift" else act.same[0]
+            value += change
+            if last and last.kind == "lift" and change * rises >= 0:
+                rises = change or rises
+                out[-1] = act._replace(kind="lift", same=(value, last.same[1] + waited_s))
+                continue
+            rises = change
+            act = act._replace(kind="lift", same=(value, waited_s))
+        out.append(act)
     return out
 
 
-_NUMBER = re.compile(r"([A-Z]|\br=)?(-?\d+(?:\.\d+)?)")
-# what rounded poses make of a blend, which hangs on the angle between two moves: metres, or a part of it; and the part
-# for each metre of rounding, where few decimals turn moves of a millimetre by more than such an angle
-LEAST_BLEND_M, BLENDS, BLENDS_PER_M = 1e-5, 0.05, 2e5
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, and the last digit of what is written
+WAITS_S = 0.0031
+LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits, and which part of it
+FASTER = 0.011  # mm/s, of what is written in steps of 0.01
+# what rounded poses make of a blend, which hangs on the angle between two moves: mm, or a part of it; and the part for
+# each mm of rounding, where few decimals turn moves of a millimetre by more than such an angle
+LEAST_BLEND_MM, BLENDS, BLENDS_PER_MM = 1e-2, 0.05, 2e2
+
+
+class _Alike:
+    """Whether one act does what another does, on a machine."""
+
+    def __init__(self, cell: Cell, knows_speeds: bool):
+        self.near_mm = max(NEAR_MM, 3.1 * 10.0**-cell.decimals)
+        self.blends = max(BLENDS, BLENDS_PER_MM * 10.0**-cell.decimals)
+        self.is_servo, self.knows_speeds = bool(cell.servo), knows_speeds
+
+    def is_same(self, a: Act, b: Act) -> bool:
+        if a.kind != b.kind or not self._is_near(a.place, b.place) or not self.is_slow(a, b):
+            return False
+        if a.kind == "text":
+            return a.text == b.text or self._says_same(a.text, b.text)
+        return a.text == b.text and all(
+            found == wanted or abs(found - wanted) <= slack
+            for found, wanted, slack in zip(a.same, b.same, self._slacks(b), strict=True)
+        )
+
+    def is_slow(self, a: Act, b: Act) -> bool:
+        """No faster than another, which may be rapid."""
+        return len(a.at_most) == len(b.at_most) and all(
+            found <= most + FASTER for found, most in zip(a.at_most, b.at_most, strict=True)
+        )
+
+    def is_idle(self, act: Act, before: Act | None, here: tuple) -> bool:
+        """Goes to where the tool is, or sets again what was just set."""
+        if act.kind == "move":
+            return act.place == here and (act.text != "movep" or act.same == (0.0,))
+        again = before is not None and act.kind == "text" and act.text == before.text
+        return again and act.text.startswith(("set_tcp", "paper ="))
+
+    def is_on_the_way(self, act: Act, here: tuple, to: Act) -> bool:
+        """Whether a straight move ends on another one that begins here: with or without it, the way is the same."""
+        if {act.kind, to.kind} != {"move"} or act.text != to.text or act.same != to.same or not here:
+            return False
+        start, point, end = (np.array(place) for place in (here, act.place, to.place))
+        if not np.isfinite([start, point, end]).all():
+            return False
+        way = end - start
+        length = np.linalg.norm(way)
+        if length < self.near_mm:
+            return False
+        along = (point - start) @ way / length
+        off = np.linalg.norm(point - start - along * way / length)
+        return bool(0 <= along <= length and off <= self.near_mm / 2)
+
+    def _is_near(self, found: tuple, wanted: tuple) -> bool:
+        """Places that were never named are the same."""
+        return len(found) == len(wanted) and all(
+            abs(x - y) <= self.near_mm or (math.isnan(x) and math.isnan(y))
+            for x, y in zip(found, wanted, strict=True)
+        )
+
+    def _slacks(self, act: Act) -> tuple:
+        if act.kind == "wait":
+            return (WAITS_S,)
+        if act.kind == "lift":
+            return (1, max(LIFTS_S, LIFTS_S * act.same[1]))
+        if act.kind == "way":
+            return (1,)
+        if act.kind == "circle":
+            return (self.near_mm,) * len(act.same)
+        return (max(LEAST_BLEND_MM, self.blends * act.same[0]) if act.text == "movep" else 1e-4,)
+
+    def _says_same(self, found: str, wanted: str) -> bool:
+        """Time and length in a header, and the numbers of a statement."""
+        if (about := _ABOUT.fullmatch(found)) and (asked := _ABOUT.fullmatch(wanted)):
+            return _nearly(about, asked, 0.25 if self.is_servo else 0.01, self.knows_speeds)
+        if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
+            return False
+        return all(
+            abs(float(x) - float(y)) <= 3.1 * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
+            for x, y in zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True)
+        )
 
 
 _ABOUT = re.compile(
-    r"(\(|  # )(?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)?"
+    r"\((?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)"
 )
 
 
-def _alike(line: str, expected: str, waits_s: float) -> bool:
-    if (about := _ABOUT.fullmatch(line)) and (asked := _ABOUT.fullmatch(expected)):
-        return _nearly(about, asked, 0.05 if waits_s else 0.01)
-    if _NUMBER.sub(r"\g<1>0", line) != _NUMBER.sub(r"\g<1>0", expected):
-        return False
-    for (letter, found), (_, wanted) in zip(_NUMBER.findall(line), _NUMBER.findall(expected), strict=True):
-        decimals = len(wanted.partition(".")[2])
-        if decimals:
-            slack = 3.1 * 10.0**-decimals
-            if letter == "P" and waits_s:
-                slack = max(slack, waits_s, waits_s * float(wanted))
-            elif letter == "r=":
-                slack = max(LEAST_BLEND_M, max(BLENDS, BLENDS_PER_M * 10.0**-decimals) * float(wanted))
-        else:
-            slack = letter == "S"  # a servo's values; codes and numbers of strokes are what they are
-        if re.match(r"-?0\d", found):
-            return False
-        if len(found.partition(".")[2]) != decimals or abs(float(found) - float(wanted)) > slack:
-            return False
-    return True
-
-
-def _nearly(found: re.Match, asked: re.Match, part: float) -> bool:
-    """Whether two times, or two lengths, are the same up to a part of them and two of their last unit."""
-    if (found[1], found[5] is None) != (asked[1], asked[5] is None):
+def _nearly(found: re.Match, asked: re.Match, part: float, knows_speeds: bool) -> bool:
+    """Whether two times, or two lengths, are the same up to a part of them and two of their last unit; a time may be
+    shorter than what is read, where feeds may have been lowered."""
+    if (found[4] is None) != (asked[4] is None):
         return False
     seconds = [
-        sum(int(each[k] or 0) * unit for k, unit in ((2, 3600), (3, 60), (4, 1))) for each in (found, asked)
+        sum(int(each[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1))) for each in (found, asked)
     ]
-    value, wanted = (int(found[5]), int(asked[5])) if asked[5] else seconds
-    return abs(value - wanted) <= max(60 if asked[2] else 2, part * wanted)
+    value, wanted = (int(found[4]), int(asked[4])) if asked[4] else seconds
+    slack = max(60 if asked[1] else 5 if part > 0.1 else 2, part * wanted)
+    return value <= wanted + slack and (value >= wanted - slack or not (asked[4] or knows_speeds))

@@ -38,8 +38,9 @@ def found_by_check(poses, arcs, cell):
     a_pass = _core.Pass("one", np.array(poses), 20.0, arcs=arcs)
     made = unchecked_program(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass]), BRUSH, cell)
     text = "".join(text_of(POSTS[cell.language], made))
-    ran = checking.run(read_program(text, LANGUAGES[cell.name], cell), BRUSH, cell, SHEET_MM)
-    return text, rewriting.differing_line(text, rewriting.again(ran, BRUSH, cell, 0.0), cell)
+    read = read_program(text, LANGUAGES[cell.name], cell)
+    ran = checking.run(read, BRUSH, cell, SHEET_MM)
+    return text, rewriting.differing_line(text, read, rewriting.again(ran, BRUSH, cell, 0.0), cell)
 
 
 # a chord of 0.7 mm on a circle of 14 mm between lines, as a turn that fills a corner ends

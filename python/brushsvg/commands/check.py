@@ -47,19 +47,20 @@ def check_file(args) -> None:
             raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
         ran = checking.run(read, brush, cell, sheet_mm, z_offset_mm)
         problems = ran.problems + checking.misnumbered(read, made.first_stroke, made.strokes)
-        told = rewriting.Told(*_told_by(made, work))
-        again = rewriting.again(ran, brush, cell, z_offset_mm, made.first_stroke, told)
-        changed = again and rewriting.differing_line(text, again, cell)
-        problems = problems + ([("", changed)] if changed else [])
-        strokes, drawn = None, None
+        strokes, drawn, speeds = None, None, None
         if work:
             loads = convert.in_loads(work, cell).plan
             which, unlike = comparing.with_plan(ran, loads, cell, made.first_stroke)
             problems = problems + unlike
+            speeds = None if None in which else [loads.passes[k].speed_mm_s for k in which]
             if work.strokes is not None:
                 whole = convert.whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
                 drawn = work.strokes if made.first_stroke == 1 else None
+        told = rewriting.Told(*_told_by(made, work))
+        again = rewriting.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
+        changed = again and rewriting.differing_line(text, read, again, cell, speeds is not None)
+        problems = problems + ([("", changed)] if changed else [])
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
             outlined = convert.outlined(ran.marks, brush, stage)

@@ -32,6 +32,22 @@ class Step(NamedTuple):
     via: tuple = ()
 
 
+class Act(NamedTuple):
+    """What a line of a program does or says, however it is written.
+
+    line: of the file, from 1; kind: move, circle, way (a servo's move), lift (of a servo), wait or text, which says
+    something, or is a statement; place: where it goes [mm]; at_most: its speed [mm/s] and acceleration [mm/s^2], where
+    it tells them; same: other numbers. Of a rapid move the speed is inf.
+    """
+
+    line: int
+    kind: str
+    text: str = ""
+    place: tuple = ()
+    at_most: tuple = ()
+    same: tuple = ()
+
+
 @dataclass
 class ReadSection:
     """What stands under one of our comments, in a line of the file, from 1."""
@@ -43,7 +59,8 @@ class ReadSection:
 
 @dataclass
 class Readback:
-    """joint_mm: how far every corner may be cut.
+    """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
+    it first moves.
 
     in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
     """
@@ -52,6 +69,8 @@ class Readback:
     joint_mm: float = 0.0
     in_paper_frame: bool = False
     paper: tuple[float, ...] = ()
+    acts: list[Act] = field(default_factory=list)
+    modes: frozenset[str] = frozenset()
 
     def section(self) -> ReadSection:
         """The one being read."""
@@ -65,6 +84,8 @@ class Readback:
             raise Error(f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on")
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
+        if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks
+            self.acts.append(Act(number, "text", f"({text})"))
 
 
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:

@@ -7,14 +7,17 @@ import re
 
 from ..cell import Cell, value_mm
 from ..errors import Error
+from ..posts.gcode import comment, grbl_comment
 from ..posts.gcode_servo import SERVO_END, height_at
-from . import Readback, Step
+from . import Act, Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
-_CODE = re.compile(r"(?:[A-Z]-?\d+(?:\.\d+)?(?: |$))+")
-_WORD = re.compile(r"([A-Z])(-?\d+(?:\.\d+)?)")
+_CODE = re.compile(r"(?:[A-Z]-?\d+(?:\.\d*)?(?: |$))+")
+_WORD = re.compile(r"([A-Z])(-?\d+(?:\.\d*)?)")
+WAYS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF"}  # and the words that they may have
 MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61"}
 ALONE = {"G0", "G1", "G2", "G3", "G4", "G64", "G61", "M0", "M2", "M3"}  # no other word of command beside them
+ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
@@ -26,6 +29,12 @@ def read_gcode(text: str, cell: Cell) -> Readback:
 class _Reader:
     def __init__(self, cell: Cell):
         self.out = Readback()
+        self.comment = comment if cell.language == "linuxcnc" else grbl_comment
+        self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
+        self.words |= {"G4": "P", "G64": "P", "": "F"} | ({"M3": "S", "G1": "XYSF"} if cell.servo else {})
+        self.motion = ""
+        self.value = math.nan  # of the servo
+        self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
         # between two values, and two parts of a way, no more than this is written at once
         self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
@@ -40,11 +49,11 @@ class _Reader:
 
     def read(self, text: str) -> Readback:
         for number, line in enumerate(text.splitlines(), 1):
-            if self.servo and line == f"({SERVO_END})":
-                self.ended = True
-            elif comment := _COMMENT.fullmatch(line):
-                self.out.comment(number, comment[1])
-                self.lift = None  # what is waited for belongs to another section
+            if line and self.ended:
+                raise Error(f"line {number}: {line[:40]!r} stands behind the end of the program")
+            if said := _COMMENT.fullmatch(line):
+                self._comment(number, line, said[1])
+                self.ended = bool(self.servo) and said[1] == SERVO_END
             elif line:
                 self._line(number, line)
         for mode, meaning in NEEDED.items():
@@ -56,57 +65,101 @@ class _Reader:
         return self.out
 
     def _line(self, number: int, line: str) -> None:
-        if self.ended:
-            raise Error(f"line {number}: {line[:40]!r} stands behind the end of the program")
         if not _CODE.fullmatch(line):
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
-        words = [(letter, value) for letter, value in _WORD.findall(line)]
-        codes = [letter + value for letter, value in words if letter in "GM"]
-        if len(codes) > 1 and (set(codes) & ALONE):
+        words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
+        codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
+        if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= ALONE | MODES | set(NEEDED):
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
-        values = {letter: float(value) for letter, value in words if letter not in "GM"}
-        if len(values) + len(codes) != len(words) or not set(values) <= set("XYZIJFPS"):
+        values = {letter: value for letter, value in words if letter not in "GM"}
+        first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
+        if first not in self.words:
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+        if len(values) + len(set(codes)) != len(words) or not set(values) <= set(self.words[first]):
             raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
-        if codes[:1] != ["G4"]:
+        if first != "G4":
             self.lift = None
-        if not codes or codes[0] in ("G0", "G1", "G2", "G3"):
-            self._move(number, line, codes, values)
-        elif codes[0] == "G64":
+        if first in WAYS or not first:
+            self._move(number, line, first, values)
+        elif first == "G64":
             self.out.joint_mm = values.get("P", math.inf)
-        elif codes[0] == "M3" and self.servo:
+            self.seen -= {mode for mode in self.seen if mode.startswith("G64")}
+            codes = [f"G64 P{self.out.joint_mm:g}"]
+        elif first == "M3":
             self._lift(number, values)
-        elif codes[0] == "G4" and self.lift:
-            self._waited(values.get("P", 0.0))
-        elif codes[0] == "M2":
-            self.ended = True
-        elif not set(codes) <= MODES | set(NEEDED) | {"M0", "G4"}:
-            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+        elif first == "G4":
+            self._wait(number, line, values.get("P", -1.0))
+        elif first in ("M0", "M2"):
+            self.out.acts.append(Act(number, "text", first))
+            self.ended = first == "M2"
+        if "G61" in codes:
+            self.out.joint_mm = 0.0
+        if "G80" in codes:
+            self.motion = ""
         self.seen |= set(codes)
 
-    def _move(self, number: int, line: str, codes: list[str], values: dict[str, float]) -> None:
+    def _comment(self, number: int, line: str, said: str) -> None:
+        """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
+        if (plain := self.comment(said).rstrip("\n")) != line:
+            raise Error(f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}")
+        sections = len(self.out.sections)
+        self.out.comment(number, said)
+        if len(self.out.sections) > sections:
+            self.lift = None  # what is waited for belongs to another section
+
+    def _wait(self, number: int, line: str, seconds: float) -> None:
+        if seconds < 0:
+            raise Error(f"line {number}: {line[:40]!r} does not say how long")
+        self.out.acts.append(Act(number, "wait", same=(seconds,)))
+        if self.lift:
+            self._waited(seconds)
+
+    def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
             self.feed_mm_s = values["F"] / 60
-        places = {axis: values[axis] for axis in "XYZ" if axis in values}
-        if not codes:
-            if places:
+        if not code:
+            if set(values) - {"F"}:
                 raise Error(f"line {number}: {line[:40]!r} does not say how to go there")
             return
+        self.motion = code
+        places = {axis: values[axis] for axis in "XYZ" if axis in values}
+        if not places and "S" not in values:
+            return
+        if not self.out.modes:
+            self.out.modes = frozenset(self.seen)
         if self.servo and "S" in values:
+            self.value = values["S"]
             places["Z"] = self._height(number, values["S"])
             # the value takes effect with the move: the lift first, then the way at that height
             change_mm = abs(places["Z"] - self.at["Z"])
             if change_mm > 1e-9:
                 speed = math.inf if change_mm > self.jump_mm else None
-                self._go(number, codes[0] == "G0", {"Z": places["Z"]}, None, speed)
+                self._go(number, False, {"Z": places["Z"]}, None, speed)
         centre = None
-        if codes[0] in ("G2", "G3"):
+        if code in ("G2", "G3"):
             if not {"X", "Y", "I", "J"} <= set(values) or math.isnan(self.at["X"]):
                 raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre")
-            turn = 1 if codes[0] == "G3" else -1
+            turn = 1 if code == "G3" else -1
             centre = (self.at["X"] + values["I"], self.at["Y"] + values["J"], turn)
-        if codes[0] != "G0" and not self.feed_mm_s > 0:
+            radii = [
+                math.dist(centre[:2], end)
+                for end in ((self.at["X"], self.at["Y"]), (values["X"], values["Y"]))
+            ]
+            if abs(radii[0] - radii[1]) > max(ROUND_MM, 4 * self.unit_mm):
+                raise Error(
+                    f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre"
+                )
+        if code != "G0" and not self.feed_mm_s > 0:
             raise Error(f"line {number}: {line[:40]!r} has no feed")
-        self._go(number, codes[0] == "G0", places, centre)
+        self._go(number, code == "G0", places, centre)
+        x, y, z = self.at.values()
+        speed = math.inf if code == "G0" else self.feed_mm_s
+        if self.servo:
+            self.out.acts.append(Act(number, "way", "", (x, y), (speed,), (self.value,)))
+        elif centre:
+            self.out.acts.append(Act(number, "circle", code, (x, y, z), (speed,), centre[:2]))
+        else:
+            self.out.acts.append(Act(number, "move", "", (x, y, z), (speed,), (self.out.joint_mm,)))
 
     def _go(self, number: int, rapid: bool, places: dict[str, float], centre, speed=None) -> None:
         self.at |= places
@@ -116,10 +169,15 @@ class _Reader:
         self.out.section().steps.append(step)
 
     def _lift(self, number: int, values: dict[str, float]) -> None:
-        """At once, if nothing is waited for afterwards."""
-        before, height = self.at["Z"], self._height(number, values.get("S", math.nan))
+        """At once, if nothing is waited for afterwards, or too far for one step."""
+        self.value = values.get("S", self.value)
+        if not self.out.modes:
+            self.out.modes = frozenset(self.seen)
+        before, height = self.at["Z"], self._height(number, self.value)
         self._go(number, False, {"Z": height}, None, math.inf)
-        self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
+        self.out.acts.append(Act(number, "lift", same=(self.value,)))
+        if not abs(height - before) > self.jump_mm:
+            self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
 
     def _waited(self, seconds: float) -> None:
         """So long after the lift alone: as fast as the feed says, or faster where that is too short."""

@@ -7,44 +7,57 @@ import re
 import numpy as np
 
 from ..errors import Error
-from . import Readback, Step
+from . import Act, Readback, Step
 
 _N = r"-?\d+\.\d+"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
-_MOVE = re.compile(rf"  (movel|movep)\({_POINT}, a={_N}, v=({_N})(?:, r=({_N}))?\)")
-_CIRCLE = re.compile(rf"  movec\({_POINT}, {_POINT}, a={_N}, v=({_N}), r=0\.0, mode=1\)")
-_PAPER = re.compile(rf"  paper = p\[({_N}(?:, {_N}){{5}})\]")
+_MOVE = re.compile(rf"(movel|movep)\({_POINT}, a=({_N}), v=({_N})(?:, r=({_N}))?\)")
+_CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=0\.0+, mode=1\)")
+_PAPER = re.compile(rf"paper = p\[({_N}(?:, {_N}){{5}})\]")
+_SLEEP = re.compile(rf"sleep\(({_N})\)")
+_RISE = re.compile(
+    rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\)), "
+    rf"a=({_N}), v=({_N})\)"
+)
 _OTHER = re.compile(  # the frame around the moves
-    rf"def brushsvg\(\):|end|brushsvg\(\)|  set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|  def on_paper\(x, y, z\):"
-    rf"|    return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)|  end"
-    r"|  here = pose_trans\(pose_inv\(paper\), get_actual_tcp_pose\(\)\)"
-    rf"|  if here\[2\] < {_N}:"
-    rf"|    movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\), "
-    rf"a={_N}, v={_N}\)"
-    rf"|  sleep\({_N}\)"
-    r'|  popup\("[^"\\]*", "brushsvg", False, False, blocking=True\)'
+    rf"def brushsvg\(\):|end|brushsvg\(\)|set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|def on_paper\(x, y, z\):"
+    rf"|return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)"
+    r"|here = pose_trans\(pose_inv\(paper\), get_actual_tcp_pose\(\)\)"
+    rf"|if here\[2\] < {_N}:"
+    r'|popup\("[^"\\]*", "brushsvg", False, False, blocking=True\)'
 )
 
 
 def read_urscript(text: str) -> Readback:
     """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
     out = Readback(in_paper_frame=True)
-    lines = text.splitlines()
-    for number, line in enumerate(lines, 1):
-        if line.startswith("  # "):
-            out.comment(number, line[4:])
+    lines = [
+        (number, line.lstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
+    ]
+    for number, line in lines:
+        if line.startswith("# ") and out.acts:
+            out.comment(number, line[2:])
         elif found := _MOVE.fullmatch(line):
-            x, y, z, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
+            x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
             out.section().steps.append(Step(number, False, x, y, z, v, r))
+            out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
         elif found := _CIRCLE.fullmatch(line):
-            _circle(out, number, np.array([float(value) * 1e3 for value in found.groups()]))
-        elif found := _PAPER.fullmatch(line):
-            out.paper = tuple(float(value) for value in found[1].split(", "))
-        elif line and not _OTHER.fullmatch(line):
-            raise Error(f"line {number}: {line.strip()[:60]!r} is not a line that brushsvg writes")
+            *points, a, v = (float(value) * 1e3 for value in found.groups())
+            _circle(out, number, np.array([*points, v]))
+            out.acts.append(Act(number, "circle", "", tuple(points[3:]), (v, a), tuple(points[:3])))
+        elif found := _SLEEP.fullmatch(line):
+            out.acts.append(Act(number, "wait", same=(float(found[1]),)))
+        elif found := _RISE.fullmatch(line):
+            a, v = (float(value) * 1e3 for value in found.groups()[1:])
+            out.acts.append(Act(number, "text", found[1], (), (v, a)))
+        elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
+            out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
+            out.acts.append(Act(number, "text", line))
+        else:
+            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes")
     if not out.paper:
         raise Error("the line that sets the paper is missing")
-    if lines[-2:] != ["end", "brushsvg()"]:
+    if [line for _, line in lines[-2:]] != ["end", "brushsvg()"]:
         raise Error("the last lines are missing: half of the program was lost")
     return out
 
