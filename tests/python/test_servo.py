@@ -17,6 +17,7 @@ from brushsvg.errors import Error
 from brushsvg.jobs import border
 from brushsvg.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.program import Job, program
+from brushsvg.rewriting import _folded
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")
@@ -160,3 +161,15 @@ def test_the_output_is_never_switched_off():
     assert code.index("G1 F3000.0") < code.index("M3 S800")
     assert not re.search(r"(?m)^(G0|M5|M2|M30)", text)
     assert text.endswith("(end: the brush is held up)\n")
+
+
+def test_a_lift_is_compared_by_what_it_waits_beyond_its_own_way():
+    """Where the line before it was held, rounded heights do not tell to the value: a lift that begins four values
+    later waits a tenth of a millimetre less, and was taken for one that was changed."""
+
+    def told(begins, waits_s):
+        text = ["F120.0", f"G1 X1.0000 Y2.0000 S{begins}", "M3 S510", f"G4 P{waits_s}", "G4 P0.150"]
+        return _folded([*enumerate(text)], CELL.servo)[-1][1]
+
+    assert told(500, "0.125") == told(496, "0.175") == "M3 S510 G4 P0.150"
+    assert told(500, "0.050") == "M3 S510 G4 P0.075", "too short by as much as was taken away"

@@ -13,7 +13,7 @@ from .moves import Leg, RefusedError, Run
 
 WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
 ACTS = re.compile(
-    r"\s*((MSG|DEBUG|PRINT|LOG|LOGOPEN|LOGAPPEND|PROBEOPEN|PY|PYRUN|AXIS|ABORT)\s*,|LOGCLOSE|PROBECLOSE)",
+    r"\s*((MSG|DEBUG|PRINT|LOG|LOGOPEN|LOGAPPEND|PY|PYRUN|AXIS|ABORT)\s*,|LOGCLOSE|PROBEOPEN|PROBECLOSE)",
     re.I,
 )
 GROUPS = {
