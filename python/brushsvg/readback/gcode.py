@@ -36,8 +36,9 @@ class _Reader:
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
-        # between two values, and two parts of a way, no more than this is written at once
-        self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
+        # no more than this is written at once: a step between two values or two parts of a way, and half of one where
+        # a lift begins, after a part that was held half way along it
+        self.jump_mm = 1.01 * (1.5 * cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
         self.lift: tuple[int, float, float] | None = (
             None  # which step, how far, how long it has been waited for
         )
