@@ -60,11 +60,10 @@ def walked_astray(
     here = None
     for some in _groups(section for section in sections if section.moves):
         # most keep every limit: all together are asked first, ways between them included
-        if astray(
-            _ways_of([move for section in some for move in section.moves], here), frame, cell, sheet_mm
-        ):
+        moves = [move for section in some for move in section.moves]
+        if astray(_ways_of(moves, here), frame, cell, sheet_mm):
             problems += _one_by_one(some, here, frame, cell, sheet_mm)
-        here = some[-1].moves[-1].points_mm[-1]
+        here = moves[-1].points_mm[-1]
     return list(dict.fromkeys(problems))
 
 
@@ -95,15 +94,9 @@ def _one_by_one(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iter
 def _ways_of(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
     """From where the tool is, or else from the first place on. A circle is also looked at along its chords, which some
     languages run instead."""
-    paths = (
-        [move.points_mm for move in moves] if here is None else [here, *(move.points_mm for move in moves)]
-    )
-    points = np.vstack(paths)
-    ends = (
-        len(points)
-        - sum(len(move.points_mm) for move in moves)
-        + np.cumsum([len(m.points_mm) for m in moves])
-    )
+    paths = [move.points_mm for move in moves]
+    points = np.vstack(paths if here is None else [here, *paths])
+    ends = np.cumsum([len(path) for path in paths]) + (here is not None)
     circles = [
         (points[last - len(move.points_mm) - 1], points[last - 1], (*move.arc.centre_mm, move.arc.turn))
         for move, last in zip(moves, ends.tolist(), strict=True)
