@@ -12,7 +12,6 @@ from brushsvg.commands import convert_file
 from brushsvg.console import RefusedError
 from brushsvg.usage import parse
 
-
 CRASHED = "this should not happen"
 
 

@@ -204,8 +204,15 @@ def word_lost(page, random):
 def word_changed(page, random):
     """Letters of words: one axis or code for another."""
     pairs = (
-        (("movel", "movep"), ("movep", "movel"), ("movel", "movej"), ("movec", "movel"), ("a=", "v="))
-        + (("mode=1", "mode=0"), ("v=", "a="))
+        (
+            ("movel", "movep"),
+            ("movep", "movel"),
+            ("movel", "movej"),
+            ("movec", "movel"),
+            ("a=", "v="),
+            ("mode=1", "mode=0"),
+            ("v=", "a="),
+        )
         if page.is_robot
         else (
             *(("X", "Y"), ("Y", "X"), ("Z", "X"), ("G1", "G0"), ("G0", "G1"), ("G2", "G3"), ("G3", "G2")),

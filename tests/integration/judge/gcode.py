@@ -6,6 +6,7 @@ real-time letters wherever they stand, lines of 80 letters; with a servo in lase
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 
@@ -83,7 +84,8 @@ def run_gcode(text: str, dialect: str, start, servo=None, travel_mm_s: float = m
                 break
         if not controller.ended and dialect == "linuxcnc":
             controller.run.acts.append("the file ends without M2 or %")
-        for number, line in enumerate(lines[number:] if controller.ended else (), number + 1):
+        done = controller.number if controller.ended else len(lines)
+        for number, line in enumerate(lines[done:], done + 1):
             controller.behind_the_end(number, line)
     except RefusedError as refusal:
         controller.run.refused = str(refusal)
@@ -155,8 +157,8 @@ class _Controller:
 
     def _at_once(self, line: str) -> None:
         for letter in line:
-            if letter in "!?~" or letter == "\x18" or ord(letter) > 127:
-                self._act(f"the letter {letter!r}, which grbl obeys at once")
+            if letter in "!?~%" or letter == "\x18" or ord(letter) > 127:
+                self._act(f"the letter {letter!r}, which grbl or its sender obeys at once")
 
     def _without_comments(self, line: str) -> str:
         out, rest = "", line
@@ -340,7 +342,7 @@ class _Controller:
         height = _between(rows, self.value)
         if height != self.at[2]:
             there = (self.at[0], self.at[1], height)
-            self.run.legs.append(Leg(self.number, "jump", tuple(self.at), there))
+            self.run.legs.append(Leg(self.number, "jump", tuple(self.at), there, self.feed_mm_s))
             self.at[2] = height
 
     def _move(self, values, motion, has_axes) -> set[str]:
@@ -412,7 +414,7 @@ def _between(rows, value: float) -> float:
     """Height at a value, from rows (height, value) that rise in value; beyond them the end's."""
     if value <= rows[0][1]:
         return rows[0][0]
-    for (low, first), (high, last) in zip(rows, rows[1:], strict=False):
+    for (low, first), (high, last) in itertools.pairwise(rows):
         if value <= last:
             return low + (high - low) * (value - first) / (last - first)
     return rows[-1][0]

@@ -18,8 +18,8 @@ from .works import CELLS, job_for
 
 @dataclass(frozen=True)
 class Tried:
-    """One random job. refused: why no program was written; else wrong: what the judge says of it, and denied: what check
-    says of it."""
+    """One random job. refused: why no program was written; else wrong: what the judge says of it, and denied: what
+    check says of it."""
 
     dialect: str
     number: int

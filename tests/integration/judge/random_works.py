@@ -84,6 +84,8 @@ def random_cell(random, dialect: str):
         radius = float(random.uniform(0.2, 5)) if dialect == "urscript" else 0.0
         cell = replace(cell, blending=Blending(float(random.choice((0.0, 0.005, 0.01, 0.05))), radius))
     cell = _with_space(random, cell)
+    if random.random() < 0.3:
+        cell = _with_a_clip(random, cell)
     if random.random() < 0.5:
         cell = _with_paint(random, cell)
     return cell
@@ -143,6 +145,20 @@ def _with_space(random, cell):
         reach = (float(least), float(away.max() + random.uniform(-3, 25)))
     margin = float(random.uniform(3, 40))
     return replace(cell, workspace=replace(cell.workspace, box_mm=box, reach_mm=reach, margin_mm=margin))
+
+
+def _with_a_clip(random, cell):
+    """Something that stands on the sheet or beside it, up to above the safe height or not."""
+    from .places import moved, paper_of
+
+    pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}
+    place = np.array(
+        [*random.uniform((-20, -20), np.array(SHEET) + 20), random.uniform(-2, cell.heights.safe_mm)]
+    )
+    (middle,) = moved(paper_of({"paper": pose}, 0.0), place[None])
+    half = random.uniform(1, 6, 3)
+    box = (tuple((middle - half).tolist()), tuple((middle + half).tolist()))
+    return replace(cell, workspace=replace(cell.workspace, keep_out_mm=(box,)))
 
 
 def _with_paint(random, cell):

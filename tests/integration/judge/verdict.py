@@ -5,6 +5,7 @@ A brush touches where its tip is at most LAST_MM over the paper. Lengths in mm, 
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 from dataclasses import dataclass, field
@@ -223,6 +224,10 @@ def _beyond(way: Way, job: Job):
         over = np.maximum(np.array(box[0]) - robot, robot - np.array(box[1])).max(axis=1)
         if over.max() > SLACK_MM:
             yield f"{over.max():.3f} mm out of the box, line {_line(way, over.argmax() + 1)}"
+    for low, high in workspace.get("keep_out_mm", ()):
+        inside = np.minimum(robot - np.array(low), np.array(high) - robot).min(axis=1)
+        if inside.max() > SLACK_MM:
+            yield f"{inside.max():.3f} mm within what is kept out of, line {_line(way, inside.argmax() + 1)}"
     if reach := workspace.get("reach_mm"):
         away = np.linalg.norm(robot, axis=1)
         over = np.maximum(reach[0] - away, away - reach[1])
@@ -441,7 +446,7 @@ def cuts(way: Way, job: Job) -> np.ndarray:
                     into[k] = job.paper[:3, :3] @ into[k]
     lengths = np.linalg.norm(steps, axis=1)
     known = [k for k in range(len(legs)) if moving[k] and lengths[k] > 1e-9]
-    for a, b in zip(known, known[1:], strict=False):
+    for a, b in itertools.pairwise(known):
         if not cut[a] > 0 or not moving[a : b + 1].all():
             continue
         u, v = reaching[a] / np.linalg.norm(reaching[a]), leaving[b] / np.linalg.norm(leaving[b])
@@ -564,7 +569,8 @@ def _told(way: Way, job: Job) -> list:
             if out and out[-1][0].kind == "lift":
                 out[-1] = (_lifted(out[-1][0], leg, job), 0.0)
             else:
-                out.append((leg._replace(kind="lift", cut_mm=0.0), 0.0))
+                speed = leg.speed_mm_s if leg.kind == "jump" else 0.0
+                out.append((leg._replace(kind="lift", cut_mm=0.0, speed_mm_s=speed), 0.0))
             continue
         moves = leg.kind not in ("wait", "stop")
         if moves and leg.kind != "arc" and np.linalg.norm(np.subtract(leg.end, leg.start)) < 1e-9:
@@ -577,7 +583,8 @@ def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
     """Two parts of a lift as one; cut_mm: how far it went back on the way."""
     rise, more = before.end[2] - before.start[2], leg.end[2] - leg.start[2]
     back = max(before.cut_mm, abs(more) if rise * more < 0 else 0.0)
-    return before._replace(end=leg.end, seconds=before.seconds + leg.seconds, cut_mm=back)
+    speed = max((each.speed_mm_s for each in (before, leg) if np.isfinite(each.speed_mm_s)), default=0.0)
+    return before._replace(end=leg.end, seconds=before.seconds + leg.seconds, cut_mm=back, speed_mm_s=speed)
 
 
 def _same(ours: list, theirs: list, job: Job) -> bool:

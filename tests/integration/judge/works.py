@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import tomllib
 from dataclasses import dataclass, replace
@@ -115,7 +116,7 @@ def cell_of(dialect: str, change=None):
 
 
 def job_for(cell_toml: str, plan_json: str, brush_name: str, flags=()) -> Job:
-    said = dict(zip(flags, flags[1:], strict=False))
+    said = dict(itertools.pairwise(flags))
     brush = find_brush(brush_name)
     z_offset, first = float(said.get("--z-offset", 0)), int(said.get("--from-stroke", 1))
     return job_of(tomllib.loads(cell_toml), plan_json, brush.max_speed_mm_s, z_offset, first)
