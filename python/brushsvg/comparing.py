@@ -31,7 +31,7 @@ def with_plan(ran: Ran, expected, cell: Cell, first_stroke: int = 1) -> tuple[li
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
     for a_pass, lines, k in rows:
         problems += _strayed(a_pass, lines, due[k], cell) if k is not None else []
-    if not problems:
+    if not problems and len(ran.visits) == len(due):  # else a stroke is not one touch, which is told
         asked = visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
         problems += _paint(ran, due, asked)
     return [None if k is None else first - 1 + k for k in partners], problems
@@ -85,7 +85,9 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
         at = follows(found, asked, limit_mm)
         if at is not None:
             away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
-            problems.append((a_pass.stroke, f"line {lines[owner[at]]}: {_astray(away_mm, limit_mm)}"))
+            problems.append(
+                (a_pass.stroke, f"line {lines[owner[min(at, len(owner) - 1)]]}: {_astray(away_mm, limit_mm)}")
+            )
     is_dab = not np.ptp(meant.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
     if a_pass.speed_mm_s > meant.speed_mm_s + 0.1 and not is_dab:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"

@@ -81,9 +81,11 @@ def differing_line(
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
     circles = any(act.kind == "circle" for act in again.acts)
-    if lost := sorted(again.modes - read.modes - ({"G80"} if circles else {"G80", "G17", "G91.1"})):
+    if lost := sorted(
+        (again.modes or set()) - (read.modes or set()) - ({"G80"} if circles else {"G80", "G17", "G91.1"})
+    ):
         return f"{lost[0]} is missing before the first move"
-    ours, theirs = read.acts, again.acts
+    ours, theirs = _with_header_sorted(read.acts), _with_header_sorted(again.acts)
     if cell.servo:
         ours, theirs = _folded(ours), _folded(theirs)
     like = _Alike(cell, knows_speeds)
@@ -94,9 +96,9 @@ def differing_line(
         b = theirs[k] if k < len(theirs) else None
         if a and b and like.is_same(a, b):
             i, k, here = i + 1, k + 1, a.place or here
-        elif a and like.is_idle(a, ours[i - 1] if i else None, here):
+        elif a and like.is_idle(a, here):
             i += 1
-        elif b and like.is_idle(b, theirs[k - 1] if k else None, here):
+        elif b and like.is_idle(b, here):
             k += 1
         elif a and b and like.is_on_the_way(a, here, b) and like.is_slow(a, b):
             i, here = i + 1, a.place
@@ -115,12 +117,15 @@ def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, l
         b
         and a.at_most
         and b.at_most
-        and not like.is_slow(a, b)
+        and a.at_most[0] > b.at_most[0] + FASTER
         and math.isfinite(a.at_most[0])
         and like.is_same(a._replace(at_most=b.at_most), b)
     ):
         speeds = f"runs at {a.at_most[0]:.1f} mm/s: for these strokes and this cell brushsvg would write"
         return f"line {a.line}: {line.strip()[:60]!r} {speeds} {b.at_most[0]:.1f} mm/s"
+    if b and a.kind == b.kind == "move" and not a.text and a.place == b.place and a.same != b.same:
+        corners = next((line for line in theirs if line.startswith("G6")), "nothing")
+        return f"line {a.line}: corners are cut by up to {a.same[0]:g} mm, brushsvg would write {corners!r}"
     at = next((n for n, (x, y) in enumerate(zip(line, expected, strict=False)) if x != y), len(line))
     found, wanted = _near(line, at), _near(expected, at)
     instead = f"brushsvg would write {wanted!r}" if b else "nothing should follow"
@@ -131,6 +136,20 @@ def _near(line: str, place: int) -> str:
     """60 letters of a line, from its beginning where that holds the place."""
     first = max(0, place - 30) if place > 50 else 0
     return ("..." if first else "") + line.strip()[first : first + 60]
+
+
+_TOLD = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =")
+
+
+def _with_header_sorted(acts: list[Act]) -> list[Act]:
+    """The acts, what a header says and sets in the order of first words, and nothing twice."""
+    is_told = [bool(_TOLD.match(act.text)) for act in acts]
+    first = next((k for k, told in enumerate(is_told) if told), len(acts))
+    last = next((k for k in range(first, len(acts)) if not is_told[k]), len(acts))
+    header = {act.text: act for act in acts[first:last]}
+    return (
+        acts[:first] + sorted(header.values(), key=lambda act: act.text.partition(":")[0][:8]) + acts[last:]
+    )
 
 
 def _folded(acts: list[Act]) -> list[Act]:
@@ -162,11 +181,13 @@ def _folded(acts: list[Act]) -> list[Act]:
     return out
 
 
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_NUMBER = re.compile(r"-?\d*\.\d+|-?\d+")
 NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, and the last digit of what is written
 WAITS_S = 0.0031
 LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits, and which part of it
 FASTER = 0.011  # mm/s, of what is written in steps of 0.01
+DIGITS = 10.5  # of the last decimal: what a statement loses with it
+TILTED_RAD = 1.05e-3  # about a brush's tip, which stays where it is
 # what rounded poses make of a blend, which hangs on the angle between two moves: mm, or a part of it; and the part for
 # each mm of rounding, where few decimals turn moves of a millimetre by more than such an angle
 LEAST_BLEND_MM, BLENDS, BLENDS_PER_MM = 1e-2, 0.05, 2e2
@@ -179,16 +200,18 @@ class _Alike:
         self.near_mm = max(NEAR_MM, 3.1 * 10.0**-cell.decimals)
         self.blends = max(BLENDS, BLENDS_PER_MM * 10.0**-cell.decimals)
         self.is_servo, self.knows_speeds = bool(cell.servo), knows_speeds
-        if cell.servo:  # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
-            self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
-            rows = np.diff(np.array(cell.servo.table), axis=0)
-            self.step_values = 1 + cell.servo.step_mm * np.abs(rows[:, 1] / rows[:, 0]).max()
+        # rounded heights tell a lift's begin and end to a value
+        self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s if cell.servo else 0.0
 
     def is_same(self, a: Act, b: Act) -> bool:
         if a.kind != b.kind or not self._is_near(a.place, b.place) or not self.is_slow(a, b):
             return False
         if a.kind == "text":
             return a.text == b.text or self._says_same(a.text, b.text)
+        if a.kind == "move" and a.text != "movel":  # how much of its corners is cut: by G64 P, by a blend
+            slack = max(LEAST_BLEND_MM, self.blends * b.same[0]) if a.text else self.near_mm / 2
+            is_cut = a.same[0] > 0 or bool(a.text)
+            return a.text == b.text and (a.same == b.same or (is_cut and a.same[0] <= b.same[0] + slack))
         return a.text == b.text and all(
             found == wanted or abs(found - wanted) <= slack
             for found, wanted, slack in zip(a.same, b.same, self._slacks(b), strict=True)
@@ -196,16 +219,14 @@ class _Alike:
 
     def is_slow(self, a: Act, b: Act) -> bool:
         """No faster than another, which may be rapid."""
+        slacks = (FASTER, *(0.01 * most for most in b.at_most[1:]))
         return len(a.at_most) == len(b.at_most) and all(
-            found <= most + FASTER for found, most in zip(a.at_most, b.at_most, strict=True)
+            found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)
         )
 
-    def is_idle(self, act: Act, before: Act | None, here: tuple) -> bool:
-        """Goes to where the tool is, or sets again what was just set."""
-        if act.kind == "move":
-            return act.place == here and (act.text != "movep" or act.same == (0.0,))
-        again = before is not None and act.kind == "text" and act.text == before.text
-        return again and act.text.startswith(("set_tcp", "paper ="))
+    def is_idle(self, act: Act, here: tuple) -> bool:
+        """Goes to where the tool is."""
+        return act.kind == "move" and act.place == here
 
     def is_on_the_way(self, act: Act, here: tuple, to: Act) -> bool:
         """Whether a straight move ends on another one that begins here: with or without it, the way is the same."""
@@ -235,10 +256,10 @@ class _Alike:
         if act.kind == "lift":
             return (1, max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s)
         if act.kind == "way":
-            return (self.step_values,)
+            return (math.inf,)
         if act.kind == "circle":
             return (self.near_mm,) * len(act.same)
-        return (max(LEAST_BLEND_MM, self.blends * act.same[0]) if act.text == "movep" else 1e-4,)
+        return (1e-4,)
 
     def _says_same(self, found: str, wanted: str) -> bool:
         """Time and length in a header, and the numbers of a statement."""
@@ -246,9 +267,16 @@ class _Alike:
             return _nearly(about, asked, 0.25 if self.is_servo else 0.01, self.knows_speeds)
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
+        tilts = 3 if wanted.startswith(("set_tcp", "return")) else 0
+        numbers = list(zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True))
         return all(
-            abs(float(x) - float(y)) <= 3.1 * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
-            for x, y in zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True)
+            abs(float(x) - float(y))
+            <= (
+                TILTED_RAD
+                if k >= len(numbers) - tilts
+                else DIGITS * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
+            )
+            for k, (x, y) in enumerate(numbers)
         )
 
 

@@ -70,7 +70,7 @@ class Readback:
     in_paper_frame: bool = False
     paper: tuple[float, ...] = ()
     acts: list[Act] = field(default_factory=list)
-    modes: frozenset[str] = frozenset()
+    modes: frozenset[str] | None = None
 
     def section(self) -> ReadSection:
         """The one being read."""

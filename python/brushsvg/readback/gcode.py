@@ -12,10 +12,17 @@ from ..posts.gcode_servo import SERVO_END, height_at
 from . import Act, Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
-_CODE = re.compile(r"(?:[A-Z]-?\d+(?:\.\d*)?(?: |$))+")
-_WORD = re.compile(r"([A-Z])(-?\d+(?:\.\d*)?)")
+_CODE = re.compile(r"(?:[A-Z]-?(?:\d+\.?\d*|\.\d+)(?: |$))+")
+_WORD = re.compile(r"([A-Z])(-?(?:\d+\.?\d*|\.\d+))")
 WAYS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF"}  # and the words that they may have
-MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61"}
+INSTEAD = {
+    "G18": ["G17"],
+    "G19": ["G17"],
+    "G90.1": ["G91.1"],
+    "G61": ["G64"],
+    "G64": ["G61"],
+}  # what ends what holds
+MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61", "G18", "G19", "G90.1"}
 ALONE = {"G0", "G1", "G2", "G3", "G4", "G64", "G61", "M0", "M2", "M3"}  # no other word of command beside them
 ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
@@ -32,13 +39,15 @@ class _Reader:
         self.comment = comment if cell.language == "linuxcnc" else grbl_comment
         self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
         self.words |= {"G4": "P", "G64": "P", "": "F"} | ({"M3": "S", "G1": "XYSF"} if cell.servo else {})
+        self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
         self.motion = ""
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
-        # no more than this is written at once: a step between two values or two parts of a way, and half of one where
-        # a lift begins, after a part that was held half way along it
-        self.jump_mm = 1.01 * (1.5 * cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
+        # between two values, and two parts of a way, no more than this is written at once
+        self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
+        # and a lift alone begins half a step before where the way ended
+        self.lift_mm = self.jump_mm + (0.5 * cell.servo.step_mm if cell.servo else 0.0)
         self.lift: tuple[int, float, float] | None = (
             None  # which step, how far, how long it has been waited for
         )
@@ -78,14 +87,18 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         if len(values) + len(set(codes)) != len(words) or not set(values) <= set(self.words[first]):
             raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
-        if first != "G4":
+        if first == "G64" and "G21" not in self.seen:
+            raise Error(
+                f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres"
+            )
+        if values and first != "G64" and self.out.modes is None:
+            self.out.modes = frozenset(self.seen)
+        if first not in ("G4", ""):
             self.lift = None
         if first in WAYS or not first:
             self._move(number, line, first, values)
         elif first == "G64":
             self.out.joint_mm = values.get("P", math.inf)
-            self.seen -= {mode for mode in self.seen if mode.startswith("G64")}
-            codes = [f"G64 P{self.out.joint_mm:g}"]
         elif first == "M3":
             self._lift(number, values)
         elif first == "G4":
@@ -97,6 +110,7 @@ class _Reader:
             self.out.joint_mm = 0.0
         if "G80" in codes:
             self.motion = ""
+        self.seen -= {mode for code in codes for mode in INSTEAD.get(code, ())}
         self.seen |= set(codes)
 
     def _comment(self, number: int, line: str, said: str) -> None:
@@ -126,8 +140,6 @@ class _Reader:
         places = {axis: values[axis] for axis in "XYZ" if axis in values}
         if not places and "S" not in values:
             return
-        if not self.out.modes:
-            self.out.modes = frozenset(self.seen)
         if self.servo and "S" in values:
             self.value = values["S"]
             places["Z"] = self._height(number, values["S"])
@@ -138,6 +150,10 @@ class _Reader:
                 self._go(number, False, {"Z": places["Z"]}, None, speed)
         centre = None
         if code in ("G2", "G3"):
+            if not self.for_circles <= self.seen:
+                raise Error(
+                    f"line {number}: {line[:40]!r} stands where {' '.join(sorted(self.for_circles))} does not hold"
+                )
             if not {"X", "Y", "I", "J"} <= set(values) or math.isnan(self.at["X"]):
                 raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre")
             turn = 1 if code == "G3" else -1
@@ -172,12 +188,10 @@ class _Reader:
     def _lift(self, number: int, values: dict[str, float]) -> None:
         """At once, if nothing is waited for afterwards, or too far for one step."""
         self.value = values.get("S", self.value)
-        if not self.out.modes:
-            self.out.modes = frozenset(self.seen)
         before, height = self.at["Z"], self._height(number, self.value)
         self._go(number, False, {"Z": height}, None, math.inf)
         self.out.acts.append(Act(number, "lift", same=(self.value,)))
-        if not abs(height - before) > self.jump_mm:
+        if not abs(height - before) > self.lift_mm:
             self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
 
     def _waited(self, seconds: float) -> None:

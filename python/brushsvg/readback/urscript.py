@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import Error
 from . import Act, Readback, Step
 
-_N = r"-?\d+\.\d+"
+_N = r"-?\d*\.\d+"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
 _MOVE = re.compile(rf"(movel|movep)\({_POINT}, a=({_N}), v=({_N})(?:, r=({_N}))?\)")
 _CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=0\.0+, mode=1\)")
@@ -39,16 +39,19 @@ def read_urscript(text: str) -> Readback:
             out.comment(number, line[2:])
         elif found := _MOVE.fullmatch(line):
             x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
+            _is_run(number, line, a, v)
             out.section().steps.append(Step(number, False, x, y, z, v, r))
             out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
         elif found := _CIRCLE.fullmatch(line):
             *points, a, v = (float(value) * 1e3 for value in found.groups())
+            _is_run(number, line, a, v)
             _circle(out, number, np.array([*points, v]))
             out.acts.append(Act(number, "circle", "", tuple(points[3:]), (v, a), tuple(points[:3])))
         elif found := _SLEEP.fullmatch(line):
             out.acts.append(Act(number, "wait", same=(float(found[1]),)))
         elif found := _RISE.fullmatch(line):
             a, v = (float(value) * 1e3 for value in found.groups()[1:])
+            _is_run(number, line, a, v)
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
         elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
             out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
@@ -60,6 +63,11 @@ def read_urscript(text: str) -> Readback:
     if [line for _, line in lines[-2:]] != ["end", "brushsvg()"]:
         raise Error("the last lines are missing: half of the program was lost")
     return out
+
+
+def _is_run(number: int, line: str, acceleration: float, speed: float) -> None:
+    if not (acceleration > 0 and speed > 0):
+        raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration")
 
 
 def _circle(out: Readback, number: int, values: np.ndarray) -> None:

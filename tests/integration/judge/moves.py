@@ -13,7 +13,7 @@ class Leg(NamedTuple):
     """One thing that a machine does.
 
     kind: rapid, feed, process (a robot's move at an even speed), arc, jump (a servo's value, at once), wait or stop
-    (until a person starts again). Ends [mm] in the robot's frame. cut_mm: how far from its end the next leg's corner may
+    (until a person starts again). Ends [mm] in the robot's frame. cut_mm: how far from its end the corner may
     be passed, or, for robots, how far before its end the blend begins. tilt_rad: how far the tool leans from where it
     should at the end.
     """
