@@ -150,8 +150,11 @@ class _Controller:
 
     def behind_the_end(self, number: int, line: str) -> None:
         self.number = number
-        if self.dialect == "grbl":
-            self.line(number, line)  # a sender goes on sending
+        if self.dialect == "grbl":  # a sender goes on sending, or takes it for the end
+            before = len(self.run.legs)
+            self.line(number, line)
+            if len(self.run.legs) > before:
+                self._act("goes on behind the end")
         elif line.strip():
             self.run.titles.append((line.strip(), len(self.run.legs)))
 
@@ -175,7 +178,7 @@ class _Controller:
             inner = rest[place + 1 : end if end >= 0 else None]
             if self.dialect == "linuxcnc" and (end < 0 or "(" in inner):
                 raise RefusedError(f"line {self.number}: unclosed or nested comment")
-            self._comment(inner)
+            self._comment(inner if end >= 0 else f"{inner} ... unclosed")
             rest = rest[end + 1 :] if end >= 0 else ""
         if ")" in out:
             raise RefusedError(f"line {self.number}: a bracket that closes nothing")
@@ -256,6 +259,7 @@ class _Controller:
             self.run.legs.append(Leg(self.number, "stop", here, here))
         elif stop in (2.0, 30.0):
             self.ended = True
+            self.run.frame.append("end")
             self.spindle = 5
             self._light()
 

@@ -34,13 +34,15 @@ class Leg(NamedTuple):
 @dataclass
 class Run:
     """refused: the controller's error, after which nothing runs; acts: what the program does besides moving a brush;
-    titles: (words, number of legs before) of comments behind the header; header: lines of comment before."""
+    titles: (words, number of legs before) of comments behind the header; header: lines of comment before; frame: what
+    decides how the program begins and ends, whatever the machine does here and now."""
 
     legs: list[Leg] = field(default_factory=list)
     refused: str = ""
     acts: list[str] = field(default_factory=list)
     titles: list[tuple[str, int]] = field(default_factory=list)
     header: list[str] = field(default_factory=list)
+    frame: list[str] = field(default_factory=list)
     blends_by_radius: bool = False
 
 

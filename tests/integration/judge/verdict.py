@@ -483,11 +483,13 @@ def facts(run: Run) -> tuple[dict, list]:
     for line in run.header:
         if found := FACT.fullmatch(line.strip()):
             said.setdefault(found[1], set()).add(found[2])
+    said["frame"] = set(run.frame)
     sizes = [float(np.linalg.norm(np.subtract(leg.end, leg.start))) for leg in run.legs]
     done = np.concatenate([[0.0], np.cumsum(sizes)])
     return said, [(words, float(done[at])) for words, at in run.titles if TITLE.match(words)]
 
 
+FASTER_MM_S = 0.01  # what rounding makes of a feed
 LIFT_S = 0.05  # what one step more or less of a servo's lift takes
 
 
@@ -570,19 +572,22 @@ def _told(way: Way, job: Job) -> list:
                 out[-1] = (_lifted(out[-1][0], leg, job), 0.0)
             else:
                 speed = leg.speed_mm_s if leg.kind == "jump" else 0.0
-                out.append((leg._replace(kind="lift", cut_mm=0.0, speed_mm_s=speed), 0.0))
+                out.append(
+                    (leg._replace(kind="lift", cut_mm=abs(leg.end[2] - leg.start[2]), speed_mm_s=speed), 0.0)
+                )
             continue
         moves = leg.kind not in ("wait", "stop")
         if moves and leg.kind != "arc" and np.linalg.norm(np.subtract(leg.end, leg.start)) < 1e-9:
+            if leg.cut_mm > 0 and way.run.blends_by_radius:
+                out.append((leg._replace(kind="stop"), 0.0))  # a blend of nothing: here a robot stops
             continue
         out.append((leg, cut[k]))
     return [each for each in out if each[0].kind != "lift" or each[0].start != each[0].end or each[0].seconds]
 
 
 def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
-    """Two parts of a lift as one; cut_mm: how far it went back on the way."""
-    rise, more = before.end[2] - before.start[2], leg.end[2] - leg.start[2]
-    back = max(before.cut_mm, abs(more) if rise * more < 0 else 0.0)
+    """Two parts of a lift as one; cut_mm: how far it went at once on the way, or back."""
+    back = max(before.cut_mm, abs(leg.end[2] - leg.start[2]))
     speed = max((each.speed_mm_s for each in (before, leg) if np.isfinite(each.speed_mm_s)), default=0.0)
     return before._replace(end=leg.end, seconds=before.seconds + leg.seconds, cut_mm=back, speed_mm_s=speed)
 
@@ -606,7 +611,9 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
         {leg.kind for leg, _ in ours + theirs}
     ) > 1:
         return False
-    if max(leg.speed_mm_s for leg, _ in ours) > min(leg.speed_mm_s for leg, _ in theirs) * 1.001:
+    if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
+        return False
+    if max(leg.speed_mm_s for leg, _ in ours) > min(leg.speed_mm_s for leg, _ in theirs) + FASTER_MM_S:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False
@@ -623,9 +630,13 @@ def _alike(one, other, near: float, job: Job) -> bool:
         return False
     if a.acceleration > b.acceleration * 1.001:
         return False
-    if a.kind == "lift" and (a.cut_mm > job.servo_mm[1] * 1.3 or abs(a.seconds - b.seconds) > LIFT_S):
+    if a.kind == "lift" and (abs(a.seconds - b.seconds) > LIFT_S or (a.seconds > 0) != (b.seconds > 0)):
         return False
-    if a.speed_mm_s > b.speed_mm_s * 1.001 or (a.kind != "lift" and abs(a.seconds - b.seconds) > 0.0011):
+    if a.kind == "lift" and a.cut_mm > max(b.cut_mm, 1.5 * job.servo_mm[1] + job.servo_mm[0] + SLACK_MM):
+        return False
+    if a.speed_mm_s > b.speed_mm_s + FASTER_MM_S or (
+        a.kind != "lift" and abs(a.seconds - b.seconds) > 0.0011
+    ):
         return False
     if a.centre and max(abs(p - q) for p, q in zip(a.centre, b.centre, strict=True)) > near:
         return False
