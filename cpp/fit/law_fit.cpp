@@ -48,7 +48,7 @@ std::vector<double> coefficients_of(const VectorXd& free, bool through_zero) {
 }
 
 bool keeps(const std::vector<double>& c, const LawShape& shape) {
-    const auto [lo, hi] = shape.range_mm;
+    const double lo = shape.range_mm[0], hi = shape.range_mm[1];
     const auto value = [](const std::vector<double>& p, double x) {
         double y = 0.0;
         for (std::size_t i = p.size(); i-- > 0;) y = y * x + p[i];

@@ -327,7 +327,8 @@ Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, 
 }
 
 Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
-    const auto [width, height] = picture_size(window, px_per_mm);
+    const std::array<Eigen::Index, 2> size = picture_size(window, px_per_mm);
+    const Eigen::Index width = size[0], height = size[1];  // names of their own: clang 14 captures no bindings
     // exact: every edge leaves in each pixel it crosses the area to its right, and its height in all pixels beyond
     Eigen::MatrixXd edge = Eigen::MatrixXd::Zero(width + 2, height);                 // one column per pixel row
     const auto add = [&](double x0, double y0, double x1, double y1, double sign) {  // within one pixel row

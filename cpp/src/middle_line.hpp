@@ -18,6 +18,10 @@ constexpr double kTurnChordRad = 0.4;
 /// help: the miss is reported.
 constexpr std::size_t kMostSamples = 20000;
 
+/// Of a cubic's parameter between two samples. At a cusp the lengths of a cubic's parts do not add up to its own, by
+/// more than the least step, and there two samples would never come close enough: each round would split the same step.
+constexpr double kLeastParameterStep = 1e-9;
+
 /// A place on the middle line and what the inverse finds there.
 struct Sample {
     Place place;
@@ -130,6 +134,7 @@ void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& 
             if (i + 1 == samples.size() || samples[i].settled || samples[i].place.cubic != samples[i + 1].place.cubic)
                 continue;
             if (samples[i + 1].s - samples[i].s < least) continue;
+            if (samples[i + 1].place.t - samples[i].place.t < kLeastParameterStep) continue;
             for (double c : {1.0 / 3.0, 2.0 / 3.0}) {
                 finer.push_back(line.between(samples[i], samples[i + 1], c));
                 trial.push_back(true);

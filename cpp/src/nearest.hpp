@@ -8,10 +8,16 @@
 
 namespace brushsvg {
 
+/// Points that are visited between the rows of one polyline, at most: kilometres of it are looked at less closely.
+constexpr double kMostBetween = 2e5;
+
 /// Visits the points of rows `begin` to `end` of a polyline and points between them, so that no two are farther apart
 /// than the step: what curves away between two rows must not be missed.
 template <class Points, class Visit>
 void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step_mm, Visit&& visit) {
+    double length = 0.0;
+    for (Eigen::Index i = begin + 1; i < end; ++i) length += (rows.row(i) - rows.row(i - 1)).norm();
+    step_mm = std::max(step_mm, length / kMostBetween);
     for (Eigen::Index i = begin; i < end; ++i) {
         const Eigen::Vector2d here = rows.row(i).transpose();
         if (i > begin) {
@@ -23,43 +29,62 @@ void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step
     }
 }
 
-/// Distance to a polyline (columns x, y and any others), block by block; successive queries lie close to each other.
+/// Distance to a polyline (columns x, y and any others) in a tree of boxes about its pieces; successive queries lie
+/// close to each other.
 template <class Polyline>
 class Nearest {
  public:
     explicit Nearest(const Polyline& line) : line_(line) {
-        for (Eigen::Index i = 0; i < std::max<Eigen::Index>(1, line.rows() - 1); i += kBlock) {
-            const Eigen::Index n = std::min<Eigen::Index>(kBlock + 1, line.rows() - i);
+        levels_.emplace_back();
+        for (Eigen::Index i = 0; i < std::max<Eigen::Index>(1, line.rows() - 1); i += kFan) {
+            const Eigen::Index n = std::min<Eigen::Index>(kFan + 1, line.rows() - i);
+            if (n <= 0) break;
             const Eigen::Vector2d lo = line.block(i, 0, n, 2).colwise().minCoeff().transpose();
             const Eigen::Vector2d hi = line.block(i, 0, n, 2).colwise().maxCoeff().transpose();
-            blocks_.push_back({0.5 * (lo + hi), 0.5 * (hi - lo).norm()});
+            levels_[0].push_back({lo, hi});
+        }
+        while (levels_.back().size() > std::size_t(kFan)) {
+            const std::vector<Block>& below = levels_.back();
+            std::vector<Block> next;
+            for (std::size_t k = 0; k < below.size(); ++k) {
+                if (k % kFan == 0) next.push_back(below[k]);
+                next.back().lo = next.back().lo.cwiseMin(below[k].lo);
+                next.back().hi = next.back().hi.cwiseMax(below[k].hi);
+            }
+            levels_.push_back(std::move(next));
         }
     }
-    /// Or `at_most`, where that is less.
+    /// Or `at_most`, where that is less. Infinite for a line without points.
     double distance(const Eigen::Vector2d& p, double at_most = std::numeric_limits<double>::infinity()) {
         double best = at_most;
-        const auto look = [&](std::size_t k) {
-            if ((p - blocks_[k].centre).norm() - blocks_[k].radius >= best) return;
-            const double d = in_block(k, p);
-            if (d >= best) return;
-            best = d;
-            last_ = k;
-        };
-        look(last_);
-        for (std::size_t k = 0; k < blocks_.size(); ++k) look(k);
+        if (!levels_[0].empty()) look(0, last_, p, best);
+        for (std::size_t k = 0; k < levels_.back().size(); ++k) look(levels_.size() - 1, k, p, best);
         return best;
     }
 
  private:
-    static constexpr Eigen::Index kBlock = 16;
+    static constexpr Eigen::Index kFan = 16;
     struct Block {
-        Eigen::Vector2d centre;
-        double radius;
+        Eigen::Vector2d lo, hi;
+
+        double distance(const Eigen::Vector2d& p) const { return (lo - p).cwiseMax(p - hi).cwiseMax(0.0).norm(); }
     };
+    void look(std::size_t level, std::size_t k, const Eigen::Vector2d& p, double& best) {
+        if (levels_[level][k].distance(p) >= best) return;
+        if (level > 0) {
+            const std::size_t end = std::min(levels_[level - 1].size(), (k + 1) * kFan);
+            for (std::size_t below = k * kFan; below < end; ++below) look(level - 1, below, p, best);
+            return;
+        }
+        const double d = in_block(k, p);
+        if (d >= best) return;
+        best = d;
+        last_ = k;
+    }
     Eigen::Vector2d point(Eigen::Index i) const { return {line_(i, 0), line_(i, 1)}; }
     double in_block(std::size_t k, const Eigen::Vector2d& p) const {
-        const Eigen::Index first = Eigen::Index(k) * kBlock,
-                           last = std::min<Eigen::Index>(first + kBlock, line_.rows() - 1);
+        const Eigen::Index first = Eigen::Index(k) * kFan,
+                           last = std::min<Eigen::Index>(first + kFan, line_.rows() - 1);
         double best = (p - point(first)).squaredNorm();
         for (Eigen::Index i = first; i < last; ++i) {
             const Eigen::Vector2d a = point(i), d = point(i + 1) - a;
@@ -70,7 +95,7 @@ class Nearest {
         return std::sqrt(best);
     }
     const Polyline& line_;
-    std::vector<Block> blocks_;
+    std::vector<std::vector<Block>> levels_;  ///< boxes of kFan segments, then of kFan boxes of the level before
     std::size_t last_ = 0;
 };
 

@@ -20,6 +20,8 @@ INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
 BESIDE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inkscape`
 LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
+# What Inkscape's Python has to have beside its own modules, and the packages of Debian and Ubuntu that bring it.
+PACKAGES = {name: f"python3-{name}" for name in ("lxml", "cssselect", "numpy", "packaging", "tinycss2")}
 # of pipx, pip, Homebrew: a desktop's PATH may lack them
 USUAL = ("~/.local/bin", "/usr/local/bin", "/opt/homebrew/bin")
 
@@ -46,12 +48,25 @@ def guarded(main) -> None:
         told = str(stop)
     except OSError as problem:  # a full disk, no folder for temporary files
         told = f"{problem.filename or 'Temporary files'} cannot be written or read: {problem.strerror}."
+    except ImportError as problem:
+        told = _lacking((problem.name or str(problem)).partition(".")[0])
     except Exception as mistake:
         told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
     else:
         return
     tell(told)
     sys.exit(1)
+
+
+def _lacking(module: str) -> str:
+    """How to get what the Python lacks that runs us: Inkscape's packages only recommend what its extensions need."""
+    lacks = f"{sys.executable}, which Inkscape runs extensions with, lacks {module}"
+    if module == "inkex":
+        return f"{lacks}, which comes with Inkscape: call this from Inkscape's menu Extensions."
+    package = (
+        f"the package {PACKAGES[module]} on Debian and Ubuntu, else with  " if module in PACKAGES else ""
+    )
+    return f"{lacks}: install {package}{sys.executable} -m pip install {module}"
 
 
 def executable(chosen: str) -> str:
@@ -89,7 +104,7 @@ class Run:
         shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, *words],
+                [self.program, *words, "--quiet"],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,

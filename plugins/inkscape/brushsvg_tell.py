@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
+import re
 import sys
 
 UNATTENDED = (b"--batch-process", b"--export-", b"-o")  # with these Inkscape opens no window that stays
@@ -26,6 +27,7 @@ IN_DIALOGS = {  # what brushsvg advises those who type: what is done in Inkscape
 
 def in_dialogs(sentence: str) -> str:
     """A sentence of brushsvg with its advice worded for who has dialogs and no flags."""
+    sentence = re.sub(r"give --cell ((?:[a-z0-9-]+(?: or )?)+)$", r"choose \1 in Brush settings", sentence)
     for typed, done in IN_DIALOGS.items():
         sentence = sentence.replace(typed, done)
     return sentence

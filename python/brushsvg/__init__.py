@@ -24,8 +24,6 @@ if TYPE_CHECKING:  # what the table below resolves to
         coverage,
         flatten,
         overlap,
-        read_marks,
-        read_plan,
         simulate,
         trace_outlines,
         unite,
@@ -36,6 +34,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .brushes import brush_names, find_brush
     from .cell import Cell
     from .cell_file import cell_names, find_cell, read_cell, write_cell
+    from .documents import read_marks, read_plan
     from .errors import Error
     from .importers import ReadOptions, read_drawing
     from .machine import write_program
@@ -60,6 +59,8 @@ _HOME = {
     "read_cell": "cell_file",
     "write_cell": "cell_file",
     "find_brush": "brushes",
+    "read_marks": "documents",
+    "read_plan": "documents",
     "write_program": "machine",
     "within_reach": "reach",
     "marks_png": "render",
@@ -78,8 +79,6 @@ _HOME = {
         "coverage",
         "flatten",
         "overlap",
-        "read_marks",
-        "read_plan",
         "simulate",
         "trace_outlines",
         "unite",

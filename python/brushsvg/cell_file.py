@@ -31,10 +31,14 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
     Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
     file in `file`, the last the key in `where`.
     """
-    path = find_file("cell", SHIPPED, ".toml", name_or_path)
+    return read_cell(find_file("cell", SHIPPED, ".toml", name_or_path))
+
+
+def read_cell(path: str | os.PathLike) -> Cell:
+    """The cell in a cell.toml. Error, with the path in `file` and the key in `where`, when it is refused."""
     data = read_bytes(path)
     try:
-        return read_cell(data.decode("utf-8"))
+        return parse_cell(data.decode("utf-8"))
     except UnicodeDecodeError:
         raise Error("the file is not a cell: it is not text in UTF-8", file=str(path)) from None
     except Error as refusal:
@@ -42,7 +46,7 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
         raise
 
 
-def read_cell(text: str) -> Cell:
+def parse_cell(text: str) -> Cell:
     """The cell that a TOML text describes. Error naming the key that is missing, unknown or out of range."""
     try:
         document = tomllib.loads(text)
@@ -73,7 +77,7 @@ def read_cell(text: str) -> Cell:
 
 
 def write_cell(cell: Cell) -> str:
-    """The cell as TOML that read_cell reads back, each key with a word on its meaning."""
+    """The cell as TOML that parse_cell reads back, each key with a word on its meaning."""
     lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_lines(cell)]
     for name, table in tables_of(cell).items():
         lines += ["", *_comment(type(table).__doc__), f"[{name}]", *_lines(table)]

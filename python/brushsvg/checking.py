@@ -235,7 +235,12 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
     slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
     for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
         poses[k + 1, :2] = poses[k, :2]
-    return poses, radii, max(speed, landed_mm_s), _arcs(owner, track.centres)
+    arcs = _arcs(owner, track.centres)
+    for arc in arcs:  # at one depth, but for what is rounding
+        on_arc = poses[arc.first : arc.last + 1, 2]
+        if np.ptp(on_arc) <= slack_mm(cell):
+            on_arc[:] = on_arc.min()
+    return poses, radii, max(speed, landed_mm_s), arcs
 
 
 def _arcs(owner: np.ndarray, centres: list) -> list:

@@ -5,7 +5,6 @@ Nothing is imported before main runs, so that from its first moment on Ctrl-C le
 
 from __future__ import annotations
 
-import os
 import sys
 
 
@@ -55,7 +54,7 @@ class _Interrupts:
 
 def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
     """Whatever letters a terminal knows, and whether or not anybody takes what is printed."""
-    from .console import say
+    from .console import let_go, say
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -66,8 +65,8 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
             sys.stdout.flush()
         return status
     except OSError as problem:
-        if sys.stdout is not None:  # what is still buffered goes nowhere, without another complaint at exit
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if sys.stdout is not None:
+            let_go(sys.stdout)
         if isinstance(problem, BrokenPipeError):
             return 0  # whoever reads has seen enough
         say(problem.filename or "standard output", (problem.strerror or str(problem)).lower())

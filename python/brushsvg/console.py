@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 
 from .errors import Error
 from .fold import folded
@@ -31,9 +32,17 @@ def say(*parts: str) -> None:
     if sys.stderr is not None:
         text = ": ".join(part for part in ("brushsvg", *parts) if part)
         clear_stage()
-        with suppress(BrokenPipeError):  # nobody reads: what was asked for is done or refused all the same
+        try:
             sys.stderr.write("".join(letter if letter.isprintable() else " " for letter in text) + "\n")
             sys.stderr.flush()
+        except OSError:  # nobody reads: what was asked for is done or refused all the same
+            let_go(sys.stderr)
+
+
+def let_go(stream) -> None:
+    """What is still buffered goes nowhere, without another complaint at exit."""
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), stream.fileno())
 
 
 def tell(text: str) -> None:

@@ -15,8 +15,8 @@ from .animation import animation
 from .brushes import find_brush
 from .cell import Cell
 from .design import Notice
+from .documents import read_plan
 from .errors import Error
-from .files import read_bytes
 from .machine import DEFAULT_TOLERANCE_MM, as_exact_as, problems, time_s, whole_program
 from .paint import in_loads as in_loads_of
 from .paint import is_later_part
@@ -212,11 +212,7 @@ def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
 
 
 def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
-    try:
-        text = read_bytes(path).decode("utf-8")
-    except UnicodeDecodeError:
-        raise Error("the file is not a plan: it is not text in UTF-8") from None
-    plan = _core.read_plan(text)
+    plan = read_plan(path)
     brush = options.brush or find_brush(plan.brush)
     notices = []
     if brush.name != plan.brush:
@@ -459,8 +455,12 @@ def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
     return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
-def report_text(
-    suffix: str,
+def report_text(suffix: str, *measured, **told) -> str:
+    """The report as text (.txt) or JSON (.json); the rest as for `reported`."""
+    return report.as_text(suffix, reported(*measured, **told))
+
+
+def reported(
     work: Work,
     marks,
     cell: Cell,
@@ -469,8 +469,8 @@ def report_text(
     drawn=None,
     seconds=None,
     advice="",
-) -> str:
-    """The report as text (.txt) or JSON (.json). warnings: (where, sentence), None for those of the work; forbidden:
+) -> report.Report:
+    """The figures of a work. warnings: (where, sentence), None for those of the work; forbidden:
     those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
     that is known better than from the plan; advice: on the size."""
     known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
@@ -484,7 +484,7 @@ def report_text(
         drawn,
         work.options.compensation,
     )
-    result = report.Report(
+    return report.Report(
         title=work.title,
         brush=work.plan.brush,
         compensation=work.options.compensation if is_drawing else "",
@@ -499,4 +499,3 @@ def report_text(
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
     )
-    return report.to_json(result) if suffix == ".json" else report.to_text(result)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 
 class Error(ValueError):
     """A refusal in one full sentence.
@@ -28,3 +30,9 @@ class Error(ValueError):
         self.file = file
         for name in filter(None, (file, where)):
             self.add_note(f"in {name}")  # for whoever meets it as a traceback
+
+
+def lacking(what: str, *packages: str) -> Error:
+    """A refusal for want of packages of an extra, with what installs them where this runs."""
+    names = " ".join(packages)
+    return Error(f"{what} {' and '.join(packages)}: install with  {sys.executable} -m pip install {names}")

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from .errors import Error
+
+try:
+    import fcntl
+except ImportError:  # Windows: there what a killed run left stays
+    fcntl = None
 
 LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
 
@@ -62,12 +69,14 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
 
     Error, with the path in `file`, when a place cannot be written; every path is then as it was before. The
     one gap: a rename that fails after others were made, as where a file is a mount point of its own.
-    Devices and pipes are written through, once all the rest lies ready.
+    Devices and pipes are written through, once all the rest lies ready. What a killed run left beside a path is
+    cleared by the next one that writes there.
     """
     path: str | os.PathLike = ""
     targets = {path: os.path.realpath(path) for path in files}  # a link stays a link
     beside: dict[str | os.PathLike, str] = {}
     through = []
+    held = ExitStack()
     try:
         for path, target in targets.items():
             mode = _mode(target)
@@ -77,7 +86,10 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
             if mode is not None and not os.access(target, os.W_OK):
                 raise PermissionError(13, "permission denied")
             folder, name = os.path.split(target)
-            handle, beside[path] = tempfile.mkstemp(prefix=f".{name[:80]}.", suffix=".part", dir=folder)
+            prefix = f".{name.encode('utf-8', 'surrogateescape')[:80].decode('utf-8', 'ignore')}."
+            _clear_left(folder, prefix)
+            handle, beside[path] = _new_part(folder, prefix)
+            held.callback(os.close, os.dup(handle))  # keeps the lock until the file has its name
             with os.fdopen(handle, "wb") as file:
                 file.writelines(_pieces(files[path]))
                 file.flush()
@@ -94,11 +106,36 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
     finally:
         for left in beside.values():
             Path(left).unlink(missing_ok=True)
+        held.close()
 
 
 def reason(problem: Exception) -> str:
     """What the system says of a file, as the end of a sentence."""
     return (getattr(problem, "strerror", None) or str(problem)).lower()
+
+
+def _new_part(folder: str, prefix: str) -> tuple[int, str]:
+    """A new file, open and locked as long as its handle or a copy of it is open: the sign that somebody writes it."""
+    while True:
+        handle, path = tempfile.mkstemp(prefix=prefix, suffix=".part", dir=folder)
+        if fcntl:
+            with suppress(OSError):  # a file system without locks: nothing is cleared there
+                fcntl.flock(handle, fcntl.LOCK_EX)
+        if os.path.exists(path):
+            return handle, path
+        os.close(handle)  # another run took it for left before it was locked
+
+
+def _clear_left(folder: str, prefix: str) -> None:
+    """Remove what killed runs left of files with this prefix: nobody holds its lock any more."""
+    ours = re.compile(re.escape(prefix) + r"[a-z0-9_]{8}\.part")  # as tempfile names them
+    names = []
+    with suppress(OSError):  # a folder that may be written and not listed
+        names = os.listdir(folder) if fcntl else []
+    for path in (os.path.join(folder, name) for name in names if ours.fullmatch(name)):
+        with suppress(OSError), open(path, "r+b") as left:
+            fcntl.flock(left, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            os.unlink(path)
 
 
 def _mode(path: str) -> int | None:

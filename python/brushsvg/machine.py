@@ -12,7 +12,7 @@ import numpy as np
 from . import _core
 from .blends import blend_radii, blended
 from .cell import Cell, robot_from_paper
-from .cell_file import find_cell
+from .cell_file import cell_names, find_cell
 from .errors import Error
 from .files import write_files
 from .limits import beyond_edges
@@ -184,11 +184,19 @@ def post_for(suffix: str, cell: Cell) -> Post:
             where="language",
         )
     if suffix not in post.extensions:
+        other = cells_for(suffix)
         raise Error(
             f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
             f"{post.title}, which cell {cell.name} speaks"
+            + (f"; for {suffix} give --cell {' or '.join(other)}" if other else "")
         )
     return post
+
+
+def cells_for(suffix: str) -> list[str]:
+    """Names of the cells that come along whose programs have this extension."""
+    languages = {name for name, post in POSTS.items() if suffix in post.extensions}
+    return [name for name in cell_names() if find_cell(name).language in languages]
 
 
 def encode(
@@ -288,14 +296,15 @@ def text_of(post: Post, made: Program) -> Iterator[str]:
     return post.write(in_robot_frame(made) if post.in_robot_frame else made)
 
 
-def whole_program(plan, brush, cell: Cell) -> Program:
+def whole_program(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
-    return unchecked_program(plan, brush, cell, (), Job(visits=visits(plan, cell)))
+    job = replace(job, visits=visits(plan, cell, job.first_stroke))
+    return unchecked_program(plan, brush, cell, (), job)
 
 
-def time_s(plan, brush, cell: Cell) -> float:
-    """Estimated time of the whole plan, paint included; limits are not looked at."""
-    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell))
+def time_s(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+    """Estimated time of the plan, paint included; limits are not looked at."""
+    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell, job))
 
 
 def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:

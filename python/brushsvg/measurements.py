@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Iterator
+import re
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -63,10 +63,7 @@ class Measurements:
 def read_measurements(data: bytes, suffix: str) -> Measurements:
     """Error names the row or key. suffix: .json or .csv."""
     text = data.decode("utf-8-sig", "replace")
-    try:
-        found = _read_table(text) if suffix == ".csv" else _read_json(text)
-    except csv.Error as problem:
-        raise Error(f"this is not a table: {problem}") from None
+    found = _read_table(text) if suffix == ".csv" else _read_json(text)
     if found.marks is not None:
         return found
     depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
@@ -82,71 +79,95 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
 
 def read_widths(text: str) -> list[tuple[float, float]]:
     """(depth, width) pairs in mm of a table with the columns depth_mm and width_mm. Error names the line."""
-    try:
-        return list(_width_rows(csv.DictReader(io.StringIO(text.removeprefix("\ufeff")))))
-    except csv.Error as problem:
-        raise Error(f"this is not a table: {problem}") from None
-
-
-def _width_rows(rows: csv.DictReader) -> Iterator[tuple[float, float]]:
-    columns = _columns(rows)
-    if missing := {"depth_mm", "width_mm"} - set(columns):
-        raise Error(
-            f"the table needs a first line with depth_mm,width_mm; it lacks {' and '.join(sorted(missing))}"
-        )
-    rows.fieldnames = columns
-    for row in rows:
-        _refuse_surplus(row, f"line {rows.line_num}")
-        pair = []
-        for name in ("depth_mm", "width_mm"):
-            where = f"line {rows.line_num}, {name}"
-            try:
-                pair.append(float(row[name]))
-            except (TypeError, ValueError):
-                raise Error(f"{row[name] or ''!r} is not a number", where) from None
-            if not 0 < pair[-1] <= LONGEST_MM:
-                raise Error(f"{pair[-1]:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, pair[-1])
-        yield tuple(pair)
-
-
-def _columns(table: csv.DictReader) -> list[str]:
-    """Names in the first line; Error for one that stands twice, of which the first would be lost."""
-    columns = [name.strip() for name in table.fieldnames or ()]
-    if twice := [name for name in columns if name and columns.count(name) > 1]:
-        raise Error(f"the column {twice[0]} stands twice", "line 1")
-    return columns
+    pairs = []
+    for where, row in _table_rows(text, ("depth_mm", "width_mm"), numbers=("depth_mm", "width_mm")):
+        for name, value in row.items():
+            if not 0 < value <= LONGEST_MM:
+                raise Error(
+                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm", f"{where}, {name}", value
+                )
+        pairs.append((row["depth_mm"], row["width_mm"]))
+    return pairs
 
 
 def _read_table(text: str) -> Measurements:
-    table = csv.DictReader(io.StringIO(text))
-    table.fieldnames = _columns(table)
-    if missing := [name for name in ("kind", "depth_mm", "value_mm") if name not in table.fieldnames]:
-        raise Error(
-            f"the table needs a first line with kind,depth_mm,value_mm; it lacks {' and '.join(missing)}"
-        )
     rows: dict[str, list[Row]] = {}
-    for line in table:
-        where, kind = f"line {table.line_num}", (line["kind"] or "").strip()
-        _refuse_surplus(line, where)
+    for where, row in _table_rows(text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")):
+        kind = row.pop("kind")
         if kind not in _TABLE:
             raise Error(
                 f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}", where
             )
-        numbers = {}
-        for name in ("depth_mm", "value_mm"):
-            try:
-                numbers[name] = float(line[name])
-            except (TypeError, ValueError):
-                raise Error(f"{line[name] or ''!r} is not a number", f"{where}, {name}") from None
-        rows.setdefault(kind, []).append(_row(kind, numbers, where))
+        rows.setdefault(kind, []).append(_row(kind, row, where))
     return Measurements(rows)
 
 
-def _refuse_surplus(line: dict, where: str) -> None:
-    """Error for a row of csv.DictReader with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
-    if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
+def _table_rows(
+    text: str, columns: tuple[str, ...], numbers: tuple[str, ...]
+) -> list[tuple[str, dict[str, str | float]]]:
+    """(line, cells of these columns) of a table, some of them numbers, whose first line names its columns. Between
+    cells stand commas, semicolons or tabs, in numbers points or commas. Error for whatever could be read in two ways.
+    """
+    try:
+        table = _table(text.removeprefix("\ufeff"), columns)
+        rows = []
+        for line in table:
+            where = f"line {table.line_num}"
+            _refuse_surplus(line, where, table.reader.dialect.delimiter)
+            if any((line[name] or "").strip() for name in table.fieldnames):
+                rows.append((where, {name: (line[name] or "").strip() for name in columns}))
+    except csv.Error as problem:
+        raise Error(f"this is not a table: {problem}") from None
+    told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
+    for where, cell in told:
+        if not _NUMBER.fullmatch(cell):
+            raise Error(f"{cell!r} is not a number", where)
+    points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
+    if points and commas:
         raise Error(
-            f"{surplus[0]!r} stands beyond the columns of the first line: numbers are written with a point, as in 4.6",
+            f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
+            "numbers with a point",
+            commas[0][0],
+        )
+    return [
+        (where, row | {name: float(row[name].replace(",", ".")) for name in numbers}) for where, row in rows
+    ]
+
+
+# No thousands: the range of lengths ends there, so 1,234 and 1.234 can only mean little more than 1.
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:nan|[+-]?inf)")
+_SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+
+
+def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
+    """The table, read with the separator that finds these columns in the first line."""
+    tables = [csv.DictReader(io.StringIO(text), delimiter=separator) for separator in _SEPARATORS]
+    for table in tables:
+        table.fieldnames = [name.strip() for name in table.fieldnames or ()]
+    missing = [[name for name in columns if name not in table.fieldnames] for table in tables]
+    least = min(missing, key=len)
+    if least:
+        raise Error(
+            f"the table needs a first line with {','.join(columns)}, or with semicolons or tabs for the commas; "
+            f"it lacks {' and '.join(least)}"
+        )
+    found = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
+    if len(found) > 1:
+        both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in found)
+        raise Error(f"its columns could be separated by {both}: write one of them", "line 1")
+    names = found[0].fieldnames
+    if twice := [name for name in names if name and names.count(name) > 1]:
+        raise Error(f"the column {twice[0]} stands twice", "line 1")
+    return found[0]
+
+
+def _refuse_surplus(line: dict, where: str, separator: str) -> None:
+    """Error for a row with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
+    if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
+        advice = "numbers are written with a point, as in 4.6, or semicolons stand between columns"
+        raise Error(
+            f"{surplus[0]!r} stands beyond the columns of the first line"
+            + (f": {advice}" if separator == "," else ""),
             where,
         )
 

@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from .bands import law_band
 from .describe import LAWS
-from .errors import Error
+from .errors import lacking
 
 INK, QUIET, BAND = "#2b3a67", "#767a82", "#3f8fd9"
 SHADES = ("#b9c3de", "#2b3a67")  # of footprints, shallow to deep
@@ -95,7 +95,7 @@ def new_figure(size_in: tuple[float, float]):
         import matplotlib
         from matplotlib.figure import Figure
     except ImportError:
-        raise Error("pictures of laws need matplotlib: pip install 'brushsvg[plot]'") from None
+        raise lacking("pictures of laws need", "matplotlib") from None
     matplotlib.rcParams["svg.hashsalt"] = "brushsvg"  # same input, same bytes
     matplotlib.rcParams["svg.fonttype"] = "none"
     return Figure(figsize=size_in, layout="constrained", facecolor="white")

@@ -215,6 +215,11 @@ def to_json(report: Report) -> str:
     )
 
 
+def as_text(suffix: str, report: Report) -> str:
+    """As JSON for .json, else for people."""
+    return to_json(report) if suffix == ".json" else to_text(report)
+
+
 def to_text(report: Report) -> str:
     """A table of strokes, the sum, the time, the warnings."""
     rows = [*report.strokes, report.total]

@@ -200,8 +200,12 @@ class _Alike:
         self.near_mm = max(NEAR_MM, 3.1 * 10.0**-cell.decimals)
         self.blends = max(BLENDS, BLENDS_PER_MM * 10.0**-cell.decimals)
         self.is_servo, self.knows_speeds = bool(cell.servo), knows_speeds
-        # rounded heights tell a lift's begin and end to a value
-        self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s if cell.servo else 0.0
+        if (
+            cell.servo
+        ):  # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
+            self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
+            rows = np.diff(np.array(cell.servo.table), axis=0)
+            self.step_values = 1 + cell.servo.step_mm * np.abs(rows[:, 1] / rows[:, 0]).max()
 
     def is_same(self, a: Act, b: Act) -> bool:
         if a.kind != b.kind or not self._is_near(a.place, b.place) or not self.is_slow(a, b):
@@ -256,7 +260,7 @@ class _Alike:
         if act.kind == "lift":
             return (1, max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s)
         if act.kind == "way":
-            return (math.inf,)
+            return (self.step_values,)
         if act.kind == "circle":
             return (self.near_mm,) * len(act.same)
         return (1e-4,)

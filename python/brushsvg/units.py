@@ -66,6 +66,8 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
 def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
     """A length in px (SVG user units, 96 to the inch); percentages are of percent_of px, em and ex of a font's size."""
     value, unit = _parts(text)
+    if unit and not text.rstrip()[-len(unit) - 1].strip():  # people write "5 mm", browsers do not read it
+        raise Error(f"{_shown(text)} has a blank before its unit")
     if unit in _OF_FONT:
         return value * (FONT_PX if unit == "rem" else em_px * _OF_FONT[unit])
     return value * percent_of / 100 if unit == "%" else value * PX_PER[unit or "px"]

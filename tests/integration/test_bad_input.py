@@ -85,21 +85,21 @@ def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
     (desk / "x.svg").write_text(DRAWINGS[case][0])
     (desk / "whole.svg").write_text(path("M20 40 L60 40"))
     brushsvg("convert", "whole.svg", "whole.json", cwd=desk, status=0)
-    done = brushsvg("convert", "x.svg", "x.json", "--lenient", cwd=desk, status=0, **bounded())
+    done = brushsvg("convert", "x.svg", "x.json", "--lenient", "--quiet", cwd=desk, status=0, **bounded())
     assert len(done.err) == 1
     assert re.match(r"brushsvg: x\.svg: " + DRAWINGS[case][1], done.err[0])
     plans = [json.loads((desk / name).read_text()) for name in ("x.json", "whole.json")]
     assert plans[0]["passes"] == plans[1]["passes"]
-    done = brushsvg("convert", "x.svg", "x.ngc", "--lenient", cwd=desk, status=0)
+    done = brushsvg("convert", "x.svg", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
     assert "(warnings: 1, 1 of them damaged geometry)" in (desk / "x.ngc").read_text()
-    for words in (("predict", "x.svg", "x.png"), ("report", "x.svg")):
+    for words in (("predict", "x.svg", "x.png", "--quiet"), ("report", "x.svg")):
         again = brushsvg(*words, cwd=desk, status=0, **bounded())
         assert again.err == done.err
 
 
 def test_what_lies_off_the_sheet_may_be_looked_at(desk):
     (desk / "x.svg").write_text(DRAWINGS["off the sheet"][0])
-    for words in (("predict", "x.svg", "x.svg.png"), ("report", "x.svg", "--json")):
+    for words in (("predict", "x.svg", "x.svg.png", "--quiet"), ("report", "x.svg", "--json")):
         done = brushsvg(*words, cwd=desk, status=0)
         assert len(done.err) == 1
         assert "beyond the left edge of the sheet" in done.err[0]

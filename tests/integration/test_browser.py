@@ -10,7 +10,7 @@ import pytest
 from command import OPEN, SOUND, brush_file, brushsvg
 
 import brushsvg as package
-from brushsvg import convert
+from brushsvg import _core, convert
 from brushsvg.cell_file import SHIPPED, find_cell
 from brushsvg.machine import whole_program
 from brushsvg.timeline import timeline
@@ -97,12 +97,12 @@ def overlap(image: np.ndarray, marks, work) -> float:
 
 def until(marks, number: int, pose: float):
     """What was painted when the tool came to a pose of a pass."""
-    cut = json.loads(package.write_marks(marks))
+    cut = json.loads(_core.write_marks(marks))
     cut["passes"] = cut["passes"][: number + 1]
     last = cut["passes"][number]
     rows = sum(at <= pose for at in last["pose"])
     last |= {name: values[:rows] for name, values in last.items() if name not in ("stroke", "outline_mm")}
-    return package.read_marks(json.dumps(cut))
+    return _core.read_marks(json.dumps(cut))
 
 
 def test_at_the_start_there_is_no_paint(page, browser):

@@ -85,6 +85,13 @@ def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, type
     assert typed not in told or typed in in_dialogs[typed]
 
 
+def test_a_cell_is_advised_by_name(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(document('data-brushsvg-cell="linuxcnc-3axis"'))
+    done = plugin.script("save", source, "--format=script")
+    assert done.stderr.endswith(b"; for .script choose ur5e in Brush settings\n")
+
+
 def test_all_advice_is_tried(in_dialogs):
     assert set(ADVICE) == set(in_dialogs)
 

@@ -98,7 +98,7 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
 
 def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
     """Numbers beside the strokes of a character, depths the brush was not measured at: nothing else."""
-    done = brushsvg("convert", drawing(source), "again.ngc", cwd=tmp_path, status=0)
+    done = brushsvg("convert", drawing(source), "again.ngc", "--quiet", cwd=tmp_path, status=0)
     warnings = [line.split(": ", 2)[2] for line in done.err]
     if source == "kanji-eternity":
         texts, depths = warnings  # five of one kind, five of another, folded

@@ -87,7 +87,7 @@ def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
 
     def painted(name):
         brush = find_brush("round-6")
-        marks = simulate(read_plan((desk / name).read_text()), brush)
+        marks = simulate(read_plan(desk / name), brush)
         _core.trace_outlines(marks, brush)
         return marks.outline_mm
 

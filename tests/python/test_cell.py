@@ -7,7 +7,7 @@ import pytest
 
 from brushsvg.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
 from brushsvg.cell_check import out_of_reach, remarks
-from brushsvg.cell_file import SHIPPED, cell_names, find_cell, read_cell, write_cell
+from brushsvg.cell_file import SHIPPED, cell_names, find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.frame import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
 from brushsvg.posts import POSTS
@@ -78,7 +78,7 @@ def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
 def test_a_faulty_cell_is_refused_by_key(old, new, where, words):
     assert old in TEXT
     with pytest.raises(Error) as refusal:
-        read_cell(TEXT.replace(old, new))
+        parse_cell(TEXT.replace(old, new))
     assert (refusal.value.where, words in str(refusal.value)) == (where, True), str(refusal.value)
 
 
@@ -123,12 +123,12 @@ FULL = replace(
 )
 def test_a_station_that_the_tool_cannot_visit_is_refused(station, words):
     with pytest.raises(Error) as refusal:
-        read_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
+        parse_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
     assert words in str(refusal.value)
 
 
 def test_what_is_written_is_read_back():
-    assert read_cell(write_cell(FULL)) == FULL
+    assert parse_cell(write_cell(FULL)) == FULL
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_what_is_written_is_read_back():
 )
 def test_what_no_single_key_tells_is_refused_too(change, where, words):
     with pytest.raises(Error) as refusal:
-        read_cell(write_cell(replace(FULL, **change)))
+        parse_cell(write_cell(replace(FULL, **change)))
     assert (refusal.value.where, words in str(refusal.value)) == (where, True), str(refusal.value)
 
 
@@ -268,23 +268,23 @@ def test_the_frame_of_taught_points_is_where_they_were():
 def test_a_language_that_needs_a_table_says_so(language, where):
     text = TEXT.replace('language = "linuxcnc"', f'language = "{language}"')
     if where is None:
-        assert read_cell(text).language == language
+        assert parse_cell(text).language == language
         return
     with pytest.raises(Error, match=f"language '{language}' needs a table {where}") as refusal:
-        read_cell(text)
+        parse_cell(text)
     assert refusal.value.where == where
 
 
 def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
     text = (SHIPPED / "grbl-servo.toml").read_text(encoding="utf-8")
     level = "taught_mm = [[10, 5, 0], [110, 15, 0], [0, 105, 0]]"
-    assert read_cell(text.replace("[paper]", f"[paper]\n{level}")).paper.taught_mm
+    assert parse_cell(text.replace("[paper]", f"[paper]\n{level}")).paper.taught_mm
     for z in ("[110, 15, 0.5]", "[110, 15, -0.1]"):
         with pytest.raises(Error, match="it must lie level, at z 0") as refusal:
-            read_cell(text.replace("[paper]", f"[paper]\n{level.replace('[110, 15, 0]', z)}"))
+            parse_cell(text.replace("[paper]", f"[paper]\n{level.replace('[110, 15, 0]', z)}"))
         assert refusal.value.where == "paper"
     with pytest.raises(Error, match="it must lie level, at z 0"):
-        read_cell(text.replace("[paper]", "[paper]\norigin_mm = [0, 0, 1]"))
+        parse_cell(text.replace("[paper]", "[paper]\norigin_mm = [0, 0, 1]"))
 
 
 @pytest.mark.parametrize(
@@ -300,7 +300,7 @@ def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
 def test_badly_taught_points_are_refused(points, words):
     cell = replace(find_cell(), paper=Paper(taught_mm=tuple(tuple(map(float, point)) for point in points)))
     with pytest.raises(Error) as refusal:
-        read_cell(write_cell(cell))
+        parse_cell(write_cell(cell))
     assert words in str(refusal.value)
 
 

@@ -124,7 +124,7 @@ def test_what_is_not_ours_is_refused(desk, name):
 def test_the_command_compares_with_the_drawing(desk, capsys):
     assert call(capsys, "convert", "two.svg", "two.ngc", "--z-offset", "0.4")[0] == 0
     status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--preview", "two.png")
-    assert (status, err) == (0, [])
+    assert (status, len(err)) == (0, 1) and err[0].startswith("brushsvg: two.png: written"), err
     assert re.search(r"(?m)^all +0\.9\d\d ", out)
     assert out.endswith("two.ngc: nothing forbids to run it\n")
     assert (desk / "two.png").exists()
@@ -435,6 +435,8 @@ UNWRITTEN = {
         (r"(?m)^(\(stroke 2)", r"o100 call\n\1"),
         (r"(?m)^(\(stroke 2)", r"#1=5\n\1"),
         (r"(?m)^G21 G90 G94", "G21 G90"),
+        (r"(?m)^F480", "F-480"),
+        (r"(?m)^F480\.0", "F0"),
         (r"(?m)^(G21 .*\n)(G64 .*\n)", r"\2\1"),
         (r"(?m)^(G21 .*\n)(G64 .*\n)", r"F900\n\1\2"),
         (r"(?m)^(G21 .*\n)((?:.*\n)*?)(\(stroke 2)", r"\2\1\3"),
@@ -459,6 +461,8 @@ UNWRITTEN = {
         (r"(?m)^  movel(.*)$", r"  movel\1; halt"),
         (r"(?m)^  movel", "\tmovel"),
         (r"(?m)^  movel", "  movej"),
+        (r"v=0\.02", "v=-0.02"),
+        (r"a=0\.5000, v=0\.02", "a=0.0000, v=0.02"),
         (r"(?m)^(  if here\[2\] < )0\.", r"\g<1>1."),
         (r"(?m)^  end$", "  end\n  end"),
         (r"(?m)^end$", "end\nend"),
@@ -870,3 +874,16 @@ def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
     )
     assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "leaning.toml", "--width", "8.4")[0] == 0
     assert call(capsys, "check", "two.ngc", "--cell", "leaning.toml")[0] == 0
+
+
+@pytest.mark.parametrize(("name", "digit"), [("linuxcnc-3axis", "0.0001"), ("grbl-3axis", "0.001")])
+def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, digit):
+    (desk / "two.svg").write_text(DRAWING.replace("h-12", "h-12 l12 2"))
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    depth = re.search(r"(?m)^G[23] X\S+ Y\S+ Z(\S+) ", text)[1]
+    off = f"{float(depth) + float(digit):.{len(digit) - 2}f}"
+    (desk / program).write_text(edited(rf"(?m)^(G[23] X\S+ Y\S+ Z){depth} ", rf"\g<1>{off} ")(text))
+    status, _, err = call(capsys, "check", program, "two.svg")
+    assert (status, err) == (0, []), err

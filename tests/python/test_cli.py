@@ -47,7 +47,7 @@ def listing(directory):
 
 def test_convert_writes_program_preview_and_report(desk, capsys):
     words = ["--preview", "p.png", "--report", "r.json"]
-    assert run(capsys, "convert", "a.svg", "a.ngc", *words) == (0, "", [])
+    status, out, err = run(capsys, "convert", "a.svg", "a.ngc", *words)
     code = (desk / "a.ngc").read_text(encoding="ascii")
     assert code.startswith(
         "(title: A line)\n(brush: round-6, 2 strokes)\n(sheet: 120 x 60 mm)\n(compensation: closed, "
@@ -58,11 +58,70 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
     report = json.loads((desk / "r.json").read_text())
     assert [row["stroke"] for row in report["strokes"]] == ["line", "dab"]
     assert report["total"]["overlap"] > 0.9
+    time, overlap = re.search(r"\(time: (.*)\)", code)[1], report["total"]["overlap"]
+    line = f"a.ngc, p.png, r.json: written; 2 strokes, takes {time}, overlap {overlap:.3f}"
+    assert (status, out, err) == (0, "", [f"brushsvg: {line}"])
+
+
+WRITERS = {  # what is typed, what is written, and what more is said of it
+    "convert a.svg out.ngc": "2 strokes, takes about [0-9]+ s",
+    "convert a.svg out.json": "2 strokes, takes about [0-9]+ s",
+    "convert plan.json out.ngc --from-stroke 2": "1 stroke, takes about [0-9]+ s",
+    "predict a.svg out.png": "2 strokes, takes about [0-9]+ s",
+    "predict plan.json out.svg --cell nowhere.toml": "2 strokes",
+    "animate a.svg out.html": "2 strokes, takes about [0-9]+ s",
+    "report a.svg --preview out.png": r"2 strokes, takes about [0-9]+ s, overlap 0\.[0-9]{3}",
+    "check own.ngc a.svg --preview out.png": r"2 strokes, takes about [0-9]+ s, overlap 0\.[0-9]{3}",
+    "import a.svg out.png": "2 strokes",
+    "import one.svg out.svg --editable": "1 stroke",
+    "text T out.svg --font font.svg": "",
+    "border a.svg out.ngc": "takes about [0-9]+ s",
+    "height out.ngc": "21 strokes, takes about [0-9]+ s",
+    "chart out.ngc --page out.svg --chart out.json": "[0-9]+ strokes, takes about [0-9] min [0-9]{2} s",
+    "brush new out --lag 5 --width-at 3=2": "",
+    "brush plot rigid out.svg": "",
+    "calibrate m.csv -o out.json": "",
+    "cell new out.toml": "",
+}
+
+
+@pytest.mark.parametrize("words", WRITERS)
+def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
+    (desk / "one.svg").write_text(drawing(LINE))
+    (desk / "font.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
+        '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
+    )
+    rows = [
+        f"{kind},{depth},{slope * depth}"
+        for depth in range(1, 6)
+        for kind, slope in (("lag", 2), ("width", 0.8))
+    ]
+    (desk / "m.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
+    cell = (Path(commands.__file__).parents[1] / "data" / "cells" / "ur5e.toml").read_text()
+    paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "red"\nplace_mm = [-50, 50]\ndepth_mm = 5\n'
+    (desk / "nowhere.toml").write_text(f'{cell}\n{paint}colours = ["#ff0000"]\n')
+    assert run(capsys, "convert", "a.svg", "own.ngc")[0] == 0
+    before = listing(desk)
+    status, out, err = run(capsys, *words.split())
+    made = {name: data for name, data in listing(desk).items() if name not in before}
+    assert status == 0 and made
+    *warnings, line = err
+    assert not any(": written" in warning for warning in warnings)
+    named = ", ".join(dict.fromkeys(word for word in (*words.split(), "out.json") if word in made))
+    known = WRITERS[words]
+    assert re.fullmatch(re.escape(f"brushsvg: {named}: written") + (f"; {known}" if known else ""), line), (
+        line
+    )
+    for name in made:
+        (desk / name).unlink()
+    assert run(capsys, *words.split(), "--quiet") == (0, out, warnings)
+    assert {name: data for name, data in listing(desk).items() if name not in before} == made
 
 
 def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
     assert run(capsys, "convert", "a.svg", "direct.ngc")[0] == 0
-    assert run(capsys, "convert", "plan.json", "by_plan.ngc") == (0, "", [])
+    assert run(capsys, "convert", "plan.json", "by_plan.ngc", "--quiet") == (0, "", [])
     words, numbers = [], []
     for name in ("direct.ngc", "by_plan.ngc"):
         code = re.sub(r"\(.*\)\n", "", (desk / name).read_text())
@@ -78,7 +137,7 @@ def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
 @pytest.mark.parametrize("source", ["a.svg", "plan.json"])
 def test_animate_writes_one_page(desk, capsys, source):
     before = set(listing(desk))
-    assert run(capsys, "animate", source, "out.html", "--speed", "5") == (0, "", [])
+    assert run(capsys, "animate", source, "out.html", "--speed", "5", "--quiet") == (0, "", [])
     assert set(listing(desk)) == before | {"out.html"}
     page = (desk / "out.html").read_text()
     assert page.startswith("<!DOCTYPE html>")
@@ -89,7 +148,7 @@ def test_animate_writes_one_page(desk, capsys, source):
 @pytest.mark.parametrize("source", ["a.svg", "plan.json"])
 def test_predict_draws_and_report_prints(desk, capsys, source):
     for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<svg"), (".json", b"{")):
-        assert run(capsys, "predict", source, f"out{suffix}") == (0, "", [])
+        assert run(capsys, "predict", source, f"out{suffix}", "--quiet") == (0, "", [])
         assert (desk / f"out{suffix}").read_bytes().startswith(start)
     assert json.loads((desk / "out.json").read_text())["format"] == "brushsvg/marks"
     status, out, err = run(capsys, "report", source)
@@ -237,15 +296,16 @@ def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
     assert run(capsys, "convert", "x.svg", "out.ngc")[0] == 1
     for words in (("convert", "x.svg", "out.ngc", "--lenient"), ("predict", "x.svg", "out.png")):
         status, _, err = run(capsys, *words)
-        assert (status, len(err)) == (0, 1)
+        assert (status, len(err)) == (0, 2)
         assert err[0].startswith("brushsvg: x.svg: bad: ")
+        assert err[1].startswith(f"brushsvg: {words[2]}: written; ")
         assert "--lenient" not in err[0]
     assert "(warnings: 1, 1 of them damaged geometry)" in (desk / "out.ngc").read_text()
 
 
 def test_a_plan_keeps_its_brush(desk, capsys):
     edited_plan(desk, brush_sha256="0" * 64)
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc", "--quiet")
     assert (status, err) == (
         0,
         ["brushsvg: x.json: brush_sha256: the plan was made with another file of brush round-6"],
@@ -262,7 +322,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
     status, _, err = run(capsys, "convert", "x.json", "out.ngc")
     assert (status, len(err)) == (1, 1)
     assert "my-brush" in err[0]
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc", "--brush", "round-6")
+    status, _, err = run(capsys, "convert", "x.json", "out.ngc", "--brush", "round-6", "--quiet")
     assert (status, len(err)) == (0, 1)
     assert "made for brush my-brush, not for round-6" in err[0]
 
@@ -329,6 +389,25 @@ def test_wrong_usage(desk, capsys, words):
     assert listing(desk) == before
 
 
+@pytest.mark.parametrize("command", ["convert a.svg", "border a.svg", "height", "chart"])
+@pytest.mark.parametrize(
+    ("out", "flags", "cells"),
+    [
+        ("x.script", "", "ur5e"),
+        ("x.nc", "--cell ur5e", "grbl-3axis or grbl-servo or linuxcnc-3axis"),
+        ("X.SCRIPT", "--cell grbl-servo", "ur5e"),
+    ],
+)
+def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
+    status, _, err = run(capsys, *command.split(), out, *flags.split())
+    assert (status, len(err)) == (1, 1)
+    suffix = Path(out).suffix.lower()
+    assert f"extension '{suffix}' is neither .json" in err[0]
+    assert err[0].endswith(f"; for {suffix} give --cell {cells}")
+    for cell in cells.split(" or "):  # which is true of each
+        assert run(capsys, "height", out, "--cell", cell)[0] == 0
+
+
 def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
     (desk / "folder.png").mkdir()
     for words, reason in (
@@ -374,14 +453,15 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
 def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
-    status, _, err = run(capsys, "convert", "x.svg", "out.ngc")
+    status, _, err = run(capsys, "convert", "x.svg", "out.ngc", "--quiet")
     assert (status, len(err)) == (0, 1)
     assert re.fullmatch(
         r"brushsvg: x.svg: line: the widest point stays up to \d\.\d+ mm off the middle line, "
         r"tolerance 0.05 mm, near x \d+\.\d, y \d+\.\d mm: it turns too sharply there for the brush",
         err[0],
     )
-    assert run(capsys, "convert", "x.svg", "out.ngc", "--compensation", "none") == (0, "", [])
+    flags = ("--compensation", "none", "--quiet")
+    assert run(capsys, "convert", "x.svg", "out.ngc", *flags) == (0, "", [])
 
 
 def test_brush_commands(desk, capsys):
@@ -459,7 +539,8 @@ def test_a_closed_stdout_is_said(desk, words):
 
 def test_what_prints_nothing_needs_no_stdout(desk):
     done = spawn("convert", "a.svg", "out.ngc", preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
-    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.returncode == 0
+    assert re.fullmatch(rb"brushsvg: out\.ngc: written; 2 strokes, takes about \d+ s\n", done.stderr)
     assert (desk / "out.ngc").read_text().endswith("M2\n")
 
 
@@ -529,6 +610,18 @@ def test_a_full_disk_under_stdout_is_said(desk):
     assert done.stderr == b"brushsvg: standard output: no space left on device\n"
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [("convert a.svg out.ngc", 0), ("convert a.svg out.svg", 2), ("convert b.svg out.ngc", 1)],
+)
+def test_a_full_disk_under_stderr_changes_nothing(desk, words, status):
+    with open("/dev/full", "wb") as full:
+        done = spawn(*words.split(), stdout=subprocess.PIPE, stderr=full)
+    assert (done.returncode, done.stdout) == (status, b"")
+    assert (desk / "out.ngc").exists() == (status == 0)
+
+
 def test_help_is_quick_and_promises_only_what_there_is(capsys):
     status, out, _ = run(capsys, "convert", "--help")
     assert status == 0
@@ -546,7 +639,8 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--as",
         "--wide",
     }
-    assert flags == choices | {"--help", "--preview", "--report", "--z-offset", "--from-stroke", "--order"}
+    job = {"--z-offset", "--from-stroke", "--order"}
+    assert flags == choices | job | {"--help", "--preview", "--report", "--quiet"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.convert"} & set(done.stderr.split())
@@ -564,7 +658,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         assert bool(err) == (name in ("ur5e", "jaka-zu3")), (
             "a robot's paper is an example, JAKA's language is missing"
         )
-    assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis") == (0, "", [])
+    assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis", "--quiet") == (0, "", [])
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
@@ -580,7 +674,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         (desk / "my.toml").write_text(text.replace(old, new))
         assert run(capsys, "cell", "check", "my.toml") == (1, "", [f"brushsvg: my.toml: {said}"])
     (desk / "my.toml").write_text(text.replace("paint_mm_s = 40.0", "paint_mm_s = 9"))
-    assert run(capsys, "convert", "a.svg", "slow.ngc", "--cell", "my.toml") == (0, "", [])
+    assert run(capsys, "convert", "a.svg", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
     status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")

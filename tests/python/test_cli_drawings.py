@@ -28,7 +28,8 @@ def desk(tmp_path, monkeypatch):
 
 
 def plan(desk, capsys, *words, drawing="d.svg"):
-    status = main(["convert", drawing, "plan.json", *words])
+    capsys.readouterr()
+    status = main(["convert", drawing, "plan.json", "--quiet", *words])
     err = capsys.readouterr().err.splitlines()
     assert status == 0, err
     return json.loads((desk / "plan.json").read_text())["passes"], err
@@ -180,7 +181,7 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
 
     drawing(0.3)
     for command in (("convert", "w.svg", "x.json"), ("predict", "w.svg", "x.png")):
-        assert main(list(command)) == 0
+        assert main([*command, "--quiet"]) == 0
         (line,) = capsys.readouterr().err.splitlines()
         assert line.startswith(
             "brushsvg: w.svg: p0 and 5 like it: depth 0.36 mm is outside the range [1.0, 10.0] mm"

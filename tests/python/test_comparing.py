@@ -24,7 +24,7 @@ def by_every_move(points, path):
     return farthest
 
 
-@settings(deadline=None)
+@settings(deadline=None, derandomize=True)
 @given(
     some.integers(0, 10_000),
     some.sampled_from([1, 2, 3, IN_A_BOX, IN_A_BOX + 1, 300]),

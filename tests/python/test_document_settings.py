@@ -126,9 +126,29 @@ def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, 
     assert main(["convert", "d.svg", "x.ngc", "--lenient"]) == 0
 
 
+@pytest.mark.parametrize(
+    ("name", "data", "said"),
+    [
+        ("x.svg", b"", "the file is empty"),
+        ("x.svg", bytes(range(256)), "this is not XML"),
+        ("x.svg", b"<html/>", "the root element is <html>, not <svg>"),
+        ("x.svgz", b"\x1f\x8b moo", "what it holds is damaged"),
+        ("x.dxf", None, "there is no such file"),
+    ],
+)
+def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, said):
+    if data is not None:
+        (desk / name).write_bytes(data)
+    capsys.readouterr()
+    assert main(["chart", "x.json", "--drawing", name]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"brushsvg: {name}: ") and said in line
+    assert not (desk / "x.json").exists()
+
+
 def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
     assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
     assert main(["convert", "d.svg", "x.json"]) == 0
-    assert [each.settings for each in read_plan((desk / "x.json").read_text()).passes] == ["{}", "{}"]
+    assert [each.settings for each in read_plan(desk / "x.json").passes] == ["{}", "{}"]

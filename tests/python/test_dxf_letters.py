@@ -210,6 +210,34 @@ def test_mtext_breaks_its_lines_only_where_it_has_a_width(fonts):
         assert len(tops) == lines
 
 
+def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
+    """As programs write styles since 2007; it counted as damaged, for ezdxf has no fonts here to guess with."""
+    document = in_boxes()
+    style = document.styles.get("Boxes")
+    style.set_extended_font_data("Boxes")
+    document.modelspace().add_mtext("A A", {"char_height": 7, "style": "Boxes", "insert": (50, 50)})
+    design = read(document)
+    assert [boxes(element)[0] for element in design.elements] == [(50, 43, 56, 50), (64, 43, 70, 50)]
+    assert not any(notice.damaged for notice in design.notices)
+
+
+@pytest.mark.parametrize(
+    "long",
+    ["AAAA AAAA", r"\H14;AA AA", r"\fBoxes|b1|i0;AA A A", r"A\S1/2; A A", r"{\W2;A A}A"],
+)
+def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
+    """In a text without a width, the longest line is as wide as the text: with a margin, shorter ones lie aside."""
+    document = in_boxes()
+    content = rf"\pxqc;{{{long}}}\PA"
+    document.modelspace().add_mtext(content, {"char_height": 7, "style": "Boxes", "insert": (10, 90)})
+    found = [box for element in read(document).elements if element.fill_rule for box in boxes(element)]
+    *above, below = found
+    assert len({round(box[1]) for box in above}) <= 3 and below[3] < min(box[1] for box in above)
+    left, right = min(box[0] for box in above), max(box[2] for box in above)
+    assert left == pytest.approx(10, abs=2.5), "where the text was set"
+    assert (below[0] + below[2]) / 2 == pytest.approx((left + right) / 2, abs=2.5)
+
+
 @pytest.mark.parametrize(
     ("font", "family", "name", "why"),
     [

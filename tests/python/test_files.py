@@ -1,7 +1,10 @@
 """Files are whole or not there, and so are several."""
 
 import os
+import signal
 import stat
+import subprocess
+import sys
 import traceback
 
 import pytest
@@ -109,6 +112,61 @@ def test_a_full_disk_or_ctrl_c_leaves_the_old_files(tmp_path, monkeypatch, stop)
         assert refusal.value.file == str(paths[1])
     assert [path.read_text() for path in paths] == ["old", "old"]
     assert len(os.listdir(tmp_path)) == 2
+
+
+WRITER = """
+import sys
+from brushsvg.files import write_files
+def slowly():
+    yield "half"
+    print("half", flush=True)
+    yield sys.stdin.read()
+write_files({"word.ngc": slowly()})
+"""
+
+
+def writer(folder):
+    """A process of its own that has written half of word.ngc and waits for the other half."""
+    pipe = subprocess.PIPE
+    started = subprocess.Popen([sys.executable, "-c", WRITER], cwd=folder, stdin=pipe, stdout=pipe, text=True)
+    assert started.stdout.readline() == "half\n"
+    return started
+
+
+def test_what_a_killed_run_left_is_cleared_by_the_next_that_writes_the_file(tmp_path):
+    killed = writer(tmp_path)
+    killed.send_signal(signal.SIGKILL)
+    killed.communicate()
+    (left,) = os.listdir(tmp_path)
+    foreign = [
+        ".word.ngc.part",
+        ".word.ngc.backup-1.part",
+        ".word.ngc.abcdefgh.part~",
+        "word.ngc.abcdefgh.part",
+    ]
+    for name in foreign:
+        (tmp_path / name).write_text("somebody's own")
+    write_files({tmp_path / "word": "another file"})
+    assert left in os.listdir(tmp_path)
+    write_files({tmp_path / "word.ngc": "whole"})
+    assert sorted(os.listdir(tmp_path)) == sorted(["word", "word.ngc", *foreign])
+
+
+def test_the_file_of_a_living_process_is_left_alone(tmp_path):
+    alive = writer(tmp_path)
+    write_files({tmp_path / "word.ngc": "mine"})
+    assert len(os.listdir(tmp_path)) == 2
+    alive.communicate("and half")
+    assert alive.returncode == 0
+    assert os.listdir(tmp_path) == ["word.ngc"]
+    assert (tmp_path / "word.ngc").read_text() == "halfand half"
+
+
+@pytest.mark.parametrize("letter", ["a", "\u00fc", "\U0001f58c"])
+def test_a_name_as_long_as_the_system_allows_can_be_written(tmp_path, letter):
+    path = tmp_path / (letter * (255 // len(letter.encode())))
+    write_files({path: "x"})
+    assert os.listdir(tmp_path) == [path.name]
 
 
 def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):

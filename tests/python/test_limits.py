@@ -10,7 +10,7 @@ from programs import call
 from brushsvg import _core, limits
 from brushsvg.brushes import find_brush
 from brushsvg.cell import Reload, Station
-from brushsvg.cell_file import find_cell, read_cell, write_cell
+from brushsvg.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.jobs import border, paper_height
 from brushsvg.limits import astray, astray_between
@@ -208,12 +208,12 @@ def test_a_number_tells_that_it_is_outside():
 
 def test_boxes_to_keep_out_of_are_written_read_and_named(desk, capsys):
     cell = robot(**POST)
-    assert read_cell(write_cell(cell)) == cell
+    assert parse_cell(write_cell(cell)) == cell
     (desk / "mine.toml").write_text(write_cell(cell))
     assert "not in x -40 to 40, y -40 to 40, z -50 to 300 mm" in call(capsys, "cell", "show", "mine.toml")[1]
     turned = robot(keep_out_mm=(((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ((0.0, 0.0, 5.0), (1.0, 1.0, 1.0))))
     with pytest.raises(Error, match="box 2: the first corner must be the lower one") as refusal:
-        read_cell(write_cell(turned))
+        parse_cell(write_cell(turned))
     assert refusal.value.where == "workspace.keep_out_mm"
 
 

@@ -1,5 +1,7 @@
 """A brush from a few numbers paints what was typed in, says what it assumes, and is refused when it cannot be."""
 
+import csv
+import io
 import json
 
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from brushsvg import _core, compensate, find_brush, read_drawing, strokes
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.measurements import read_widths
+from brushsvg.measurements import read_measurements, read_widths
 from brushsvg.new_brush import new_brush
 
 
@@ -89,6 +91,62 @@ def test_a_table_of_widths():
         with pytest.raises(Error, match=said) as refusal:
             read_widths(text)
         assert refusal.value.where == where
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("mark", [".", ","])
+def test_a_table_as_any_spreadsheet_writes_it(separator, mark, ending):
+    """With quotes where a separator stands in a number, and the empty rows and columns of a sheet."""
+    cells = [["depth_mm", "note", "width_mm", ""], ["3", "1,5 or 1.5; a", "2.5", ""], ["", "", "", ""]]
+    cells += [["+8.25", "", "7e0", ""]]
+    for row in cells:
+        row[:] = [row[0].replace(".", mark), row[1], row[2].replace(".", mark), row[3]]
+    file = io.StringIO()
+    csv.writer(file, delimiter=separator, lineterminator=ending).writerows(cells)
+    assert read_widths(file.getvalue()) == [(3, 2.5), (8.25, 7)]
+    measured = io.StringIO()
+    csv.writer(measured, delimiter=separator, lineterminator=ending).writerows(
+        [["kind", "depth_mm", "value_mm"], ["lag", f"3{mark}5", f"7{mark}25"]]
+    )
+    (row,) = read_measurements(measured.getvalue().encode(), ".csv").rows["lag"]
+    assert (row.depth_mm, row.numbers["value_mm"], row.where) == (3.5, 7.25, "line 2")
+
+
+@pytest.mark.parametrize(
+    ("table", "where", "said"),
+    [
+        (
+            "depth_mm;width_mm\n3;2,5\n8;7.1\n",
+            "line 2, width_mm",
+            "'2,5' has a comma for its decimals and '7.1'",
+        ),
+        ("depth_mm;width_mm\n3;1.234,5\n", "line 2, width_mm", "'1.234,5' is not a number"),
+        ("depth_mm;width_mm\n3;1,234,567\n", "line 2, width_mm", "'1,234,567' is not a number"),
+        ("depth_mm;width_mm\n3,2.5\n", "line 2, depth_mm", "'3,2.5' is not a number"),
+        ("depth_mm,width_mm\n3;2,5\n", "line 2, depth_mm", "'3;2' is not a number"),
+        (
+            "depth_mm;width_mm\n3;2;5\n",
+            "line 2",
+            "'5' stands beyond the columns of the first line\nin line 2",
+        ),
+        ("depth_mm,width_mm\n3,2,5\n", "line 2", "or semicolons stand between columns"),
+        ("depth_mm,width_mm,a;depth_mm;width_mm\n", "line 1", "separated by commas and by semicolons"),
+        (
+            "depth_mm|width_mm\n3|2\n",
+            "",
+            "with semicolons or tabs for the commas; it lacks depth_mm and width_mm",
+        ),
+        ("depth_mm;weight\n3;2\n", "", "it lacks width_mm"),
+        ("depth_mm;width_mm\n3;1_0\n", "line 2, width_mm", "'1_0' is not a number"),
+        ("depth_mm;width_mm\n3;\u0663\n", "line 2, width_mm", "is not a number"),
+        ('depth_mm;width_mm\n"3;2\n', "line 2, depth_mm", "is not a number"),
+    ],
+)
+def test_a_table_that_could_be_read_in_two_ways_is_refused(table, where, said):
+    with pytest.raises(Error, match=said) as refused:
+        read_widths(table)
+    assert refused.value.where == where
 
 
 def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):

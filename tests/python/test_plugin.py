@@ -85,6 +85,31 @@ def test_a_name_in_the_zip_cannot_lead_elsewhere(profile, tmp_path, zipped):
     assert (profile / "evil.py").exists() and not list(tmp_path.glob("evil.py"))
 
 
+@pytest.mark.parametrize(
+    "script", sorted(path.name for path in SOURCE.glob("*.py") if "import etree" in path.read_text())
+)
+@pytest.mark.parametrize("module", ["lxml", "cssselect"])
+def test_what_inkscapes_python_lacks_is_told_with_its_package(tmp_path, script, module):
+    """As in a system whose Inkscape was installed without what it recommends."""
+    (tmp_path / "drawing.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+    lacks = f"raise ModuleNotFoundError('No module', name='{module}')\n"
+    for name in ("inkex", "lxml"):
+        (tmp_path / f"{name}.py").write_text(lacks)
+    done = subprocess.run(
+        [sys.executable, SOURCE / script, "--executable=true", "drawing.svg"],
+        env={"PYTHONPATH": str(tmp_path), "PATH": "/usr/bin:/bin"},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == (
+        f"{sys.executable}, which Inkscape runs extensions with, lacks {module}: install the package "
+        f"python3-{module} on Debian and Ubuntu, else with  {sys.executable} -m pip install {module}\n"
+    )
+
+
 def test_where_inkscape_looks(monkeypatch):
     monkeypatch.delenv("INKSCAPE_PROFILE_DIR", raising=False)
     monkeypatch.delenv("XDG_CONFIG_HOME", raising=False)

@@ -1,8 +1,10 @@
 """The package as a library: its names, what they cost, the examples, and writing a program from Python."""
 
+import inspect
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +39,45 @@ def test_names_and_table_agree():
 )
 def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
     python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")
+
+
+def test_whatever_reads_a_file_is_given_its_path():
+    for name in (name for name in brushsvg.__all__ if name.startswith("read_")):
+        assert next(iter(inspect.signature(getattr(brushsvg, name)).parameters)) == "path", name
+
+
+@pytest.mark.parametrize("name", ["cell.toml", "plan.json", "marks.json"])
+def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    kind = name.split(".")[0]
+    read, write = (getattr(brushsvg, f"{does}_{kind}") for does in ("read", "write"))
+    brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
+    text = write(
+        {"cell": brushsvg.find_cell("ur5e"), "plan": plan, "marks": brushsvg.simulate(plan, brush)}[kind]
+    )
+    Path(name).write_text(text, encoding="utf-8")
+    assert write(read(name)) == write(read(tmp_path / name)) == text  # a str without a slash is a path too
+    if kind != "cell":
+        assert write(read(text)) == text
+    for data in (None, b"\xff\xfe", b"moo", text.encode()[:40]):
+        path = tmp_path / f"faulty-{name}"
+        if data is not None:
+            path.write_bytes(data)
+        with pytest.raises(brushsvg.Error) as refused:
+            read(path)
+        assert refused.value.file == str(path)
+
+
+def test_what_is_set_up_has_the_extras_that_its_commands_need():
+    root = Path(__file__).parents[2]
+    extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    asked = re.findall(
+        r'lacking\("[^"]*", (.*)\)', "".join(map(Path.read_text, root.glob("python/brushsvg/**/*.py")))
+    )
+    named = {name for each in asked for name in re.findall('"(.*?)"', each)}
+    assert named == {re.split("[<>=]", each)[0] for name in ("text", "plot") for each in extras[name]}
+    (installs,) = re.findall(r"-e (\S*)$", (root / "Makefile").read_text().split("$(VENV)/.dev:")[0], re.M)
+    assert installs.strip("\"'") == ".[text,plot]"
 
 
 def test_importing_the_package_loads_nothing():
@@ -105,7 +146,7 @@ def test_write_program_by_extension(tmp_path):
     brushsvg.write_program(tmp_path / "a.ngc", plan_of(SOUND), brush, title="one")
     assert (tmp_path / "a.ngc").read_text().startswith("(title: one)")
     brushsvg.write_program(tmp_path / "a.json", plan_of(SOUND), brush)
-    assert len(brushsvg.read_plan((tmp_path / "a.json").read_text()).passes) == 1
+    assert len(brushsvg.read_plan(tmp_path / "a.json").passes) == 1
 
 
 @pytest.mark.parametrize(

@@ -12,12 +12,13 @@ from programs import call
 from test_gcode import TWO, text_of
 
 from brushsvg.cell import Reload, Servo, Station
-from brushsvg.cell_file import find_cell, read_cell, write_cell
+from brushsvg.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
 from brushsvg.jobs import border
 from brushsvg.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.program import Job, program
-from brushsvg.rewriting import _folded
+from brushsvg.readback import Act
+from brushsvg.rewriting import _Alike
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")
@@ -113,7 +114,7 @@ def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
     with pytest.raises(
         Error, match=r"clearance_mm 0\.5 is outside the range \[0\.6, 5\] mm: one value"
     ) as refusal:
-        read_cell(write_cell(coarse))
+        parse_cell(write_cell(coarse))
     assert refusal.value.where == "heights.clearance_mm"
 
 
@@ -163,13 +164,13 @@ def test_the_output_is_never_switched_off():
     assert text.endswith("(end: the brush is held up)\n")
 
 
-def test_a_lift_is_compared_by_what_it_waits_beyond_its_own_way():
+def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     """Where the line before it was held, rounded heights do not tell to the value: a lift that begins four values
     later waits a tenth of a millimetre less, and was taken for one that was changed."""
+    like = _Alike(CELL, knows_speeds=True)
 
-    def told(begins, waits_s):
-        text = ["F120.0", f"G1 X1.0000 Y2.0000 S{begins}", "M3 S510", f"G4 P{waits_s}", "G4 P0.150"]
-        return _folded([*enumerate(text)], CELL.servo)[-1][1]
+    def lift(waits_s):
+        return Act(1, "lift", same=(510.0, waits_s))
 
-    assert told(500, "0.125") == told(496, "0.175") == "M3 S510 G4 P0.150"
-    assert told(500, "0.050") == "M3 S510 G4 P0.075", "too short by as much as was taken away"
+    assert like.is_same(lift(0.275), lift(0.325))
+    assert not like.is_same(lift(0.150), lift(0.325)), "shorter than that something was taken away"

@@ -485,12 +485,12 @@ def test_a_width_under_an_uneven_transform_is_the_mean_and_is_told():
         ("#a1b2c3ff", "#a1b2c3"),
         ("rgb(255, 0,10)", "#ff000a"),
         ("rgb(100% 0% 50%)", "#ff0080"),
-        ("rgba(1,2,3,.5)", "#010203"),
+        ("rgba(1,2,3,.5)", "#01020380"),
         ("hsl(120, 100%, 25%)", "#008000"),
         ("none", "none"),
-        ("transparent", "none"),
-        ("#a1b2c300", "none"),
-        ("rgba(1,2,3,0)", "none"),
+        ("transparent", "#00000000"),
+        ("#a1b2c300", "#a1b2c300"),
+        ("rgba(1,2,3,0)", "#01020300"),
         ("mauve-ish", None),
         ("#12345", None),
         ("rgb(1,2)", None),
@@ -549,7 +549,7 @@ def test_document_order_is_kept_across_groups_and_tags():
 # What is not painted is named.
 
 FIRST = '<path d="M0 0H5"/>'
-GRADIENT = '<linearGradient id="g"/>'
+GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradient>'
 
 
 @pytest.mark.parametrize(
@@ -558,7 +558,7 @@ GRADIENT = '<linearGradient id="g"/>'
         ('<text id="t">x</text>', "t", "inkscape --export-text-to-path"),
         ('<image id="i"/>', "i", "image is not read"),
         ("<foreignObject/>", "foreignObject 1", "foreignObject is not read"),
-        ("<animate/>", "animate 1", "animate is not read"),
+        ("<g><set/><animate/></g>", "svg", "animations are not read: 2 left out"),
         ('<path id="p" d="M0 0H5" stroke="none"/>', "p", "it has neither stroke nor fill"),
         ('<path id="p" d="M0 0H5" stroke-opacity="0"/>', "p", "it has neither stroke nor fill"),
         ('<path id="p" d="M0 0H5" stroke-width="0"/>', "p", "it has neither stroke nor fill"),

@@ -35,6 +35,10 @@ def width(css, body=P):
         (".a{stroke-width:2!important} #p{stroke-width:3}", 2),
         ("@media screen{path{stroke-width:2}} @media print{path{stroke-width:3}}", 2),
         ("@font-face{src:x} path{stroke-width:2}", 2),
+        ("@media not print{path{stroke-width:2}}", 2),
+        ("@media (prefers-color-scheme: dark){path{stroke-width:2}}", 1),
+        ("@media (prefers-color-scheme: light), (color){path{stroke-width:2}}", 2),
+        ("@namespace url(http://www.w3.org/2000/svg);path{stroke-width:2}", 2),
         ("/* c */ path{/* c */stroke-width:2/* c */}", 2),
         ("path{stroke-width:2;bogus;stroke:}", 2),
         ("<![CDATA[svg > path{stroke-width:2}]]>", 2),
@@ -55,6 +59,11 @@ def test_attribute_rule_style_and_importance():
     assert width("path{stroke-width:3}", body.format(' style="stroke-width:4"')) == 4
     assert width("path{stroke-width:3!important}", body.format(' style="stroke-width:4"')) == 3
     assert width("path{stroke-width:3!important}", body.format(' style="stroke-width:4!important"')) == 4
+
+
+def test_style_elements_of_html_count():
+    style = '<style xmlns="http://www.w3.org/1999/xhtml">path{stroke-width:2}</style>'
+    assert read(style + P).elements[0].stroke_width_mm == 2
 
 
 def test_rules_are_inherited_and_a_variable_may_be_set_below():
@@ -87,6 +96,10 @@ def test_own_properties_are_inherited_only_when_asked():
         ("@layer ink{path{stroke-width:2}}", "@layer is not read: what it says is missing"),
         ("@supports (fill: red){path{stroke-width:2}}", "@supports is not read"),
         ("path stroke:red", "is not CSS"),
+        ("@media (min-width:1px){path{stroke-width:2}}", "@media (min-width:1px) is not read"),
+        ("@media screen and (color), print{path{stroke-width:2}}", "@media screen and (color) is not read"),
+        ("svg{path{stroke-width:2}}", "rules in the rule 'svg' are not read"),
+        ("@namespace url(urn:x);path{stroke-width:2}", "@namespace is not read"),
     ],
 )
 def test_what_of_a_style_sheet_is_not_read(css, sentence):

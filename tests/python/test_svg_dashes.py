@@ -49,6 +49,9 @@ def test_dashes_of_a_straight_line():
         ('stroke-dasharray="10%"', 2),
         ('stroke-dasharray="0 5"', 4),
         ('stroke-dasharray="30"', 1),
+        ('stroke-dasharray="4 1"', 4),
+        ('stroke-dasharray="4 1" transform="scale(.7)"', 4),
+        ('stroke-dasharray="4 1" transform="rotate(31)"', 4),
         ('stroke-dasharray="1mm 1mm"', 3),
         ('stroke-dasharray="0"', 1),
         ('stroke-dasharray="3 -1"', 1),
@@ -58,6 +61,31 @@ def test_dashes_of_a_straight_line():
 )
 def test_patterns(attributes, count):
     assert len(read(f'<path d="M0 0H20" {attributes}/>').elements[0].subpaths) == count
+
+
+@pytest.mark.parametrize(
+    ("said", "ends"),
+    [("10", [0, 4, 8, 12, 16, 20]), ("40", [0, 1, 2, 3, 4, 5]), ("0", [0, 20]), ("-3", [0, 2, 4, 6, 8, 10])],
+)
+def test_path_length_stretches_the_dashes(said, ends):
+    """A path of 20 mm said to be 10 long has dashes twice as long; of no length none."""
+    design = read(f'<path d="M0 0H20" stroke-dasharray="2" pathLength="{said}"/>')
+    spans = [(start[0], end[0]) for _, start, end in lines(design)]
+    assert np.ravel(spans)[: len(ends)] == pytest.approx(np.array(ends))
+    (notice, *_) = read('<path id="p" d="M0 0H20" stroke-dasharray="2" pathLength="x"/>').notices
+    assert notice.sentence == "pathLength: 'x' is not a number; it counts as not given"
+
+
+def test_path_length_is_of_all_sub_paths_and_stretches_the_offset():
+    body = '<path d="M0 0H20M0 9H20" stroke-dasharray="2" stroke-dashoffset="1" pathLength="20" transform="scale(.5)"/>'
+    spans = [(start[0], end[0]) for _, start, end in lines(read(body))]
+    assert spans[:2] == [(0, 1), (3, 5)] and len(spans) == 6
+
+
+def test_a_list_of_dashes_that_is_none_is_told():
+    for text in ("20 10,", "1,,2", ",3"):
+        (notice,) = read(f'<path d="M0 0H20" stroke-dasharray="{text}"/>').notices
+        assert "the line counts as solid" in notice.sentence
 
 
 def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():

@@ -78,6 +78,31 @@ def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():
         assert element.subpaths[0].cubics[0, 0].tolist() == [0, 50]
 
 
+@pytest.mark.parametrize("other", ["spiro", "bspline", "mirror_symmetry", "powerstroke", "skeletal"])
+@pytest.mark.parametrize("order", ["#e;#f", "#f; #e"])
+def test_beside_another_effect_the_outline_counts(other, order):
+    """It is what Inkscape shows: the line under a Spiro was drawn 5 mm from where it lies."""
+    effects = EFFECT.format(effect="powerstroke", visible="true", kind="Linear", points="0,1", scale=1)
+    effects += f'<inkscape:path-effect effect="{other}" id="f"/>'
+    design = read(f"<defs>{effects}</defs>{PATH.replace('#e', order).format('')}")
+    (element,) = design.elements
+    assert element.fill_rule and element.subpaths[0].widths is None
+    assert element.subpaths[0].cubics[0, 0].tolist() == [0, 50]
+    (sentence,) = sentences(design)
+    assert "its PowerStroke is not read beside" in sentence and sentence.endswith("its outline counts")
+    hidden = effects.replace('id="f"', 'id="f" is_visible="false"')
+    assert not read(f"<defs>{hidden}</defs>{PATH.replace('#e', order).format('')}").notices
+
+
+def test_in_a_group_with_effects_the_outline_counts():
+    effects = EFFECT.format(effect="powerstroke", visible="true", kind="Linear", points="0,1", scale=1)
+    design = read(f'<defs>{effects}</defs><g inkscape:path-effect="#x"><g>{PATH.format("")}</g></g>')
+    assert design.elements[0].fill_rule
+    assert sentences(design) == [
+        "p: its PowerStroke is not read beside path effect of a group: its outline counts"
+    ]
+
+
 def test_many_points_on_a_long_line():
     design = powered(" | ".join(f"{k / 500:.4f},{1 + k % 3}" for k in range(1001)))
     assert width_at(design, 0.5) == pytest.approx(2 * (1 + 500 % 3))

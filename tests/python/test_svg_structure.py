@@ -1,7 +1,7 @@
 """use, symbol, nested svg, switch, layers, and what a drawing says to brushsvg."""
 
 import pytest
-from svg_text import lines, read, sentences
+from svg_text import HEAD, lines, read, sentences
 
 from brushsvg import Error
 from brushsvg.importers import ReadOptions, svg_element
@@ -134,14 +134,155 @@ def test_transforms_as_css_writes_them_and_about_an_origin():
     assert start('transform="scale(2)" transform-origin="50% 0"') == (-30, 0)
     assert start('transform="scale(2)" transform-origin="right bottom"') == (-80, -50)
     assert start('transform="scale(2)" transform-origin="top left"') == (20, 0)
-    assert start('transform="rotate(90deg)"') == pytest.approx((0, 10))
     assert start('style="transform:scale(50%) scaleX(200%)"') == (10, 0)
-    for broken in ("translate(50%)", "scale(x)", "turn(3)"):
+    for broken in (
+        "rotate(20)",
+        "translate(2 3)",
+        "scale(x)",
+        "turn(3)",
+        "rotate(1deg, 2px)",
+        "skewX(1rad) x",
+    ):
         design = read(f'<path id="p" d="M10 0H5" transform="scale(2)" style="transform:{broken}"/>')
         assert lines(design)[0][1] == (20, 0), "the attribute serves"
         assert [notice.damaged for notice in design.notices] == [True]
     design = read('<path id="p" d="M0 0H5" transform="scale(2)" transform-origin="1vw 0"/>')
     assert design.notices[0].damaged
+
+
+@pytest.mark.parametrize(
+    "text", ["rotate(90deg)", "translateX(2)", "scale(50%)", "translate(2px 3px)", "skew(3)"]
+)
+def test_the_attribute_has_neither_units_nor_the_functions_of_css(text):
+    design = read(f'<path d="M10 0H20" transform="{text}"/>')
+    assert lines(design)[0][1] == (10, 0)
+    assert [notice.damaged for notice in design.notices] == [True]
+
+
+@pytest.mark.parametrize(
+    ("origin", "point"),
+    [
+        ("top", (50, 0)),
+        ("bottom", (50, 50)),
+        ("left", (0, 25)),
+        ("right", (100, 25)),
+        ("center", (50, 25)),
+        ("TOP left", (0, 0)),
+        ("center right", (100, 25)),
+        ("center bottom", (50, 50)),
+        ("bottom center", (50, 50)),
+        ("10px", (10, 25)),
+        ("10% 20%", (10, 10)),
+        ("left 20px", (0, 20)),
+        ("1in top", (96, 0)),
+        ("-10px 0 5px", (-10, 0)),
+    ],
+)
+def test_transform_origin_in_all_its_words(origin, point):
+    x, y = point
+    for said in (
+        f'transform="scale(2)" transform-origin="{origin}"',
+        f'style="transform:scale(2);transform-origin:{origin}"',
+        f'style="scale:2;-webkit-transform-origin:{origin}"',
+    ):
+        assert lines(read(f'<path d="M10 4H20" {said}/>'))[0][1] == pytest.approx((20 - x, 8 - y)), said
+
+
+@pytest.mark.parametrize(
+    "origin", ["top 20px", "20px left", "left left", "1 2 3 4", "10% 20% 30%", "x", "5,6"]
+)
+def test_a_transform_origin_that_is_none_is_told(origin):
+    design = read(f'<path id="p" d="M10 4H20" transform="scale(2)" transform-origin="{origin}"/>')
+    assert lines(design)[0][1] == (20, 8)
+    assert [notice.damaged for notice in design.notices] == [True]
+
+
+def test_transform_box_counts_from_the_shape():
+    def start(attributes, shape='path d="M10 4H20V14"'):
+        return lines(read(f"<{shape} {attributes}/>"))[0][1]
+
+    box = "transform-box:fill-box;transform"
+    assert start(f'style="{box}:scale(3);transform-origin:center"') == (0, -6)
+    assert start(f'style="{box}-origin:100% 0" transform="scale(3)"') == (-10, 4)
+    assert start(f'style="{box}:scale(3)"') == (10, 4), "about its corner where no origin is said"
+    assert start(f'style="{box}:translate(50%, 20%)"') == (15, 6)
+    circle = 'circle r="5" cx="30" cy="20"'
+    assert start(f'style="{box}:rotate(90deg);transform-origin:50% 50%"', circle) == pytest.approx((30, 25))
+    for body in (
+        f'<g id="p" style="{box}:scale(3)"><path d="M10 4H20"/></g>',
+        '<path id="p" style="transform-box:stroke-box;transform:scale(3)" d="M10 4H20"/>',
+    ):
+        (notice,) = read(body).notices
+        assert notice.damaged and "transform-box" in notice.sentence
+
+
+def test_translate_rotate_and_scale_as_properties():
+    def start(style, attribute=""):
+        return lines(read(f'<path d="M10 0H20" style="{style}" {attribute}/>'))[0][1]
+
+    assert start("translate:2px 3px") == (12, 3)
+    assert start("translate:10%") == (20, 0)
+    assert start("rotate:90deg") == pytest.approx((0, 10))
+    assert start("scale:2 3", 'transform="translate(1 1)"') == (22, 3)
+    assert start("transform:translate(1px, 2px);scale:200%;rotate:90deg;translate:5px") == pytest.approx(
+        (1, 22)
+    )
+    assert start("rotate:none;scale:none;translate:none") == (10, 0)
+    for style in ("rotate:x 20deg", "rotate:20", "translate:3", "scale:1 2 3", "scale:x"):
+        assert [notice.damaged for notice in read(f'<path d="M0 0H5" style="{style}"/>').notices] == [True]
+
+
+def test_a_transform_of_the_drawing_itself_is_told():
+    text = HEAD.replace("<svg", '<svg transform="rotate(20)"') + '<path d="M10 0H20"/></svg>'
+    design = read_svg(text.encode())
+    assert lines(design)[0][1] == (10, 0)
+    assert [notice.damaged for notice in design.notices] == [True]
+
+
+@pytest.mark.parametrize(
+    "name",
+    "mix-blend-mode:darken offset-path:none animation:a mask-image:none -webkit-mask:url(#a) -webkit-filter:blur(5px)"
+    " content-visibility:hidden all:unset".split(),
+)
+def test_what_css_alone_says_is_told(name):
+    of, value = name.split(":")
+    told = sentences(read(f'<g id="g" style="{name}"><path d="M0 0H5"/></g>'))
+    begin = f"g: {of.removeprefix('-webkit-')} is not read: it counts as "
+    assert [sentence.startswith(begin) for sentence in told] == ([] if value == "none" else [True])
+
+
+def test_empty_attributes_count_as_not_given():
+    names = "x y rx ry transform transform-origin stroke stroke-width opacity style class fill visibility"
+    empty = " ".join(f'{name}=""' for name in names.split())
+    design = read(f'<rect width="5" height="5" {empty}/><use href="#a" x="" y=" "/><path id="a" d="M0 0H1"/>')
+    assert not design.notices and len(design.elements) == 3
+    assert (design.elements[0].colour, design.elements[0].stroke_width_mm) == ("#ff0000", 1)
+    flat = read('<path d="M0 0H1"/><rect id="r" width="5" height=""/>')
+    assert sentences(flat) == ["r: it has no geometry: left out"]
+    head = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="" height="" viewBox="0 0 9 9" preserveAspectRatio="">'
+    )
+    root = head + '<rect width="1" height="1"/></svg>'
+    (notice,) = read_svg(root.encode()).notices
+    assert "no width and height in absolute units" in notice.sentence
+    sized = root.replace('width="" height=""', 'width="30mm" height="40mm"').replace('"0 0 9 9"', '""')
+    assert read_svg(sized.encode()).sheet_mm == (30, 40)
+
+
+def test_a_blank_before_a_unit_is_no_length():
+    (notice,) = read('<path id="p" d="M0 0H5" stroke-width="12 px"/>').notices
+    assert notice.damaged and "has a blank before its unit" in notice.sentence
+
+
+def test_what_d_says_in_css_is_a_path_or_counts_as_not_given():
+    for text in ("M1 1H3", "path(evenodd, 'M1 1H3')", "path('M1 1H3' x)", "circle(5px)"):
+        assert lines(read(f'<path d="M0 0H5" style="d:{text}"/>'))[0][1:] == ((0, 0), (5, 0))
+    assert len(read('<path d="M0 0H5" style="d:none"/><path d="M0 0H5"/>').elements) == 1
+
+
+def test_an_empty_href_wins_over_the_old_one():
+    design = read('<path id="a" d="M0 0H5"/><use id="u" href="" xlink:href="#a"/>')
+    assert sentences(design) == ["u: it has no href, so it uses nothing: left out"]
 
 
 def test_nameless_elements_are_counted_and_notices_use_the_same_name():

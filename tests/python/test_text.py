@@ -493,7 +493,8 @@ def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypat
     monkeypatch.delitem(sys.modules, "brushsvg.text.outline_font", raising=False)
     monkeypatch.delattr("brushsvg.text.outline_font", raising=False)
     monkeypatch.setitem(sys.modules, "uharfbuzz", None)
-    assert sentence("A", ttf) == "outline fonts need the extra: pip install brushsvg[text]"
+    pip = f"{sys.executable} -m pip install fonttools uharfbuzz"
+    assert sentence("A", ttf) == f"outline fonts need fonttools and uharfbuzz: install with  {pip}"
     assert len(drawn("TI")) == 2
 
 

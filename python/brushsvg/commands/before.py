@@ -7,6 +7,7 @@ from dataclasses import replace
 from .. import convert, machine
 from ..brushes import find_brush
 from ..console import about
+from ..moves import duration_s
 from ..program import Job
 from .choices import brush_of, cell_of, settle, warn_of_example
 from .outputs import check_places, suffix_of, write
@@ -32,7 +33,7 @@ def border_file(args) -> None:
         )
         text = machine.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
-    write({args.output: text})
+    write(args, {args.output: text}, seconds=duration_s(made))
 
 
 def height_file(args) -> None:
@@ -48,4 +49,4 @@ def height_file(args) -> None:
         header = machine.height_header(brush.name, args.sheet, heights_mm, made)
         text = machine.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
-    write({args.output: text})
+    write(args, {args.output: text}, sum(1 for _ in made.sections()), duration_s(made))

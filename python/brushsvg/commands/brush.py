@@ -50,7 +50,7 @@ def brush_new(args) -> None:
             raise Error(f"a brush named {name} comes along: give yours another name", "name")
         brush = new_brush(name, args.lag, widths, args.depth_max, args.speed)
         text = write_brush(brush)
-    write({path: text})
+    write(args, {path: text})
     tell(f"{path}: {reach(brush)}\n")
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
     deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
@@ -67,4 +67,4 @@ def brush_plot(args) -> None:
     check_places(args.output)
     with about(args.input):
         picture = brush_picture(find_brush(args.input), suffix_of(args.output))
-    write({args.output: picture})
+    write(args, {args.output: picture})

@@ -26,8 +26,8 @@ def calibrate_file(args) -> None:
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, suffix_of(args.plot))
-    write(files)
     warn(args.output, remarks(made.brush))
+    write(args, files)
     tell(report(made))
 
 

@@ -6,7 +6,7 @@ import os
 from dataclasses import replace
 
 from .. import cell_check as cell_checks
-from ..cell_file import DEFAULT_CELL, cell_names, find_cell, read_cell, write_cell
+from ..cell_file import DEFAULT_CELL, cell_names, find_cell, parse_cell, write_cell
 from ..console import RefusedError, about, say, tell, warn
 from ..describe import cell_page
 from ..posts import POSTS
@@ -58,6 +58,6 @@ def cell_new(args) -> None:
             else cell.paper
         )
         text = write_cell(replace(cell, name=name, paper=paper))
-        made = read_cell(text)
-    write({args.output: text})
+        made = parse_cell(text)
     warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
+    write(args, {args.output: text})

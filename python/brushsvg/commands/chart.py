@@ -19,7 +19,7 @@ def chart_file(args) -> None:
 
     check_places(args.output, args.page, args.chart)
     if args.drawing:
-        settle(args, args.drawing)
+        settle(args, args.drawing, alone=True)
     brush = brush_of(args) or find_brush(convert.DEFAULT_BRUSH)
     cell = machine.as_exact_as(cell_of(args), machine.DEFAULT_TOLERANCE_MM)
     with about(args.output):
@@ -39,5 +39,5 @@ def chart_file(args) -> None:
     if args.chart:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)
-    write(files)
+    write(args, files, len(made.plan.passes), machine.time_s(made.plan, brush, cell, job))
     tell(chart_report(made, brush, args.noise))

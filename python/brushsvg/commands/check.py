@@ -64,10 +64,12 @@ def check_file(args) -> None:
         shown = convert.Work(made.title, brush, ran.plan, strokes, (), convert.Options(), ())
         if args.preview:
             outlined = convert.outlined(ran.marks, brush, stage)
-            write({args.preview: convert.picture(suffix_of(args.preview), shown, outlined)})
+            picture = convert.picture(suffix_of(args.preview), shown, outlined)
         seconds = duration_s(again) if again else 0.0
-        suffix = ".json" if args.json else ".txt"
-        tell(convert.report_text(suffix, shown, ran.marks, cell, drawn=drawn, seconds=seconds))
+        figures = convert.reported(shown, ran.marks, cell, drawn=drawn, seconds=seconds)
+        if args.preview:
+            write(args, {args.preview: picture}, len(shown.plan.passes), seconds, figures.total.overlap)
+        tell(report.as_text(".json" if args.json else ".txt", figures))
     _refuse_or_allow(args, problems, work is None)
 
 

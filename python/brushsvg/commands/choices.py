@@ -13,10 +13,11 @@ from ..layout import Layout
 from .outputs import suffix_of
 
 
-def settle(args, drawing: str) -> None:
-    """What was not typed is as the drawing says. It can only name what comes along: it reads no other file."""
+def settle(args, drawing: str, alone: bool = False) -> None:
+    """What was not typed is as the drawing says. It can only name what comes along: it reads no other file. alone:
+    nothing else of the drawing is read."""
     with about(drawing):
-        said = settings_in(drawing)
+        said = settings_in(drawing, alone)
         for kind, names in (("brush", brush_names()), ("cell", cell_names())):
             if getattr(args, kind) is None and said.get(kind, names[0]) not in names:
                 raise Error(

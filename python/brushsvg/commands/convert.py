@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from .. import convert, machine, paint
+from .. import convert, machine, paint, report
 from ..console import RefusedError, about, stage, warn
 from ..fold import folded
 from ..program import Job
 from .choices import cell_of, settle, warn_of_example
 from .outputs import check_places, suffix_of, write
-from .work import prepare
+from .work import prepare, seconds_of
 
 
 def convert_file(args) -> None:
@@ -39,10 +39,15 @@ def convert_file(args) -> None:
         files = {args.output: program}
         if args.preview:
             files[args.preview] = convert.picture(suffix_of(args.preview), work, marks)
+        overlap = None
         if args.report:
-            files[args.report] = convert.report_text(suffix_of(args.report), work, marks, cell)
+            figures = convert.reported(work, marks, cell)
+            files[args.report], overlap = (
+                report.as_text(suffix_of(args.report), figures),
+                figures.total.overlap,
+            )
         too_long = paint.too_long(convert.in_loads(work, cell).plan, work.brush, cell)
     if suffix_of(args.output) != ".json":
         warn(args.input, too_long)
     warn_of_example(args, cell)
-    write(files)
+    write(args, files, len(work.plan.passes) - args.from_stroke + 1, seconds_of(work, cell, job), overlap)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 
-from ..console import RefusedError, about, clear_stage, stage, tell
+from ..console import RefusedError, about, clear_stage, say, stage, tell
 from ..files import write_files
+from ..report import clock
 
 
 def suffix_of(path: str | None) -> str:
@@ -27,11 +28,18 @@ def check_places(*paths: str | None) -> None:
             raise RefusedError([(path, "", f"the file cannot be written: {reason}")])
 
 
-def write(files) -> None:
+def write(args, files, strokes: int | None = None, seconds: float | None = None, overlap=None) -> None:
+    """Write all files, and say so with what is known of them, unless --quiet."""
     stage("writing")
     with about(""):  # the error names the file
         write_files(files)
     clear_stage()
+    if args.quiet:
+        return
+    known = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
+    known += [] if seconds is None else [f"takes about {clock(seconds)}"]
+    known += [] if overlap is None else [f"overlap {overlap:.3f}"]
+    say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(known)])]))
 
 
 def tell_list(names: list[str], describe) -> None:

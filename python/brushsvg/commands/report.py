@@ -26,10 +26,11 @@ def report_file(args) -> None:
     with about(args.input):
         stage("trying other sizes")
         advice = convert.advice(work)
+        figures = convert.reported(work, marks, cell, warnings, advice=advice, forbidden=forbidden)
+        text = report.as_text(".json" if args.json else ".txt", figures)
         if args.preview:
-            write({args.preview: convert.misses_picture(suffix_of(args.preview), work, marks)})
-        suffix = ".json" if args.json else ".txt"
-        text = convert.report_text(suffix, work, marks, cell, warnings, advice=advice, forbidden=forbidden)
+            picture = convert.misses_picture(suffix_of(args.preview), work, marks)
+            write(args, {args.preview: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
     if work.plan.passes or args.json:
         tell(text)
     elif advice:

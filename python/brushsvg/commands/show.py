@@ -11,15 +11,15 @@ from ..layout import arrange
 from ..strokes import strokes as strokes_of
 from .choices import cell_of, layout_of, reading_of, settle
 from .outputs import check_places, suffix_of, write
-from .work import look
+from .work import look, seconds_of
 
 
 def predict_file(args) -> None:
     check_places(args.output)
     settle(args, args.input)
-    suffix = suffix_of(args.output)
+    cell, suffix = cell_of(args), suffix_of(args.output)
     outlines = suffix != ".png" or args.band
-    work, marks, *_ = look(args, cell_of(args), outlines=outlines, whole=suffix == ".json")
+    work, marks, *_ = look(args, cell, outlines=outlines, whole=suffix == ".json")
     with about(args.input):
         band = None
         if args.band:
@@ -30,7 +30,7 @@ def predict_file(args) -> None:
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = convert.picture(suffix_of(args.output), work, marks, band)
-    write({args.output: picture})
+    write(args, {args.output: picture}, len(work.plan.passes), seconds_of(work, cell))
 
 
 def animate_file(args) -> None:
@@ -40,7 +40,7 @@ def animate_file(args) -> None:
     work, marks, *_ = look(args, cell, outlines=True, in_loads=True)
     with about(args.input):
         page = convert.played(work, marks, cell, args.speed)
-    write({args.output: page})
+    write(args, {args.output: page}, len(work.plan.passes), seconds_of(work, cell))
 
 
 def import_file(args) -> None:
@@ -64,4 +64,4 @@ def import_file(args) -> None:
             from ..overview import overview
 
             picture = overview(suffix_of(args.output), design, strokes, notices)
-    write({args.output: picture})
+    write(args, {args.output: picture}, len(strokes))

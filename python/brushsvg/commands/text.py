@@ -21,4 +21,4 @@ def text_file(args) -> None:
             sheet_mm=args.sheet,
         )
     warn(args.font, [(notice.where, notice.sentence) for notice in notices])
-    write({args.output: drawing.encode()})
+    write(args, {args.output: drawing.encode()})

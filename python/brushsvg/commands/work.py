@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 from .. import convert, machine, paint
 from ..cell import Cell
 from ..console import about, say, stage, warn
+from ..errors import Error
+from ..program import WHOLE_JOB, Job
 from .choices import options_of
 from .outputs import suffix_of
 
@@ -18,6 +22,13 @@ def prepare(args, cell: Cell, brush=None, partly: bool = False) -> convert.Work:
                 say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
     with about(args.input):
         return convert.prepare(args.input, options_of(args, cell, brush), stage, partly)
+
+
+def seconds_of(work: convert.Work, cell: Cell, job: Job = WHOLE_JOB) -> float | None:
+    """How long the machine takes; None where it cannot paint this, which a plan or a picture does not ask."""
+    with suppress(Error):
+        return machine.time_s(work.plan, work.brush, cell, job)
+    return None
 
 
 def look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):

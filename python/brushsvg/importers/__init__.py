@@ -43,16 +43,18 @@ def _dxf(data: bytes, options: ReadOptions) -> Design:
     return read_dxf(data, options)
 
 
-def settings_in(path: str | os.PathLike) -> dict:
+def settings_in(path: str | os.PathLike, alone: bool = False) -> dict:
     """Brush, cell, compensation, tolerance [mm] and wide that a drawing asks for, as far as it does.
 
-    Error if the file cannot be read.
+    Error if the file cannot be read; alone, where nothing else of it will be: also if it is no drawing.
     """
     if os.path.splitext(path)[1].lower() not in (".svg", ".svgz"):
+        if alone:
+            read_bytes(path)  # a DXF asks for nothing, but there should be one
         return {}
     from .svg import settings_of
 
-    return settings_of(read_bytes(path))
+    return settings_of(read_bytes(path), alone)
 
 
 READERS = {".svg": _svg, ".svgz": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)

@@ -14,11 +14,13 @@ from .dxf_file import shown
 from .dxf_fonts import Font, Fonts
 from .dxf_library import ezdxf
 
+_tools = ezdxf.tools.text
+
 _MOST_LETTERS = 50_000  # a brush paints some hundred a day
 _WIDEST = 10_000.0  # columns of MTEXT, in letters: ezdxf makes a tab stop for every fourth
 _MOST_COLUMNS = 1000
+_TAB = 4.0  # heights between the tab stops that ezdxf makes where a text has none of its own
 _FRAME = 16  # of MTEXT's bg_fill; the others are paint behind the letters
-_WIDER = 3.0  # than ezdxf guesses text to be without a font: no line breaks where none was asked for
 
 
 class Letters:
@@ -89,12 +91,11 @@ class Letters:
         height = mtext.dxf.char_height
         if not 0 < height < math.inf:
             raise ValueError(f"its height is {height}")
-        width = mtext.dxf.get("width", 0.0)
-        if not width > 1e-6:
-            width = _WIDER * ezdxf.tools.text.estimate_mtext_extents(mtext)[0]
-        mtext.dxf.width = min(width, _WIDEST * height)
         layout = ezdxf.layouts.VirtualLayout()
-        _Apart(layout, self._document, self._fonts, self._faces).explode(mtext, destroy=False)
+        apart = _Apart(layout, self._document, self._fonts, self._faces)
+        width = mtext.dxf.get("width", 0.0)
+        mtext.dxf.width = min(width if width > 1e-6 else apart.unbroken_width(mtext), _WIDEST * height)
+        apart.explode(mtext, destroy=False)
         return list(layout)
 
     def _count_letters(self, text: str, name: str) -> None:
@@ -116,6 +117,28 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
 
     def get_font(self, ctx):
         return self._fonts.font(ctx.font_face).drawn_at(ctx.cap_height, ctx.width_factor)
+
+    def unbroken_width(self, mtext) -> float:
+        """Of its longest paragraph in one line; with tabs an upper bound."""
+        context = self.make_mtext_context(mtext)
+        height = context.cap_height
+        widest = line = 0.0
+        for token in _tools.MTextParser(mtext.all_columns_raw_content(), context):
+            kind, context = token.type, token.ctx
+            if kind in (_tools.TokenType.NEW_PARAGRAPH, _tools.TokenType.NEW_COLUMN):
+                line = 0.0
+            elif kind == _tools.TokenType.WORD:
+                line += self.get_font(context).text_width(token.data)
+            elif kind == _tools.TokenType.STACK:
+                line += self.fraction(token.data, context).total_width
+            elif kind == _tools.TokenType.TABULATOR:
+                line += max(self.space_width(context), _TAB * height)
+            elif kind in (_tools.TokenType.SPACE, _tools.TokenType.NBSP):
+                line += self.space_width(context)
+            shape = context.paragraph
+            indents = sum(max(0.0, each) for each in (shape.indent, shape.left, shape.right)) * height
+            widest = max(widest, line + indents)
+        return max((1 + 1e-9) * widest, height)
 
     def space_width(self, ctx) -> float:
         return super().space_width(ctx) * ctx.width_factor

@@ -30,21 +30,29 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         raise Error("its CSS is nested too deeply", where="style") from None
 
 
-def settings_of(data: bytes) -> dict:
-    """What the root says of the whole job; {} for a file that is not sound, of which read_svg tells what is wrong."""
+def settings_of(data: bytes, alone: bool = False) -> dict:
+    """What the root says of the whole job; {} for a file that is not sound, of which read_svg tells what is wrong.
+    alone: nobody asks read_svg, so that is told here."""
     is_plain = not data.startswith((b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff"))  # neither compressed nor UTF-16
-    if is_plain and PREFIX.encode() not in data:
+    if is_plain and PREFIX.encode() not in data and not alone:
         return {}
     try:
-        return document_settings(parse_xml(data).root.attrib)
+        return document_settings(_root_of(parse_xml(data)).attrib)
     except Error:
+        if alone:
+            raise
         return {}
 
 
-def _read(document: Document, options: ReadOptions) -> Design:
+def _root_of(document: Document) -> ET.Element:
     root = document.root
     if root.tag not in (SVG + "svg", "svg"):
         raise Error(f"the root element is <{local(root)[:40]}>, not <svg>")
+    return root
+
+
+def _read(document: Document, options: ReadOptions) -> Design:
+    root = _root_of(document)
     page = read_page(root.attrib, options.sheet_mm)
     chosen = selected(root, options.select) if options.select else None
     walk = Walk(root, page, chosen, _beside(document, root, page))

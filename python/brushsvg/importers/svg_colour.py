@@ -1,4 +1,4 @@
-"""Paint as SVG writes it, to "#rrggbb"."""
+"""Paint as SVG writes it, to "#rrggbb" and how far it is seen through."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _HEX = re.compile("#[0-9a-fA-F]{6}")
 
 @lru_cache
 def parse_colour(value: str) -> str | None:
-    """ "#rrggbb", "none" (also for a colour that is fully transparent) or "currentcolor"; None if it is neither."""
+    """ "#rrggbb", "#rrggbbaa" if it can be seen through, "none" or "currentcolor"; None if it is none of them."""
     if value.lower() == "none":
         return "none"
     if _HEX.fullmatch(value):
@@ -25,8 +25,5 @@ def parse_colour(value: str) -> str | None:
         *parts, alpha = colour.to("srgb")
     except (NotImplementedError, ValueError):
         return None
-    return (
-        "#" + bytes(math.floor(255 * min(1.0, max(0.0, part)) + 0.5) for part in parts).hex()
-        if alpha
-        else "none"
-    )
+    shares = parts if alpha >= 1 else [*parts, alpha]
+    return "#" + bytes(math.floor(255 * min(1.0, max(0.0, share)) + 0.5) for share in shares).hex()

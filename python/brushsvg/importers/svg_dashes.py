@@ -8,6 +8,8 @@ from ..design import SubPath
 from ..errors import Error
 from .arc_length import knots, parameters_at
 
+_ROUNDING = 1e-9  # of a length: a dash that begins nearer to the end would be a dab that nobody drew
+
 
 def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float, most: int) -> list[SubPath]:
     """The dashes of one sub-path, in order; the pattern's even entries are painted, an odd count repeats.
@@ -33,7 +35,8 @@ def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float, most: in
         axis=1,
     )
     spans = spans[
-        (spans[:, 1] > 0) & (spans[:, 0] < end) | ((spans[:, 0] == spans[:, 1]) & (spans[:, 0] == 0))
+        (spans[:, 1] > 0) & (spans[:, 0] < end * (1 - _ROUNDING))
+        | ((spans[:, 0] == spans[:, 1]) & (spans[:, 0] == 0))
     ]
     spans = np.clip(spans, 0.0, end)
     if not len(spans):

@@ -10,15 +10,18 @@ import numpy as np
 
 from ..design import Element, SubPath, extremes
 from ..errors import Error
-from ..units import MM_PER
+from ..units import MM_PER, number
 from . import svg_shapes
-from .svg_context import Context, Notes
+from .arc_length import knots
+from .svg_context import Context, Notes, local
+from .svg_paint import Paints
 from .svg_path_effect import PowerStroke, drawn_line, with_widths
-from .svg_style import paint, unread
+from .svg_style import MARKERS
 from .svg_trace import LARGEST_MM, trace
-from .svg_transform import scales
+from .svg_transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
+_WHITE = "#ffffff"
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
 # A page of text has a hundredth of each.
 _MOST_DASHES = 100_000
@@ -26,11 +29,13 @@ _MOST_DATA = 10_000_000  # characters of path data
 
 
 class Painted:
-    """elements: those of the drawing in the order painted."""
+    """elements: those of the drawing in the order painted. bent: what lies in path effects of groups."""
 
-    def __init__(self, by_id: dict[str, ET.Element], notes: Notes):
+    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
         self.elements: list[Element] = []
         self.by_id = by_id
+        self.paints = paints
+        self.bent = bent
         self.notes = notes
         self.nameless = self.data = 0
         self.dashes_left = _MOST_DASHES
@@ -38,10 +43,10 @@ class Painted:
     def add(self, node: ET.Element, tag: str, context: Context) -> None:
         """Take a shape in, as far as it is sound."""
         properties = context.style.inherited
-        stroke, stroke_problem = paint(properties, "stroke", self.by_id)
-        fill, fill_problem = paint(properties, "fill", self.by_id) if tag != "line" else ("none", None)
+        stroke, of_stroke = self.paints.of(properties, "stroke")
+        fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
-        power, sentences = drawn_line(node, self.by_id) if tag == "path" else (None, [])
+        power, sentences = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
             self.notes.add(node, context, "its transforms flatten it to nothing: left out")
@@ -52,12 +57,12 @@ class Painted:
             width_mm *= MM_PER["px"] / mm_per_user
         if power:
             attributes = {**attributes, "d": power.d}
-            stroke, stroke_problem = (fill, fill_problem) if fill != "none" else (stroke, stroke_problem)
-            fill, fill_problem = "none", None
+            stroke, of_stroke = (fill, of_fill) if fill != "none" else (stroke, of_stroke)
+            fill = "none"
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
             if stroke == "none" and fill == "none":  # a shape stays a shape
-                stroke = properties["color"]
+                stroke = properties["color"][:7]
         if power is None and width_mm == 0:
             stroke = "none"
         if stroke == "none" and fill == "none":
@@ -71,12 +76,17 @@ class Painted:
         subpaths = self._drawn(node, tag, attributes, context, power, stroke != "none")
         if not subpaths:
             return
-        of = "fill" if stroke == "none" else "stroke"
-        if of == "stroke" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
+        if stroke != "none" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence)
-        problem = fill_problem if of == "fill" else stroke_problem
-        for sentence in [problem] * bool(problem) + sentences + unread(properties, of, tag in _WITH_MARKERS):
+        sentences += of_fill * (fill != "none") + of_stroke * (stroke != "none")
+        if _WHITE in (fill, stroke):
+            sentences.append(
+                "it is white, and painted like any colour: what it hides in the drawing is painted, too"
+            )
+        if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
+            sentences.append("markers are not read: left out")
+        for sentence in sentences:
             self.notes.add(node, context, sentence)
         self.elements.append(
             Element(
@@ -89,6 +99,20 @@ class Painted:
                 fill_rule="" if fill == "none" else properties["fill-rule"],
             )
         )
+
+    def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
+        """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""
+        attributes = {**node.attrib, **context.style.geometry}
+        try:
+            commands = svg_shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
+        except svg_shapes.DamageError:
+            return None
+        line = trace(commands, IDENTITY, 1.0)
+        if line.beyond is not None or not line.subpaths:
+            return None
+        points = np.concatenate([extremes(subpath.cubics) for subpath in line.subpaths])
+        (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
+        return x, y, width, height
 
     def _named(self, node: ET.Element, context: Context, told: int) -> str:
         """A painted element's name; what was told about one without an id is told about its name as well."""
@@ -142,17 +166,18 @@ class Painted:
             return subpaths
         from .svg_dashes import dashed
 
-        words = properties["stroke-dasharray"].replace(",", " ").split()
+        words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
-            pattern = [context.length(word, context.diagonal) * mm_per_user for word in words]
-            offset = context.length(properties["stroke-dashoffset"], context.diagonal) * mm_per_user
+            scale = mm_per_user * self._path_scale(node, context, subpaths, mm_per_user)
+            pattern = [context.length(word, context.diagonal) * scale for word in words]
+            offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
             self.notes.add(node, context, f"stroke-dasharray: {error}: the line counts as solid")
             return subpaths
         if min(pattern, default=0.0) < 0:
             self.notes.add(node, context, "stroke-dasharray has a negative length: the line counts as solid")
             return subpaths
-        if sum(pattern) == 0:
+        if not 0 < sum(pattern) < math.inf:
             return subpaths
         if subpaths[0].widths is not None:
             self.notes.add(node, context, "its dashes are not read: its width varies")
@@ -166,6 +191,21 @@ class Painted:
         self.dashes_left -= len(pieces)
         self.notes.add(node, context, f"it is dashed: {len(pieces)} strokes, one for each dash")
         return tuple(pieces)
+
+    def _path_scale(self, node, context: Context, subpaths, mm_per_user: float) -> float:
+        """What a unit of the dashes is, in user units: less or more where pathLength says how long the path is."""
+        text = (node.get("pathLength") or "").strip()
+        if not text:
+            return 1.0
+        try:
+            said = number(text)
+        except Error as error:
+            self.notes.add(node, context, f"pathLength: {error}; it counts as not given")
+            return 1.0
+        if said < 0:
+            return 1.0
+        length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
+        return length_mm / mm_per_user / said if said else math.inf
 
     def _shown(self, node, context: Context, subpaths) -> tuple[SubPath, ...]:
         """What a nested viewport shows of it: all, or nothing. A line is not cut."""

@@ -42,7 +42,7 @@ def nested_viewport(
     """
     asked = dict(zip(("width", "height"), size, strict=True))
     x, y, width, height = (
-        length_px(text if text not in (None, "auto") else default, outer[axis], em_px)
+        length_px(text if text and text.strip() not in ("", "auto") else default, outer[axis], em_px)
         for text, default, axis in (
             (attributes.get("x"), "0", 0),
             (attributes.get("y"), "0", 1),
@@ -105,7 +105,7 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
 
 
 def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
-    if text is None:
+    if text is None or not text.strip():
         return None
     values = numbers(text.strip())
     if values is None or len(values) != 4 or not all(map(math.isfinite, values)):
@@ -116,7 +116,7 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
 
 
 def _extent(text: str | None, name: str) -> float | None:
-    if text is None or text.strip() == "auto" or text.strip().endswith("%"):
+    if text is None or text.strip() in ("", "auto") or text.strip().endswith("%"):
         return None
     try:
         return length_mm(text, "px")
@@ -131,7 +131,7 @@ _SHARE = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 def _fit(box, width: float, height: float, text: str | None, notices: list[Notice]) -> Matrix:
     x, y, box_width, box_height = box
     sx, sy = width / box_width, height / box_height
-    align = _ALIGN.fullmatch(" ".join((text or "xMidYMid").split()))
+    align = _ALIGN.fullmatch(" ".join((text or "").split() or ["xMidYMid"]))
     if not align:
         unknown = snippet(text, 0, 40)
         notices.append(Notice("svg", f"preserveAspectRatio {unknown} is not known: read as xMidYMid meet"))

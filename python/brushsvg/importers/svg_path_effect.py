@@ -1,5 +1,6 @@
 """Inkscape's path effects: the line that was drawn and its width, where only an outline of both is left in d.
 
+Where other effects shape the line as well, as Spiro does, the outline counts: it is what Inkscape shows.
 PowerStroke keeps offset_points, (place, half width): the place counts the line's segments, its fraction is the
 parameter within one.
 """
@@ -35,8 +36,26 @@ class PowerStroke:
     beta: float
 
 
-def drawn_line(node: ET.Element, by_id: dict[str, ET.Element]) -> tuple[PowerStroke | None, list[str]]:
-    """The line under a PowerStroke, None if there is none, and what of the element's effects is not read."""
+def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
+    """What lies in groups that have path effects themselves: their outlines are made of its outlines."""
+    found: set[ET.Element] = set()
+    for node in root.iter():
+        if (
+            node.tag.rpartition("}")[2] == "g"
+            and INKSCAPE + "path-effect" in node.attrib
+            and node not in found
+        ):
+            found.update(node.iter())
+    return found
+
+
+def drawn_line(
+    node: ET.Element, by_id: dict[str, ET.Element], in_group: bool
+) -> tuple[PowerStroke | None, list[str]]:
+    """The line under a PowerStroke, None if there is none, and what of the element's effects is not read.
+
+    in_group: whether a group around it has path effects.
+    """
     original = node.get(INKSCAPE + "original-d")
     if not original:
         return None, []
@@ -44,11 +63,15 @@ def drawn_line(node: ET.Element, by_id: dict[str, ET.Element]) -> tuple[PowerStr
     effects = [by_id[name] for text in references if (name := text.strip().removeprefix("#")) in by_id]
     effects = [effect for effect in effects if effect.get("is_visible", "true") != "false"]
     power = [effect for effect in effects if effect.get("effect") == "powerstroke"]
-    read = {"powerstroke", *_LINES}
-    others = [str(effect.get("effect"))[:40] for effect in effects if effect.get("effect") not in read]
+    kinds = [re.sub("[^A-Za-z0-9_]", "", str(effect.get("effect")))[:40] for effect in effects]
     if not power:
-        return None, [f"path effect {name} is not read: its outline counts" for name in others]
-    said = power[-1]
+        others = [kind for kind in kinds if kind not in _LINES]
+        return None, [f"path effect {kind} is not read: its outline counts" for kind in others]
+    if in_group or len(effects) > 1:
+        others = [kind for kind in kinds if kind != "powerstroke"] + ["of a group"] * in_group
+        also = ", ".join(others) or "a second one"
+        return None, [f"its PowerStroke is not read beside path effect {also}: its outline counts"]
+    (said,) = power
     pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
     scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
     numbered = [*pairs, *(each and [*each, 0.0] for each in scales)]
@@ -59,9 +82,7 @@ def drawn_line(node: ET.Element, by_id: dict[str, ET.Element]) -> tuple[PowerStr
     offsets = np.array(pairs) * [1.0, scale[0]]
     if said.get("sort_points", "true") == "true":
         offsets = offsets[np.argsort(offsets[:, 0], kind="stable")]
-    sentences = [f"path effect {name} is not read: the line under it counts" for name in others]
-    if len(effects) > 1 and any(effect.get("effect") in _LINES for effect in effects):
-        sentences.append("the line under its PowerStroke is read without the other path effects")
+    sentences = []
     interpolator = said.get("interpolator_type", "Linear")
     if interpolator not in _INTERPOLATORS:
         sentences.append(

@@ -19,7 +19,8 @@ STEP_LIMIT = 3_000_000
 TEXT_LIMIT = 1_000_000  # characters of style sheets: drawing programs write a hundredth of it
 
 Declaration = tuple[str, str, bool]  # name in lower case, value, important
-_SVG = "{http://www.w3.org/2000/svg}"
+_SVG = "http://www.w3.org/2000/svg"
+_STYLES = (f"{{{_SVG}}}style", "{http://www.w3.org/1999/xhtml}style", "style")
 
 
 class _Budget:
@@ -86,7 +87,7 @@ class Rules:
     def __init__(self, root: ET.Element):
         self.notices: list[Notice] = []
         self._matcher = Matcher()
-        sheets = [node for node in root.iter() if node.tag in (_SVG + "style", "style") and _counts(node)]
+        sheets = [node for node in root.iter() if node.tag in _STYLES and self._counts(node)]
         self._tree = _Tree(root) if sheets else None
         texts = ["".join(sheet.itertext()) for sheet in sheets]
         if (length := sum(map(len, texts))) > TEXT_LIMIT:
@@ -105,10 +106,13 @@ class Rules:
     def _add(self, rules: Iterable) -> None:
         for rule in rules:
             if rule.type == "at-rule" and rule.lower_at_keyword == "media" and rule.content is not None:
-                if _for_screens(rule.prelude):
+                if self._for_screens(rule.prelude):
                     self._add(tinycss2.parse_rule_list(rule.content, True, True))
             elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
                 self._note("@import names another file, which is not read")
+            elif rule.type == "at-rule" and rule.lower_at_keyword == "namespace":
+                if not any(each.type in ("url", "string") and each.value == _SVG for each in rule.prelude):
+                    self._note("@namespace is not read: its rules count for all elements")
             elif rule.type == "at-rule" and rule.lower_at_keyword not in _NO_STROKES:
                 self._note(f"@{rule.at_keyword[:40]} is not read: what it says is missing")
             elif rule.type == "error":
@@ -117,7 +121,10 @@ class Rules:
                 self._add_rule(rule)
 
     def _add_rule(self, rule) -> None:
-        declared = declarations(tinycss2.serialize(rule.content))
+        text = tinycss2.serialize(rule.content)
+        declared = declarations(text)
+        if "{" in text:
+            self._note(f"rules in the rule {tinycss2.serialize(rule.prelude).strip()[:60]!r} are not read")
         if not declared:
             return
         selectors = self._tree.compiled(rule.prelude)
@@ -125,6 +132,18 @@ class Rules:
             self._note(f"selector {tinycss2.serialize(rule.prelude).strip()[:60]!r} is not read")
         for selector in selectors or ():
             self._matcher.add_selector(selector, declared)
+
+    def _counts(self, style: ET.Element) -> bool:
+        media = tinycss2.parse_component_value_list(style.get("media", ""))
+        return style.get("type", "").strip().lower() in ("", "text/css") and self._for_screens(media)
+
+    def _for_screens(self, media) -> bool:
+        """Whether one of the media queries holds on a screen in daylight, or there is none; told if that is open."""
+        queries = [" ".join(query.split()) for query in tinycss2.serialize(media).lower().split(",")]
+        known = [_MEDIA.get(query.removeprefix("only ")) for query in queries]
+        if True not in known and None in known:
+            self._note(f"@media {queries[known.index(None)][:60]} is not read: what it says is missing")
+        return True in known
 
     def _note(self, sentence: str) -> None:
         self.notices.append(Notice("style", sentence))
@@ -142,8 +161,13 @@ def selected(root: ET.Element, text: str) -> set[ET.Element]:
     return found
 
 
+# What media queries say, as far as it is known beforehand.
+_MEDIA = {"": True, "all": True, "screen": True, "not print": True, "(prefers-color-scheme: light)": True}
+_MEDIA |= {"print": False, "speech": False, "not all": False, "not screen": False}
+_MEDIA |= {"(prefers-color-scheme: dark)": False, "(prefers-color-scheme:dark)": False}
+_MEDIA |= {"(prefers-color-scheme:light)": True}
 # At-rules that say nothing about strokes.
-_NO_STROKES = frozenset("media font-face charset namespace keyframes -webkit-keyframes page".split())
+_NO_STROKES = frozenset("media font-face charset keyframes -webkit-keyframes page".split())
 # A declaration of one word, colour or number, as drawing programs write most: there is nothing to parse.
 _PLAIN = re.compile(
     r"[ \t\n]*+([a-z][a-z-]*+)[ \t\n]*+:[ \t\n]*+"
@@ -168,15 +192,3 @@ def _declarations(text: str) -> tuple[Declaration, ...]:
         for each in parsed
         if each.type == "declaration" and (value := tinycss2.serialize(each.value).strip())
     )
-
-
-def _counts(style: ET.Element) -> bool:
-    media = style.get("media", "")
-    kind = style.get("type", "").strip().lower()
-    return kind in ("", "text/css") and _for_screens(tinycss2.parse_component_value_list(media))
-
-
-def _for_screens(media) -> bool:
-    """Whether one of the media queries is plain `screen` or `all`, or there is none."""
-    queries = tinycss2.serialize(media).lower().split(",")
-    return any(query.split() in ([], ["all"], ["screen"], ["only", "screen"]) for query in queries)

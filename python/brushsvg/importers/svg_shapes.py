@@ -36,7 +36,7 @@ class _Lengths:
 
     def optional(self, name: str, base: str, least: float = 0.0) -> float | None:
         text = self.attributes.get(name)
-        if text is None or text.strip() == "auto":
+        if text is None or text.strip() in ("", "auto"):
             return None
         try:
             value = length_px(text, self._base(base), self.em_px)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from operator import itemgetter
 
 import tinycss2
@@ -13,6 +12,7 @@ import tinycss2
 from ..errors import Error
 from ..units import FONT_PX, NUMBER, length_px
 from .svg_colour import parse_colour
+from .svg_paint import URL
 from .svg_rules import Declaration, declarations
 
 INHERITED = {
@@ -40,13 +40,33 @@ OWN = {
     "filter": "none",
     "overflow": "",
 }
+# What CSS alone says and nobody here reads, with the value that changes nothing.
+_CSS_ALONE = {
+    "mask-image": "none",
+    "mix-blend-mode": "normal",
+    "backdrop-filter": "none",
+    "offset-path": "none",
+    "animation": "none",
+    "animation-name": "none",
+    "content-visibility": "visible",
+    "all": "",
+}
+_UNREAD = ("clip-path", "mask", "filter", *_CSS_ALONE)
+OWN |= _CSS_ALONE
 # Attributes that CSS may set as well; CSS wins.
-_GEOMETRY = frozenset("transform transform-origin d x y width height cx cy r rx ry".split())
-_PRESENTED = (*INHERITED, *OWN)  # as attributes, in the order of what is told about them
-_READ = frozenset(_PRESENTED) | _GEOMETRY
+_GEOMETRY = frozenset(
+    "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
+)
+_OLD_PREFIX = "-webkit-"  # still means the same where nothing else does
+_PREFIXED = frozenset(
+    "transform transform-origin clip-path mask mask-image filter animation animation-name".split()
+)
+_PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)  # as attributes
+_READ = frozenset((*INHERITED, *OWN)) | _GEOMETRY
 _LENGTHS = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
-_MARKERS = ("marker-start", "marker-mid", "marker-end")
-_URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
+_OPACITIES = frozenset(("opacity", "stroke-opacity", "fill-opacity"))
+_SHARE = re.compile(rf"{NUMBER}%?")
+MARKERS = ("marker-start", "marker-mid", "marker-end")
 _OF_FONT = re.compile(rf"({NUMBER})(r?em|ex)\b", re.IGNORECASE)
 _FONT_SIZES = {
     "xx-small": 9.0,
@@ -64,7 +84,7 @@ Problem = tuple[str, bool]  # a sentence, and whether geometry is damaged
 
 @dataclass(frozen=True)
 class Style:
-    """Computed values. Colours are "#rrggbb", "none", "currentcolor" or url(...), widths as written.
+    """Computed values. Colours are "#rrggbb", "#rrggbbaa", "none", "currentcolor" or url(...), widths as written.
 
     inherited: what children start from, custom properties among them; own: what they do not; geometry:
     attributes that CSS replaces.
@@ -86,11 +106,15 @@ def cascade(
     rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
     """
     inline = declarations(attributes["style"]) if "style" in attributes else ()
-    said: dict[str, list[str]] = {name: [attributes[name]] for name in _PRESENTED if name in attributes}
+    said: dict[str, list[str]] = {
+        name: [attributes[name]] for name in _PRESENTED if name in attributes and attributes[name].strip()
+    }
     if not (said or rules or inline):
         return Style(parent.inherited, OWN, {}), []
     for name, value, _ in sorted((*rules, *inline), key=itemgetter(2)):
-        for each in _MARKERS if name == "marker" else (name,):
+        if name.startswith(_OLD_PREFIX) and name.removeprefix(_OLD_PREFIX) in _PREFIXED:
+            name = name.removeprefix(_OLD_PREFIX)
+        for each in MARKERS if name == "marker" else (name,):
             if each in _READ or each.startswith("--"):
                 said.setdefault(each, []).append(value)
     inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
@@ -108,8 +132,16 @@ def cascade(
                     if name != "font-size":
                         problems.append((sentence, name == "stroke-width" or name in _GEOMETRY))
                     break
+            if name == "d":
+                if (text := _path_text(value)) is not None:
+                    geometry[name] = text
+                    break
+                continue
             if name in _GEOMETRY:
-                geometry[name] = _path_text(value) if name == "d" else value
+                geometry[name] = value
+                break
+            if name == "all":
+                own[name] = value
                 break
             target, initial = (inherited, INHERITED) if name in INHERITED else (own, OWN)
             keyword = value.lower()
@@ -130,7 +162,7 @@ def cascade(
 def _problem(name: str, value: str, diagonal: float) -> Problem | None:
     """Why a value is not one of its property, as far as it matters."""
     if name in ("stroke", "fill", "color"):
-        if not _URL.match(value) and parse_colour(value) is None:
+        if not URL.match(value) and parse_colour(value) is None:
             return f"{name} {value[:40]!r} is not a colour: it counts as not given", False
     elif name == "stroke-width":
         try:
@@ -138,15 +170,21 @@ def _problem(name: str, value: str, diagonal: float) -> Problem | None:
                 raise Error(f"{value[:24]!r} is negative")
         except Error as error:
             return f"stroke-width: {error}; it counts as not given", True
+    elif name in _OPACITIES and not _SHARE.fullmatch(value):
+        return f"{name} {value[:40]!r} is not a number: it counts as not given", False
     return None
 
 
 def _computed(name: str, value: str, inherited: dict[str, str]) -> str:
     if name in ("stroke", "fill"):
-        return value if _URL.match(value) else parse_colour(value)
+        return value if URL.match(value) else parse_colour(value)
     if name == "color":
-        colour = None if _URL.match(value) else parse_colour(value)
+        colour = None if URL.match(value) else parse_colour(value)
         return inherited["color"] if colour in (None, "none", "currentcolor") else colour
+    if name in _OPACITIES:
+        return f"{min(1.0, max(0.0, length_px(value, 1.0))):.15g}"
+    if name == "visibility":
+        return value.lower() if value.lower() in ("visible", "hidden", "collapse") else inherited[name]
     if name == "fill-rule":
         return "evenodd" if value.lower() == "evenodd" else "nonzero"
     if name == "font-size":
@@ -155,7 +193,7 @@ def _computed(name: str, value: str, inherited: dict[str, str]) -> str:
         return _OF_FONT.sub(
             lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
         )
-    return value if name in _MARKERS else value.lower()
+    return value if name in MARKERS else value.lower()
 
 
 def _font_size(value: str, parents: str) -> str:
@@ -196,54 +234,23 @@ def _substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
     return at(0, value), problem
 
 
-def _path_text(value: str) -> str:
-    """The text in d: path("...")."""
-    for token in tinycss2.parse_component_value_list(value):
-        if token.type == "function" and token.lower_name == "path":
-            return next((each.value for each in token.arguments if each.type == "string"), "")
-    return value
-
-
-def paint(properties: dict[str, str], of: str, names: Container[str]) -> tuple[str, str | None]:
-    """What "stroke" or "fill" paints with: "#rrggbb" or "none", and a sentence if it is not just a colour.
-
-    names: ids in the drawing; a reference to none of them counts as its fallback, as SVG asks.
-    """
-    value = properties[of] or "#000000"
-    if is_zero(properties[f"{of}-opacity"]):
-        return "none", None
-    if found := _URL.match(value):
-        reference, fallback = found[1].strip(" \"'"), found[2].strip()
-        value = (parse_colour(fallback) or "none") if fallback else "none"
-        if reference.startswith("#") and reference[1:] in names:
-            colour = value if value not in ("none", "currentcolor") else "#000000"
-            return colour, f"the {of}'s paint {reference[:40]} is not read: it counts as {colour}"
-    return properties["color"] if value == "currentcolor" else value, None
-
-
-@lru_cache
-def is_zero(number: str) -> bool:
-    """Whether an opacity leaves nothing to see: 0, 0.0, 0%."""
-    try:
-        return length_px(number, 1.0) <= 0
-    except Error:
-        return False
-
-
-def unread(properties: dict[str, str], of: str, has_vertices: bool) -> list[str]:
-    """Sentences about properties of a painted element that change its look and are not read."""
-    sentences = []
-    if has_vertices and any(properties[name] != "none" for name in _MARKERS):
-        sentences.append("markers are not read: left out")
-    if properties[f"{of}-opacity"] not in ("1", "1.0", "100%"):
-        sentences.append(f"{of}-opacity is not read: it counts as 1")
-    return sentences
+def _path_text(value: str) -> str | None:
+    """The text in d: path("..."), "" for none; None if it is neither."""
+    if value.lower() == "none":
+        return ""
+    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
+    if others or token.type != "function" or token.lower_name != "path":
+        return None
+    told = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    return told[0].value if len(told) == 1 and told[0].type == "string" else None
 
 
 def unread_own(own: dict[str, str]) -> list[str]:
     """Sentences about properties of an element or group that apply to all it holds and are not read."""
-    effects = [name for name in ("clip-path", "mask", "filter") if own[name] != "none"]
-    sentences = [f"{name} is not read: it counts as none" for name in effects]
-    if own["opacity"] not in ("1", "1.0", "100%"):
+    effects = [name for name in _UNREAD if own[name] != OWN[name]]
+    sentences = [f"{name} is not read: it counts as {OWN[name] or 'not given'}" for name in effects]
+    if own["display"] == "contents":
+        sentences.append("display: contents is not read: it counts as inline")
+    if own["opacity"] != "1":
         sentences.append("opacity is not read: it counts as 1")
     return sentences

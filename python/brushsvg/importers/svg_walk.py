@@ -4,30 +4,35 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from ..design import Element, Notice
 from ..errors import Error
 from . import svg_shapes
 from .svg_context import Context, Notes, local
+from .svg_css_transform import ReferenceBox, about, css_transform, individual_transform, origin
 from .svg_element import Painted
 from .svg_frame import Page, box_of, nested_viewport, overlap
 from .svg_layers import layer_names
+from .svg_paint import UNSEEN, Paints
+from .svg_path_effect import in_effects_of_groups
 from .svg_rules import Rules
 from .svg_settings import own_settings
-from .svg_style import INITIAL, Style, cascade, is_zero, unread_own
-from .svg_transform import Matrix, about_origin, multiply, parse_transform
+from .svg_style import INITIAL, Style, cascade, unread_own
+from .svg_transform import IDENTITY, Matrix, multiply, parse_transform
 
 SVG = "{http://www.w3.org/2000/svg}"
 _XLINK = "{http://www.w3.org/1999/xlink}"
 # Never painted by themselves.
 _DEFINITIONS = "defs symbol marker mask pattern clipPath filter linearGradient radialGradient"
 _DESCRIPTIONS = "title desc metadata view font font-face color-profile style script"
-_SILENT = frozenset(f"{_DEFINITIONS} {_DESCRIPTIONS}".split())
+_ANIMATIONS = frozenset("animate set animateTransform animateMotion animateColor".split())
+_SILENT = frozenset(f"{_DEFINITIONS} {_DESCRIPTIONS}".split()) | _ANIMATIONS
 _TEXT = (
     "text is not read: turn it into paths first, in Inkscape with Path > Object to Path, or with "
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg"
 )
+_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
 _MOST_USED = 100_000  # elements that use may copy: a page of text has a hundredth
 
 
@@ -41,10 +46,16 @@ class Walk:
         self.chosen = chosen
         self.rules = Rules(root)
         self.by_id: dict[str, ET.Element] = {}
+        animations = 0
         for node in root.iter():
             self.by_id.setdefault(node.get("id", ""), node)
+            animations += local(node) in _ANIMATIONS
+        if animations:
+            sentence = f"animations are not read: {animations} left out, what they move or show counts as without them"
+            notices = [*notices, Notice("svg", sentence)]
         self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
-        self.painted = Painted(self.by_id, self.notes)
+        paints = Paints(self.by_id, self.rules.of)
+        self.painted = Painted(self.by_id, self.notes, paints, in_effects_of_groups(root))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
         self.left_out: dict[str, int] = {}  # without a notice, by reason
@@ -98,7 +109,7 @@ class Walk:
             context = context._replace(layer=self.layer_names[node])
             if style.own["display"] != "none" and style.inherited["visibility"] == "visible":
                 self.layers[context.layer] = ""
-        if style.own["display"] == "none":
+        if style.own["display"] == "none" or (style.own["display"] == "contents" and tag in svg_shapes.TAGS):
             self._leave_out("hidden")
             return
         if self.chosen is not None and node in self.chosen and not context.used:  # a copy is its use's
@@ -135,7 +146,7 @@ class Walk:
         """What a node hands to what it holds; None if nothing of it can be painted."""
         settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
-        if is_zero(style.own["opacity"]):
+        if float(style.own["opacity"]) < UNSEEN:
             self.notes.add(node, context, "it is fully transparent: left out")
             return None
         for sentence, damaged in [*problems, *((sentence, True) for sentence in invalid)]:
@@ -150,19 +161,55 @@ class Walk:
         return context
 
     def _transform(self, node: ET.Element, context: Context) -> Matrix | None:
-        """The property's if it makes sense, else the attribute's."""
-        geometry = context.style.geometry
-        for text in (geometry.get("transform"), node.get("transform")):
-            if text is None:
-                continue
-            try:
-                matrix = parse_transform(text)
-                if origin := geometry.get("transform-origin", node.get("transform-origin")):
-                    matrix = about_origin(matrix, origin, context.viewport, context.em_px)
-                return matrix
-            except Error as error:
-                self.notes.add(node, context, f"{error}; it counts as none", damaged=True)
-        return None
+        """Of its properties as far as they make sense, else of its attribute; about its transform-origin."""
+        said, em_px = context.style.geometry, context.em_px
+        written = (node.get("transform") or "").strip()
+        if not written and _TRANSFORMS.isdisjoint(said):
+            return None
+        if node is self.root and not context.used:
+            self.notes.add(node, context, "its own transform is not read: it counts as none", damaged=True)
+            return None
+
+        def box():
+            return self._reference_box(node, context)
+
+        matrix: Matrix = IDENTITY
+        for name in ("translate", "rotate", "scale"):
+            if name in said:
+                found = self._sound(node, context, individual_transform, name, said[name], box, em_px)
+                matrix = multiply(matrix, found or IDENTITY)
+        own = None
+        if "transform" in said:
+            own = self._sound(node, context, css_transform, said["transform"], box, em_px)
+        if own is None and written:
+            own = self._sound(node, context, parse_transform, written)
+        matrix = multiply(matrix, own or IDENTITY)
+        point = None
+        if "transform-origin" in said:
+            point = self._sound(node, context, origin, said["transform-origin"], True, box, em_px)
+        if point is None and (attribute := (node.get("transform-origin") or "").strip()):
+            point = self._sound(node, context, origin, attribute, False, box, em_px)
+        return about(point or box()[:2], matrix)
+
+    def _sound(self, node: ET.Element, context: Context, read: Callable, *words):
+        """What a reader makes of words, None if it refuses them."""
+        try:
+            return read(*words)
+        except Error as error:
+            self.notes.add(node, context, f"{error}; it counts as not given", damaged=True)
+            return None
+
+    def _reference_box(self, node: ET.Element, context: Context) -> ReferenceBox:
+        """Of what transform-box says: the viewport, or the shape itself."""
+        kind = context.style.geometry.get("transform-box", "view-box").lower()
+        if kind not in ("fill-box", "content-box", "stroke-box", "border-box"):
+            return (0.0, 0.0, *context.viewport)
+        bounds = self.painted.bounds(node, context) if local(node) in svg_shapes.TAGS else None
+        if bounds is None or kind in ("stroke-box", "border-box"):
+            sentence = f"transform-box {kind} is not read on {local(node)[:40]}: it counts as view-box"
+            self.notes.add(node, context, sentence, damaged=True)
+            return (0.0, 0.0, *context.viewport)
+        return bounds
 
     def _viewport(self, node: ET.Element, context: Context) -> None:
         """An svg inside the drawing, or a symbol that is used."""
@@ -186,7 +233,7 @@ class Walk:
         )
 
     def _use(self, node: ET.Element, context: Context) -> None:
-        reference = (node.get("href") or node.get(_XLINK + "href") or "").strip()
+        reference = node.get("href", node.get(_XLINK + "href", ""))
         target = self.by_id.get(reference[1:]) if len(reference) > 1 and reference.startswith("#") else None
         if target is None:
             if context.style.inherited["visibility"] != "visible":
@@ -207,7 +254,7 @@ class Walk:
         attributes = {**node.attrib, **context.style.geometry}
         try:
             x, y = (
-                context.length(attributes.get(name, "0"), context.viewport[axis])
+                context.length(attributes.get(name, "").strip() or "0", context.viewport[axis])
                 for axis, name in enumerate(("x", "y"))
             )
         except Error as error:

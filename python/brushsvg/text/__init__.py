@@ -6,7 +6,7 @@ import math
 import unicodedata
 
 from ..design import Notice
-from ..errors import Error
+from ..errors import Error, lacking
 from . import svg_font
 from .page import document
 
@@ -109,7 +109,7 @@ def _setter(font: bytes):
         try:
             from . import outline_font
         except ImportError:
-            raise Error("outline fonts need the extra: pip install brushsvg[text]") from None
+            raise lacking("outline fonts need", "fonttools", "uharfbuzz") from None
         return outline_font
     if font.lstrip(b"\xef\xbb\xbf\xff\xfe\0 \t\r\n").startswith(b"<"):
         return svg_font

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..importers import READERS
 from . import values
-from .flags import add_looks, add_z_offset, plans_and_programs
+from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
 from .operands import PICTURES, PROGRAMS, check_files
 
 
@@ -36,6 +36,7 @@ def add_chart(commands) -> None:
         help="how exactly an edge will be seen, for the intervals to expect; default: 0.1",
     )
     add_z_offset(chart)
+    add_quiet(chart)
     chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
 
 
@@ -55,6 +56,7 @@ def add_calibrate(commands) -> None:
         "--total", action="store_true", help="total least squares for series of angles; else plain ones"
     )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
+    add_quiet(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
 
 
@@ -82,10 +84,12 @@ def add_brush(commands) -> None:
         "--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width"
     )
     new.add_argument("--speed", metavar="MM/S", type=values.speed, default=25.0, help="at most; default: 25")
+    add_quiet(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = whats.add_parser("plot", help="draw the laws, how sure they are, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
+    add_quiet(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..importers import READERS
 from . import values
-from .flags import add_choices, add_input, add_job, add_layout, plans_and_programs
+from .flags import add_choices, add_input, add_job, add_layout, add_quiet, plans_and_programs
 from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files, suffix_of
 
 
@@ -16,6 +16,7 @@ def add_convert(commands) -> None:
     add_job(convert)
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
+    add_quiet(convert)
     convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
 
 
@@ -39,6 +40,7 @@ def add_predict(commands) -> None:
         action="store_true",
         help="also where the edges lie with 95 %%, as far as the brush is known",
     )
+    add_quiet(predict)
     predict.set_defaults(run="predict_file", parser=predict, check=_check_predict)
 
 
@@ -58,6 +60,7 @@ def add_report(commands) -> None:
         "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"
     )
     report.add_argument("--json", action="store_true", help="as JSON")
+    add_quiet(report)
     report.set_defaults(run="report_file", parser=report, check=_check_report)
 
 
@@ -87,6 +90,7 @@ def add_animate(commands) -> None:
         default=1.0,
         help="how much faster than the robot; default: 1",
     )
+    add_quiet(animate)
     animate.set_defaults(run="animate_file", parser=animate, check=_check_animate)
 
 
@@ -105,6 +109,7 @@ def add_import(commands) -> None:
         action="store_true",
         help="the strokes as lines with a width, to go on drawing with (.svg)",
     )
+    add_quiet(look)
     look.set_defaults(run="import_file", parser=look, check=_check_import, brush=None, lag=None)
 
 
@@ -129,6 +134,7 @@ def add_text(commands) -> None:
     text.add_argument(
         "--sheet", metavar="WxH", type=values.size, help="the sheet; default: the text and 20 mm around it"
     )
+    add_quiet(text)
     text.set_defaults(run="text_file", parser=text, check=_check_text)
 
 

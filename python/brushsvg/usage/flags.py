@@ -56,6 +56,10 @@ def add_z_offset(command: argparse.ArgumentParser) -> None:
     )
 
 
+def add_quiet(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--quiet", action="store_true", help="do not say what was written; warnings stay")
+
+
 def add_input(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)}) or plan (.json)")
 

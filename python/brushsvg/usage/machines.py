@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from . import values
-from .flags import add_choices, add_input, add_layout, add_looks, add_wide, add_z_offset, programs
+from .flags import add_choices, add_input, add_layout, add_looks, add_quiet, add_wide, add_z_offset, programs
 from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
@@ -13,6 +13,7 @@ def add_border(commands) -> None:
     border.add_argument("output", metavar="OUT", help=programs())
     add_choices(border)
     add_z_offset(border)
+    add_quiet(border)
     border.set_defaults(run="border_file", parser=border, check=_check_border)
 
 
@@ -36,6 +37,7 @@ def add_height(commands) -> None:
         "--to", metavar="MM", dest="lowest", type=values.height, default=-1.0, help="default: -1"
     )
     height.add_argument("--step", metavar="MM", type=values.step, default=0.1, help="default: 0.1")
+    add_quiet(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
 
 
@@ -61,6 +63,7 @@ def add_check(commands) -> None:
     check.add_argument("--lenient", action="store_true", help="take what is sound of damaged geometry")
     check.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     check.add_argument("--json", action="store_true", help="figures as JSON")
+    add_quiet(check)
     check.set_defaults(
         run="check_file", parser=check, check=_check_check, lag=None, compensation=None, tolerance=None
     )
@@ -87,6 +90,7 @@ def add_cell(commands) -> None:
         help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
         "left edge, and anywhere else on it, each just touching, in the robot's frame",
     )
+    add_quiet(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
 
 

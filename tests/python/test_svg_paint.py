@@ -1,0 +1,107 @@
+"""What a stroke and a fill are painted with, alone and together, and what of it is told."""
+
+import pytest
+from svg_text import read, sentences
+
+from brushsvg import Error
+
+STOPS = '<stop stop-color="red"/><stop offset="1" stop-color="blue"/>'
+TILE = '<path d="M0 1H2"/>'
+SERVERS = {
+    "a gradient": f'<linearGradient id="s">{STOPS}</linearGradient>',
+    "a gradient by reference": f'<linearGradient id="t">{STOPS}</linearGradient><radialGradient id="s" href="#t"/>',
+    "a pattern": f'<pattern id="s" width="2" height="2">{TILE}</pattern>',
+    "a pattern by reference": f'<pattern id="t">{TILE}</pattern><pattern id="s" xlink:href="#t" width="2" height="2"/>',
+    "a mesh": '<defs><meshgradient id="s"/></defs>',
+}
+NOTHING = {
+    "a gradient without stops": '<linearGradient id="s"/>',
+    "a gradient of itself": '<linearGradient id="s" href="#s"/>',
+    "a gradient of unseen stops": '<linearGradient id="s"><stop stop-opacity="0"/></linearGradient>',
+    "an empty pattern": '<pattern id="s" width="2" height="2"/>',
+    "a pattern without a size": f'<pattern id="s" width="2">{TILE}</pattern>',
+    "no paint": '<defs><rect id="s"/></defs>',
+}
+BOTH = '<path id="p" d="M0 0H5V5Z" fill="{}" stroke="{}" {}/>'
+
+
+def painted(fill, stroke, more="", before=""):
+    return read(f'<path id="first" d="M0 0H1"/>{before}{BOTH.format(fill, stroke, more)}')
+
+
+def told(design):
+    return [sentence.removeprefix("p: ") for sentence in sentences(design)]
+
+
+@pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
+def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
+    of = "the {}'s paint #s is not read: it counts as #000000".format
+    assert told(painted("url(#s)", "none", before=server)) == [of("fill")]
+    assert told(painted("url(#s)", "red", before=server)) == [of("fill")], "under a stroke, too"
+    assert told(painted("red", "url(#s)", before=server)) == [of("stroke")]
+    assert told(painted("url(#s)", "url(#s)", before=server)) == [of("fill"), of("stroke")]
+
+
+@pytest.mark.parametrize("server", NOTHING.values(), ids=NOTHING)
+def test_a_paint_of_nothing_paints_nothing(server):
+    design = painted("url(#s)", "blue", before=server)
+    assert (design.elements[1].fill_rule, design.elements[1].colour, told(design)) == ("", "#0000ff", [])
+    assert told(painted("url(#s)", "none", before=server)) == ["it has neither stroke nor fill: left out"]
+
+
+@pytest.mark.parametrize(
+    "gradient",
+    [
+        '<linearGradient id="s"><stop stop-color="lime"/></linearGradient>',
+        '<linearGradient id="s"><stop style="stop-color:#0f0"/><stop offset="1" stop-color="lime"/></linearGradient>',
+        '<linearGradient id="t"><stop stop-color="lime"/></linearGradient><linearGradient id="s" xlink:href="#t"/>',
+        '<style>.c{stop-color:lime}</style><linearGradient id="s"><stop class="c"/></linearGradient>',
+    ],
+)
+def test_a_gradient_of_one_colour_is_that_colour(gradient):
+    design = painted("url(#s)", "none", before=gradient)
+    assert (design.elements[1].colour, told(design)) == ("#00ff00", [])
+
+
+@pytest.mark.parametrize("colour", ["#ff000033", "#f003", "rgba(255,0,0,.2)", "hsl(0 100% 50% / 20%)"])
+def test_a_colour_seen_through_is_named_wherever_it_paints(colour):
+    of = "the {}'s colour has an opacity of 0.2: it counts as 1".format
+    assert told(painted(colour, "none")) == [of("fill")]
+    assert told(painted(colour, "blue")) == [of("fill")]
+    assert told(painted("blue", colour)) == [of("stroke")]
+    assert told(painted("none", "currentColor", f'color="{colour}"')) == [of("stroke")]
+    gradient = f'<linearGradient id="s"><stop stop-color="{colour}"/></linearGradient>'
+    assert told(painted("url(#s)", "none", before=gradient)) == [of("fill")]
+    assert painted(colour, "none").elements[1].colour == "#ff0000"
+
+
+@pytest.mark.parametrize("colour", ["transparent", "#f000", "rgb(1 2 3 / 0)"])
+def test_a_colour_of_glass_paints_nothing(colour):
+    assert painted(colour, "blue").elements[1].fill_rule == ""
+    assert painted("blue", colour).elements[1].stroke_width_mm == 0
+    assert len(painted("none", "currentColor", f'color="{colour}"').elements) == 1
+
+
+def test_opacities_are_named_for_what_is_painted():
+    assert told(painted("red", "blue", 'fill-opacity=".5"')) == ["fill-opacity is not read: it counts as 1"]
+    assert told(painted("none", "blue", 'fill-opacity=".5"')) == []
+    assert told(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
+    assert told(painted("red", "blue", 'opacity="x"')) == [
+        "opacity 'x' is not a number: it counts as not given"
+    ]
+    assert painted("red", "blue", 'fill-opacity="-1" stroke-opacity="100%"').elements[1].fill_rule == ""
+    with pytest.raises(Error, match="fully transparent"):
+        read(BOTH.format("red", "blue", 'opacity="1e-9"'))
+
+
+def test_a_visibility_that_is_none_counts_as_not_given():
+    assert len(painted("red", "blue", 'visibility="x"').elements) == 2
+    assert len(painted("red", "blue", 'visibility="HIDDEN"').elements) == 1
+
+
+def test_white_is_told():
+    """What it hides is painted, too: paint is not cut off by what lies on top."""
+    for fill, stroke in (("white", "blue"), ("white", "none"), ("blue", "#fff")):
+        (sentence,) = told(painted(fill, stroke))
+        assert sentence.startswith("it is white, and painted like any colour")
+    assert told(painted("#fefefe", "none")) == []
