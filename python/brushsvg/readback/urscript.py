@@ -40,6 +40,8 @@ def read_urscript(text: str) -> Readback:
         elif found := _MOVE.fullmatch(line):
             x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
             _is_run(number, line, a, v)
+            if r < 0:
+                raise Error(f"line {number}: {line[:60]!r} has a radius below 0")
             out.section().steps.append(Step(number, False, x, y, z, v, r))
             out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
         elif found := _CIRCLE.fullmatch(line):

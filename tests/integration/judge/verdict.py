@@ -572,9 +572,7 @@ def _told(way: Way, job: Job) -> list:
                 out[-1] = (_lifted(out[-1][0], leg, job), 0.0)
             else:
                 speed = leg.speed_mm_s if leg.kind == "jump" else 0.0
-                out.append(
-                    (leg._replace(kind="lift", cut_mm=abs(leg.end[2] - leg.start[2]), speed_mm_s=speed), 0.0)
-                )
+                out.append((leg._replace(kind="lift", cut_mm=0.0, speed_mm_s=speed), 0.0))
             continue
         moves = leg.kind not in ("wait", "stop")
         if moves and leg.kind != "arc" and np.linalg.norm(np.subtract(leg.end, leg.start)) < 1e-9:
@@ -586,8 +584,10 @@ def _told(way: Way, job: Job) -> list:
 
 
 def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
-    """Two parts of a lift as one; cut_mm: how far it went at once on the way, or back."""
-    back = max(before.cut_mm, abs(leg.end[2] - leg.start[2]))
+    """Two parts of a lift as one; cut_mm: how far it went at once on the paper, or back on the way."""
+    rise, more = before.end[2] - before.start[2], leg.end[2] - leg.start[2]
+    on = min(leg.start[2], leg.end[2]) <= job.touch_mm
+    back = max(before.cut_mm, abs(more) if on or rise * more < 0 else 0.0)
     speed = max((each.speed_mm_s for each in (before, leg) if np.isfinite(each.speed_mm_s)), default=0.0)
     return before._replace(end=leg.end, seconds=before.seconds + leg.seconds, cut_mm=back, speed_mm_s=speed)
 
