@@ -77,8 +77,14 @@ def calibrate_marks(
     brush.max_speed_mm_s = max_speed_mm_s
     count = f"{len(painted.marks)} painted marks"
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
-        getattr(brush, law).source = f"Fitted to {count}."
-        getattr(brush, law).calibrated_mm = (0.0, painted.deepest_mm)
+        found = getattr(brush, law)
+        known = _core.Profile(
+            found.coefficients,
+            calibrated_mm=(0.0, painted.deepest_mm),
+            source=f"Fitted to {count}.",
+            half_interval_95=found.half_interval_95,
+        )
+        setattr(brush, law, known)
     _refuse_unsure(brush, fit)
     _core.check(brush)
     return MarkCalibration(brush, fit, painted, options, scale, gain)

@@ -23,8 +23,21 @@ INSTEAD = {
     "G64": ["G61"],
 }  # what ends what holds
 MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61", "G18", "G19", "G90.1"}
-ALONE = {"G0", "G1", "G2", "G3", "G4", "G64", "G61", "M0", "M2", "M3"}  # no other word of command beside them
+ALONE = {
+    "G0",
+    "G1",
+    "G2",
+    "G3",
+    "G4",
+    "G64",
+    "G61",
+    "M0",
+    "M2",
+    "M3",
+    "M5",
+}  # no other word of command beside them
 ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
+STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
@@ -38,7 +51,9 @@ class _Reader:
         self.out = Readback()
         self.comment = comment if cell.language == "linuxcnc" else grbl_comment
         self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
-        self.words |= {"G4": "P", "G64": "P", "": "F"} | ({"M3": "S", "G1": "XYSF"} if cell.servo else {})
+        self.words |= {"G4": "P", "G64": "P", "": "F"} | (
+            {"M3": "S", "G1": "XYSF"} if cell.servo else {"M5": ""}
+        )
         self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
         self.motion = ""
         self.value = math.nan  # of the servo
@@ -79,10 +94,16 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
+        if codes == ["M30"] and not self.servo:
+            codes = ["M2"]  # what both end
         if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= ALONE | MODES | set(NEEDED):
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         values = {letter: value for letter, value in words if letter not in "GM"}
         first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
+        if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
+            first = "M3"  # which holds
+        if values and first in STANDING and self.motion in ("G0", "G1"):
+            first = self.motion  # which goes on beside a mode
         if first not in self.words:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         if len(values) + len(set(codes)) != len(words) or not set(values) <= set(self.words[first]):

@@ -1,0 +1,76 @@
+"""`brushsvg check` and `convert`, run in this process: the commands' own code, a drawing prepared once."""
+
+from __future__ import annotations
+
+import copy
+from contextlib import contextmanager
+from pathlib import Path
+
+from brushsvg import _core, convert
+from brushsvg.commands import check as command
+from brushsvg.commands import convert_file
+from brushsvg.console import RefusedError
+from brushsvg.usage import parse
+
+CRASHED = "this should not happen"
+
+
+def converted(*words) -> list[str]:
+    """The sentences with which `brushsvg convert` refuses; empty when it has written."""
+    try:
+        convert_file(parse(["convert", *map(str, words)]))
+    except RefusedError as refused:
+        return [": ".join(line[1:]) for line in refused.lines]
+    return []
+
+
+@contextmanager
+def quick_check():
+    """A function: words of `brushsvg check` -> the sentences with which it refuses; CRASHED for anything else.
+
+    What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
+    """
+    known: dict[tuple, convert.Work] = {}
+    cells: dict[str, object] = {}
+    asked: dict[tuple, object] = {}
+    whole = command.prepare, command.find_cell, command.convert.report_text, command.tell
+
+    def prepare(args, cell, brush=None, **more):
+        words = {name: value for name, value in vars(args).items() if name not in ("program", "json")}
+        key = (repr(sorted(words.items())), cell.name, brush.name)
+        if key not in known:
+            known[key] = whole[0](args, cell, brush, **more)
+        work, plan = known[key], known[key].plan
+        work = copy.copy(work)  # a plan may be put in another order
+        object.__setattr__(
+            work, "plan", _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, plan.passes, plan.extra)
+        )
+        return work
+
+    def find_cell(name):
+        if name not in cells:
+            cells[name] = whole[1](name)
+        return cells[name]
+
+    def refusals(*words) -> list[str]:
+        if words not in asked:
+            asked[words] = parse(["check", *map(str, words)])
+        try:
+            command.check_file(copy.copy(asked[words]))
+        except RefusedError as refused:
+            return [": ".join(line[1:]) for line in refused.lines]
+        except Exception as mistake:
+            return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
+        return []
+
+    command.prepare, command.find_cell, command.tell = prepare, find_cell, lambda text: None
+    command.convert.report_text = lambda *_, **__: ""
+    try:
+        yield refusals
+    finally:
+        command.prepare, command.find_cell, command.convert.report_text, command.tell = whole
+
+
+def put(path: Path, text: str) -> Path:
+    path.write_bytes(text.encode("latin-1"))
+    return path

@@ -1,0 +1,461 @@
+"""Damaged programs: what slips of an editor, a sender or a hand make of a sound one. Same seed, same damage."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+class Page:
+    """A program's lines, by what they are."""
+
+    def __init__(self, text: str, dialect: str):
+        self.dialect, self.is_robot = dialect, dialect == "urscript"
+        self.lines = text.split("\n")[:-1]
+        self.comments = [k for k, line in enumerate(self.lines) if self._comment(line)]
+        self.code = [k for k, line in enumerate(self.lines) if line.strip() and not self._comment(line)]
+        self.header = [k for k in self.comments if k < next(c for c in self.code if self._acts(c))]
+        self.titles = [k for k in self.comments if re.search(r"stroke \d|paint: ", self.lines[k])]
+        self.moves = [k for k in self.code if re.match(r"G[0-3] |  move|M3 ", self.lines[k])]
+
+    def _comment(self, line: str) -> bool:
+        return line.startswith("  #" if self.is_robot else "(")
+
+    def _acts(self, k: int) -> bool:
+        return not self.lines[k].startswith("def ")
+
+    def sections(self) -> list[tuple[int, int]]:
+        """First and last line behind of what stands under each title."""
+        ends = [*self.titles[1:], self.code[-1] - self.is_robot]
+        return list(zip(self.titles, ends, strict=True))
+
+    def made(self, words: str) -> str:
+        return f"  # {words}" if self.is_robot else f"({words})"
+
+
+Damage = Callable[[Page, np.random.Generator], list[str] | None]
+
+
+def _pick(random, some):
+    return some[int(random.integers(len(some)))]
+
+
+def _with(page: Page, k: int, *instead: str) -> list[str]:
+    return [*page.lines[:k], *instead, *page.lines[k + 1 :]]
+
+
+def _at_number(page: Page, random, lines, change: Callable[[str], str]) -> list[str] | None:
+    """One number of one of the lines changed; half of the time one of a move."""
+    k = _pick(random, lines)
+    found = list(NUMBER.finditer(page.lines[k]))
+    if not found:
+        return None
+    one = _pick(random, found)
+    line = page.lines[k]
+    return _with(page, k, line[: one.start()] + change(one[0]) + line[one.end() :])
+
+
+def _numbers(page: Page, random) -> list[int]:
+    return page.moves if random.random() < 0.6 else page.code
+
+
+def sign(page, random):
+    return _at_number(page, random, _numbers(page, random), lambda n: n[1:] if n.startswith("-") else f"-{n}")
+
+
+def digit(page, random):
+    def change(number: str) -> str:
+        at = _pick(random, [k for k, letter in enumerate(number) if letter.isdigit()])
+        return number[:at] + str((int(number[at]) + int(random.integers(1, 10))) % 10) + number[at + 1 :]
+
+    return _at_number(page, random, _numbers(page, random), change)
+
+
+def last_digit(page, random):
+    """One more or less in the last place, as rounding would have it."""
+
+    def change(number: str) -> str:
+        decimals = len(number.partition(".")[2])
+        if not decimals:
+            return number
+        return f"{float(number) + float(random.choice((-1, 1))) * 10.0**-decimals:.{decimals}f}"
+
+    return _at_number(page, random, page.moves, change)
+
+
+def digit_lost(page, random):
+    def change(number: str) -> str:
+        at = int(random.integers(len(number)))
+        return number[:at] + number[at + 1 :]
+
+    return _at_number(page, random, _numbers(page, random), change)
+
+
+def digit_more(page, random):
+    def change(number: str) -> str:
+        at = int(random.integers(len(number) + 1))
+        return number[:at] + str(int(random.integers(10))) + number[at:]
+
+    return _at_number(page, random, _numbers(page, random), change)
+
+
+def point_moved(page, random):
+    def change(number: str) -> str:
+        factor = float(random.choice((0.1, 10.0, 100.0, 25.4)))
+        decimals = len(number.partition(".")[2])
+        return f"{float(number) * factor:.{decimals}f}"
+
+    return _at_number(page, random, _numbers(page, random), change)
+
+
+def line_lost(page, random):
+    return _with(page, _pick(random, page.code))
+
+
+def comment_lost(page, random):
+    return _with(page, _pick(random, page.comments))
+
+
+def line_doubled(page, random):
+    k = _pick(random, page.code)
+    return _with(page, k, page.lines[k], page.lines[k])
+
+
+def lines_swapped(page, random):
+    k = int(random.integers(len(page.lines) - 1))
+    return [*page.lines[:k], page.lines[k + 1], page.lines[k], *page.lines[k + 2 :]]
+
+
+def line_moved(page, random):
+    """A line to another place, of another stroke where there is one."""
+    k = _pick(random, page.code)
+    lines = _with(page, k)
+    at = int(random.integers(len(lines) + 1))
+    return [*lines[:at], page.lines[k], *lines[at:]]
+
+
+def lines_lost(page, random):
+    k = _pick(random, page.code)
+    return page.lines[:k] + page.lines[k + int(random.integers(2, 8)) :]
+
+
+def line_of_another_stroke(page, random):
+    """A line overwritten by one of elsewhere."""
+    return _with(page, _pick(random, page.moves), page.lines[_pick(random, page.moves)])
+
+
+def stroke_lost(page, random):
+    a, b = _pick(random, page.sections())
+    return page.lines[:a] + page.lines[b:]
+
+
+def stroke_doubled(page, random):
+    a, b = _pick(random, page.sections())
+    return page.lines[:b] + page.lines[a:]
+
+
+def strokes_swapped(page, random):
+    sections = page.sections()
+    if len(sections) < 2:
+        return None
+    k = int(random.integers(len(sections) - 1))
+    (a, b), (_, c) = sections[k], sections[k + 1]
+    return page.lines[:a] + page.lines[b:c] + page.lines[a:b] + page.lines[c:]
+
+
+def stroke_reversed(page, random):
+    a, b = _pick(random, page.sections())
+    moves = [k for k in range(a, b) if k in page.moves]
+    first, last = moves[0], moves[-1] + 1
+    return page.lines[:first] + page.lines[first:last][::-1] + page.lines[last:]
+
+
+def cut_off(page, random):
+    return page.lines[: _pick(random, page.code)]
+
+
+def feed(page, random):
+    """Faster or slower; also a robot's acceleration and blend."""
+    word = r"(\b[avr]=)(\d+\.\d+)" if page.is_robot else r"(F|G64 P)(\d+\.\d+)"
+    if random.random() < 0.2 and not page.is_robot:
+        word = r"(P)(\d+\.\d+)"  # a dwell
+    lines = [k for k in page.code if re.search(word, page.lines[k])]
+    if not lines:
+        return None
+    k = _pick(random, lines)
+    factor = float(random.choice((0.0, 0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 1.3, 2.0, 10.0, 60.0)))
+    found = _pick(random, list(re.finditer(word, page.lines[k])))
+    decimals = len(found[2].partition(".")[2])
+    new = f"{float(found[2]) * factor:.{decimals}f}"
+    return _with(page, k, page.lines[k][: found.start(2)] + new + page.lines[k][found.end(2) :])
+
+
+def word_lost(page, random):
+    k = _pick(random, page.moves)
+    words = page.lines[k].split(" ")
+    at = int(random.integers(len(words)))
+    return _with(page, k, " ".join(words[:at] + words[at + 1 :]))
+
+
+def word_changed(page, random):
+    """Letters of words: one axis or code for another."""
+    pairs = (
+        (
+            ("movel", "movep"),
+            ("movep", "movel"),
+            ("movel", "movej"),
+            ("movec", "movel"),
+            ("a=", "v="),
+            ("mode=1", "mode=0"),
+            ("v=", "a="),
+        )
+        if page.is_robot
+        else (
+            *(("X", "Y"), ("Y", "X"), ("Z", "X"), ("G1", "G0"), ("G0", "G1"), ("G2", "G3"), ("G3", "G2")),
+            *(("G1 ", ""), ("G0 ", ""), ("I", "J"), ("S", "F"), ("F", "S"), ("M3", "M4"), ("M3", "M5")),
+            *(("G1", "G2"), ("P", "F"), ("Z", "S"), ("Y", "Z")),
+        )
+    )
+    old, new = _pick(random, pairs)
+    lines = [k for k in page.code if old in page.lines[k]]
+    if not lines:
+        return None
+    k = _pick(random, lines)
+    return _with(page, k, page.lines[k].replace(old, new, 1))
+
+
+MODES = {
+    "G21": ("G20", ""),
+    "G90": ("G91", ""),
+    "G17": ("G18", "G19", ""),
+    "G91.1": ("G90.1", ""),
+    "G94": ("G93", "G95", ""),
+    "G40": ("G41", "G42", ""),
+    "G80": ("G81", "G1", ""),
+    "G64": ("G61", "G61.1", "G46"),
+}
+
+
+def mode(page, random):
+    """Units, absolute places, planes, the path's mode: another, or none."""
+    if page.is_robot:
+        old, new = _pick(
+            random, (("set_tcp(", "set_tpc("), ("pose_trans(paper", "pose_trans(here"), ("paper = ", "p = "))
+        )
+        return _word(page, random, old, new)
+    old = _pick(random, list(MODES))
+    return _word(page, random, old, _pick(random, MODES[old]))
+
+
+def _word(page, random, old: str, new: str):
+    lines = [k for k in page.code if old in page.lines[k]]
+    if not lines:
+        return None
+    k = _pick(random, lines)
+    line = re.sub(rf"(?<![\w.]){re.escape(old)}(?![\d.])", new, page.lines[k], count=1)
+    return _with(page, k, line if page.is_robot else " ".join(line.split()))
+
+
+def offset(page, random):
+    """A line more that shifts, scales or turns all that follows; or a robot's paper and tool."""
+    if page.is_robot:
+        k = _pick(
+            random, [k for k in page.code if re.search(r"set_tcp|  paper =|return pose_trans", page.lines[k])]
+        )
+        return _at_number(
+            page, random, [k], lambda n: f"{float(n) + random.choice((-0.1, -0.001, 0.001, 0.1)):.7f}"
+        )
+    line = _pick(
+        random,
+        (
+            "G92 X0 Y0",
+            "G92 X10 Y10 Z0",
+            "G92 Z-1",
+            "G55",
+            "G54",
+            "G91",
+            "G20",
+            "G18",
+            "G43 H1",
+            "G10 L2 P1 X5 Y5",
+        ),
+    )
+    return _more(page, random, line)
+
+
+def _more(page, random, line: str) -> list[str]:
+    at = _pick(random, page.code[1:])
+    return [*page.lines[:at], line, *page.lines[at:]]
+
+
+def m_code(page, random):
+    if page.is_robot:
+        return _more(
+            page,
+            random,
+            _pick(random, ("  halt", "  sleep(0.500)", "  set_digital_out(0, True)", '  textmsg("x")')),
+        )
+    if random.random() < 0.5:
+        return _more(
+            page,
+            random,
+            _pick(random, ("M0", "M1", "M2", "M3", "M3 S500", "M4 S200", "M5", "M6 T1", "M30", "M8")),
+        )
+    old = _pick(random, ("M2", "M3", "M0"))
+    return _word(page, random, old, _pick(random, ("M0", "M5", "M30", "M3", "M4", "M9", "M48")))
+
+
+def header_fact(page, random):
+    """A number or a letter of the header."""
+    k = _pick(random, page.header)
+    line = page.lines[k]
+    at = _pick(random, [n for n, letter in enumerate(line) if letter.isalnum()] or [0])
+    new = str(int(random.integers(10))) if line[at].isdigit() else _pick(random, "abcdefgxyz")
+    return _with(page, k, line[:at] + new + line[at + 1 :])
+
+
+def header_lost(page, random):
+    return _with(page, _pick(random, page.header))
+
+
+def title(page, random):
+    """A letter of a section's title."""
+    k = _pick(random, page.titles)
+    line = page.lines[k]
+    at = int(random.integers(4 if page.is_robot else 1, len(line) - 1))
+    return _with(page, k, line[:at] + _pick(random, "abcxyz0123456789") + line[at + 1 :])
+
+
+WORDS = (
+    "looked at by hand",
+    "slower here",
+    "tuesday",
+    "see page 3",
+    "half of it done",
+    "check this",
+    "blue ink",
+    "ok",
+)
+
+
+def remark(page, random):
+    """A comment more, of somebody's own."""
+    at = int(random.integers(len(page.lines)))
+    if page.is_robot:
+        at = max(at, 1)
+    return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
+
+
+def blank(page, random):
+    at = int(random.integers(len(page.lines)))
+    return [*page.lines[:at], "", *page.lines[at:]]
+
+
+ACTING = {
+    "linuxcnc": (
+        "MSG, hi",
+        "DEBUG, #1",
+        "msg,look",
+        " LOGOPEN,x.txt",
+        "PRINT,#5",
+        "LOGCLOSE",
+        "PROBEOPEN f.txt",
+        "x (y",
+    ),
+    "grbl": ("why?", "stop!", "go~", "50%", "50 \x18 x", "caf\xe9", "?", "!"),
+}
+
+
+def acting(page, random):
+    """A comment that the controller acts on, or cannot read."""
+    kind = "linuxcnc" if page.dialect == "linuxcnc" else "grbl"
+    words = _pick(random, ACTING[kind])
+    which = random.random()
+    if which < 0.25:
+        k = _pick(random, page.comments)
+        line = page.lines[k]
+        if page.is_robot:
+            return _with(page, k, line[2:].replace("#", "", 1) or "x")
+        if kind == "linuxcnc":
+            return _with(page, k, f"({words})")
+        at = int(random.integers(1, len(line)))
+        return _with(page, k, line[:at] + words[-1] + line[at:])
+    if which < 0.4:
+        k = _pick(random, page.comments)
+        at = int(random.integers(3, max(4, len(page.lines[k]) - 1)))
+        return _with(page, k, page.lines[k][:at] + "\r" + page.lines[k][at:])
+    if which < 0.55:
+        k = _pick(random, page.comments)
+        return _with(page, k, page.lines[k][:-1] + " and so on" * 30 + page.lines[k][-1])
+    if which < 0.65:
+        return _more(page, random, "%")
+    if which < 0.75:
+        k = _pick(random, page.comments)
+        line = page.lines[k]
+        return _with(page, k, line[:-1] if not page.is_robot else line.replace("  #", "  ", 1))
+    return _more(page, random, page.made(words) if not page.is_robot else f'  textmsg("{words[:3]}")')
+
+
+def return_in_line(page, random):
+    k = _pick(random, page.code)
+    line = page.lines[k]
+    at = int(random.integers(len(line)))
+    return _with(page, k, line[:at] + "\r" + line[at:])
+
+
+DAMAGES: dict[str, tuple[Damage, float]] = {
+    "sign": (sign, 6),
+    "digit": (digit, 12),
+    "last digit": (last_digit, 6),
+    "digit lost": (digit_lost, 6),
+    "digit more": (digit_more, 5),
+    "point moved": (point_moved, 4),
+    "line lost": (line_lost, 8),
+    "line doubled": (line_doubled, 6),
+    "lines swapped": (lines_swapped, 6),
+    "line moved": (line_moved, 6),
+    "lines lost": (lines_lost, 3),
+    "line of another stroke": (line_of_another_stroke, 5),
+    "stroke lost": (stroke_lost, 1),
+    "stroke doubled": (stroke_doubled, 1),
+    "strokes swapped": (strokes_swapped, 1),
+    "stroke reversed": (stroke_reversed, 1),
+    "cut off": (cut_off, 1),
+    "feed": (feed, 6),
+    "word lost": (word_lost, 5),
+    "word changed": (word_changed, 5),
+    "mode": (mode, 4),
+    "offset": (offset, 4),
+    "M code": (m_code, 4),
+    "header": (header_fact, 2),
+    "header lost": (header_lost, 1),
+    "comment lost": (comment_lost, 1),
+    "title": (title, 2),
+    "remark": (remark, 4),
+    "blank line": (blank, 2),
+    "acting comment": (acting, 4),
+    "return": (return_in_line, 1),
+}
+
+
+def damaged(text: str, dialect: str, count: int, seed) -> list[tuple[str, str]]:
+    """(which damage, text) of so many damaged programs, no two alike."""
+    random = np.random.default_rng(seed)
+    page, names = Page(text, dialect), list(DAMAGES)
+    weights = np.array([weight for _, weight in DAMAGES.values()], dtype=float)
+    out: dict[str, str] = {}
+    tries = 0
+    while len(out) < count and tries < 20 * count:
+        tries += 1
+        name = names[int(random.choice(len(names), p=weights / weights.sum()))]
+        lines = DAMAGES[name][0](page, random)
+        if lines is None:
+            continue
+        new = "\n".join(lines) + "\n"
+        if new != text:
+            out.setdefault(new, name)
+    return [(name, new) for new, name in out.items()]

@@ -1,0 +1,66 @@
+"""What a controller does with a program: legs in the robot's frame, and what went wrong or acts besides."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Leg(NamedTuple):
+    """One thing that a machine does.
+
+    kind: rapid, feed, process (a robot's move at an even speed), arc, jump (a servo's value, at once), wait or stop
+    (until a person starts again). Ends [mm] in the robot's frame. cut_mm: how far from its end the corner may
+    be passed, or, for robots, how far before its end the blend begins. tilt_rad: how far the tool leans from where it
+    should at the end.
+    """
+
+    line: int
+    kind: str
+    start: tuple
+    end: tuple
+    speed_mm_s: float = math.inf
+    centre: tuple | None = None
+    turn: int = 0
+    cut_mm: float = 0.0
+    seconds: float = 0.0
+    tilt_rad: float = 0.0
+    acceleration: float = 0.0
+
+
+@dataclass
+class Run:
+    """refused: the controller's error, after which nothing runs; acts: what the program does besides moving a brush;
+    titles: (words, number of legs before) of comments behind the header; header: lines of comment before; frame: what
+    decides how the program begins and ends, whatever the machine does here and now."""
+
+    legs: list[Leg] = field(default_factory=list)
+    refused: str = ""
+    acts: list[str] = field(default_factory=list)
+    titles: list[tuple[str, int]] = field(default_factory=list)
+    header: list[str] = field(default_factory=list)
+    frame: list[str] = field(default_factory=list)
+    blends_by_radius: bool = False
+
+
+class RefusedError(Exception):
+    """The controller stops here with an error."""
+
+
+CHORD_RAD = 0.05
+
+
+def arc_points(leg: Leg) -> np.ndarray:
+    """(n, 3) places along an arc behind its start; where its ends have other radii, a spiral between them."""
+    (x, y), (a, b, c), (d, e, f) = leg.centre, leg.start, leg.end
+    first, last = math.atan2(b - y, a - x), math.atan2(e - y, d - x)
+    sweep = (last - first) * leg.turn % math.tau
+    sweep = leg.turn * (sweep if sweep > 1e-9 else math.tau)
+    count = max(2, math.ceil(abs(sweep) / CHORD_RAD))
+    part = np.arange(1, count + 1) / count
+    radius = math.hypot(a - x, b - y) * (1 - part) + math.hypot(d - x, e - y) * part
+    angle = first + sweep * part
+    return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle), c + (f - c) * part])

@@ -1,0 +1,70 @@
+"""Frames of the judge's own: (4, 4) from poses as cells and URScript have them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+def turned_deg(x_deg: float, y_deg: float, z_deg: float) -> np.ndarray:
+    """(3, 3) about the fixed x, then y, then z axis."""
+    (a, b, c), (s, t, u) = zip(
+        *((math.cos(math.radians(v)), math.sin(math.radians(v))) for v in (x_deg, y_deg, z_deg)), strict=True
+    )
+    about_x = np.array([[1, 0, 0], [0, a, -s], [0, s, a]])
+    about_y = np.array([[b, 0, t], [0, 1, 0], [-t, 0, b]])
+    about_z = np.array([[c, -u, 0], [u, c, 0], [0, 0, 1]])
+    return about_z @ about_y @ about_x
+
+
+def turned_vector(vector) -> np.ndarray:
+    """(3, 3) about an axis by its length [rad], as URScript has rotations (Rodrigues)."""
+    angle = float(np.linalg.norm(vector))
+    if angle == 0:
+        return np.eye(3)
+    x, y, z = np.asarray(vector) / angle
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+
+
+def frame(origin, rotation) -> np.ndarray:
+    made = np.eye(4)
+    made[:3, :3], made[:3, 3] = rotation, origin
+    return made
+
+
+def paper_of(cell: dict, z_offset_mm: float) -> np.ndarray:
+    """The paper's frame in the robot's, from a cell's TOML as a dictionary."""
+    paper = cell["paper"]
+    if paper.get("taught_mm"):
+        origin, along, beside = (np.array(point, dtype=float) for point in paper["taught_mm"][:3])
+        x = (along - origin) / np.linalg.norm(along - origin)
+        y = beside - origin - x * (x @ (beside - origin))
+        y /= np.linalg.norm(y)
+        made = frame(origin, np.column_stack([x, y, np.cross(x, y)]))
+    else:
+        made = frame(
+            paper.get("origin_mm", (0, 0, 0)), turned_deg(*map(float, paper.get("rotation_deg", (0, 0, 0))))
+        )
+    made[:3, 3] += z_offset_mm * made[:3, 2]
+    return made
+
+
+def down_of(cell: dict) -> np.ndarray:
+    """(3, 3) how the tool is turned in the paper's frame: its z into the paper."""
+    return np.diag([1.0, -1.0, -1.0]) @ turned_deg(0, 0, cell["tool"].get("spin_deg", 0.0))
+
+
+def tool_of(cell: dict) -> np.ndarray:
+    tool = cell["tool"]
+    return frame(tool["tcp_mm"], turned_deg(*map(float, tool.get("rotation_deg", (0, 0, 0)))))
+
+
+def moved(by: np.ndarray, points: np.ndarray) -> np.ndarray:
+    return points @ by[:3, :3].T + by[:3, 3]
+
+
+def angle_rad(one: np.ndarray, other: np.ndarray) -> float:
+    """Between two rotations."""
+    return 2 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / math.sqrt(8)))

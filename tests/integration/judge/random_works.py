@@ -1,0 +1,206 @@
+"""Small drawings and cells at random: leaning paper, boxes and reach rings, stations, servos of any table, blends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from brushsvg.cell import Blending, Paper, Reload, Servo, Station
+from brushsvg.cell_file import find_cell
+
+from .works import CELLS
+
+SHEET = (80.0, 60.0)
+
+
+def random_svg(random) -> str:
+    """One to four strokes: lines, corners, curves, dabs, closed ones; in two colours and layers."""
+    drawn = []
+    for number in range(int(random.integers(1, 5))):
+        x, y = random.uniform(14, 66), random.uniform(14, 46)
+
+        def near(x=x, y=y, far=22.0):
+            return (
+                f"{np.clip(x + random.uniform(-far, far), 10, 70):.3f} "
+                f"{np.clip(y + random.uniform(-far, far), 10, 50):.3f}"
+            )
+
+        kind = int(random.integers(6))
+        path = (
+            f"M{x:.3f} {y:.3f} "
+            + (
+                f"L{near()}",
+                f"L{near()} L{near()} L{near()}",
+                f"C{near()} {near()} {near()}",
+                f"L{x:.3f} {y:.3f}",
+                f"L{near(far=8)} L{near(far=8)} Z",
+                f"Q{near()} {near()} T{near()}",
+            )[kind]
+        )
+        width, colour = random.uniform(1.2, 4.5), random.choice(("#000000", "#ff0000"))
+        drawn.append(
+            f'<path id="s{number}" d="{path}" fill="none" stroke="{colour}" stroke-width="{width:.2f}"/>'
+        )
+    size = f'width="{SHEET[0]:g}mm" height="{SHEET[1]:g}mm" viewBox="0 0 {SHEET[0]:g} {SHEET[1]:g}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}><title>random</title>{"".join(drawn)}</svg>'
+
+
+def random_cell(random, dialect: str):
+    """A cell of the dialect's language; it may be one that `read_cell` refuses."""
+    cell = find_cell(CELLS[dialect][0])
+    safe = round(float(random.uniform(4, 25)), 2)
+    clear = round(float(random.uniform(0.3, 2.5)), 2)
+    lowest = -round(float(random.uniform(5, 10)), 2)
+    cell = replace(
+        cell, name="mine", heights=replace(cell.heights, safe_mm=safe, clearance_mm=clear, lowest_mm=lowest)
+    )
+    speeds = replace(
+        cell.speeds,
+        travel_mm_s=float(random.uniform(30, 200)),
+        approach_mm_s=float(random.uniform(5, 80)),
+        press_mm_s=float(random.uniform(2, 40)),
+        paint_mm_s=float(random.uniform(5, 60)),
+    )
+    cell = replace(cell, speeds=speeds, decimals=int(random.integers(3, 7)))
+    paper = Paper()
+    if dialect == "grbl-servo":
+        if random.random() < 0.4:
+            paper = Paper(
+                (*random.uniform(-300, 300, 2).tolist(), 0.0), (0.0, 0.0, float(random.uniform(0, 360)))
+            )
+        cell = replace(cell, servo=_servo(random, lowest, safe))
+    elif random.random() < 0.8:
+        leans = random.uniform(-1, 1, 2) * (
+            0 if random.random() < 0.4 else 1.3 if dialect != "urscript" else 9
+        )
+        paper = Paper(
+            tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360)))
+        )
+    if random.random() < 0.25 and dialect != "grbl-servo":
+        paper = _about_the_robot(random)
+    cell = replace(cell, paper=paper)
+    if random.random() < 0.6 and dialect in ("linuxcnc", "urscript"):
+        radius = float(random.uniform(0.2, 5)) if dialect == "urscript" else 0.0
+        cell = replace(cell, blending=Blending(float(random.choice((0.0, 0.005, 0.01, 0.05))), radius))
+    cell = _with_space(random, cell)
+    if random.random() < 0.3:
+        cell = _with_a_clip(random, cell)
+    if random.random() < 0.5:
+        cell = _with_paint(random, cell)
+    return cell
+
+
+ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper that lies about the robot
+
+
+def _about_the_robot(random) -> Paper:
+    """The robot's origin over or under the sheet: ways between strokes lead past it, too close for its reach."""
+    from .places import turned_deg
+
+    rotation = (*random.uniform(-1.2, 1.2, 2).tolist(), float(random.uniform(0, 360)))
+    origin = np.array([*random.uniform((0, 0), SHEET), random.uniform(-12, 12)])
+    return Paper(tuple((-turned_deg(*rotation) @ origin).tolist()), rotation, flatness_mm=ABOUT)
+
+
+def _servo(random, lowest: float, safe: float) -> Servo:
+    """Rising or falling, of any bends, some of them steep."""
+    low, high = lowest - random.uniform(0, 3), safe + random.uniform(0, 4)
+    count = int(random.integers(2, 7))
+    heights = np.sort(np.r_[low, high, random.uniform(low, high, count - 2)])
+    slopes = random.uniform(3, 60, count - 1)
+    values = np.r_[0.0, np.cumsum(np.diff(heights) * slopes)] + random.uniform(0, 300)
+    if random.random() < 0.5:
+        values = values[::-1]
+    if random.random() < 0.5:
+        values = np.round(values)
+    rows = tuple((round(float(a), 3), round(float(b), 3)) for a, b in zip(heights, values, strict=True))
+    return Servo(rows, float(random.choice((0.05, 0.1, 0.25))), float(random.choice((0.0, 0.15))))
+
+
+def _with_space(random, cell):
+    """Boxes and reach rings that end somewhere near the sheet, so that ways and dips come close to them."""
+    from .places import moved, paper_of
+
+    if random.random() < 0.3:
+        return replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
+    if cell.paper.flatness_mm == ABOUT:
+        reach = (float(random.uniform(12, 32)), 400.0)
+        return replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=reach))
+    pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}
+    frame = paper_of({"paper": pose}, 0.0)
+    safe, low = cell.heights.safe_mm, cell.heights.lowest_mm
+    inner = [(x, y, z) for x in (8.0, SHEET[0] - 8) for y in (8.0, SHEET[1] - 8) for z in (low, safe)]
+    corners = moved(frame, np.array(inner))
+    box, reach = (), ()
+    if random.random() < 0.6:
+        room = random.uniform(0, 50, (2, 3))
+        box = tuple(
+            map(tuple, (np.r_[[corners.min(axis=0) - room[0], corners.max(axis=0) + room[1]]]).tolist())
+        )
+    if random.random() < 0.7:
+        away = np.linalg.norm(corners, axis=1)
+        middle = moved(frame, np.array([[SHEET[0] / 2, SHEET[1] / 2, 0.0]]))[0]
+        least = max(0.0, min(away.min(), float(np.linalg.norm(middle))) - random.uniform(-8, 25))
+        reach = (float(least), float(away.max() + random.uniform(-3, 25)))
+    margin = float(random.uniform(3, 40))
+    return replace(cell, workspace=replace(cell.workspace, box_mm=box, reach_mm=reach, margin_mm=margin))
+
+
+def _with_a_clip(random, cell):
+    """Something that stands on the sheet or beside it, up to above the safe height or not."""
+    from .places import moved, paper_of
+
+    pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}
+    place = np.array(
+        [*random.uniform((-20, -20), np.array(SHEET) + 20), random.uniform(-2, cell.heights.safe_mm)]
+    )
+    (middle,) = moved(paper_of({"paper": pose}, 0.0), place[None])
+    half = random.uniform(1, 6, 3)
+    box = (tuple((middle - half).tolist()), tuple((middle + half).tolist()))
+    return replace(cell, workspace=replace(cell.workspace, keep_out_mm=(box,)))
+
+
+def _with_paint(random, cell):
+    safe, clear, lowest = cell.heights.safe_mm, cell.heights.clearance_mm, cell.heights.lowest_mm
+    stations = []
+    for name, colours, y in (("ink", (), 15.0), ("red", ("#ff0000",), 40.0)):
+        top = safe - clear
+        rim = float(random.uniform(0.0, max(0.1, min(top, 6))))
+        surface = float(random.uniform(-2.0, min(rim, 1.0)))
+        depth = float(random.uniform(0.5, 3.0))
+        if surface - depth < lowest:
+            continue
+        x = (
+            -float(random.uniform(2, 30))
+            if random.random() < 0.7
+            else SHEET[0] + float(random.uniform(2, 25))
+        )
+        wipes = ()
+        if random.random() < 0.5:
+            heights = random.uniform(rim, safe, 2)
+            wipes = tuple(
+                (x + (k + 1) * float(random.uniform(-5, 5)), y + 2.0 * k, float(z))
+                for k, z in enumerate(heights)
+            )
+        station = Station(name, (x, y), colours, False, surface, depth, rim, 0.2, 0.3, wipes)
+        stations.append(station)
+    if not any(not station.colours for station in stations):
+        return cell
+    if cell.language != "grbl-servo" and random.random() < 0.2:
+        stations[0] = Station(stations[0].name, stations[0].place_mm, stations[0].colours, by_hand=True)
+    when = str(random.choice(("length", "stroke", "layer")))
+    return replace(cell, reload=Reload(when, float(random.uniform(25, 150)), 4.0), stations=tuple(stations))
+
+
+def random_flags(random, dialect: str) -> tuple[str, ...]:
+    flags: tuple[str, ...] = ()
+    if random.random() < 0.3:
+        flags += ("--compensation", str(random.choice(("none", "constant"))))
+    if random.random() < 0.2:
+        flags += ("--order", "nearest")
+    if random.random() < 0.25 and dialect != "grbl-servo":
+        flags += ("--z-offset", f"{random.uniform(-0.5, 1.5):.2f}")
+    if random.random() < 0.2:
+        flags += ("--tolerance", str(random.choice(("0.02", "0.1"))))
+    return flags

@@ -1,0 +1,80 @@
+"""Damaged programs judged and checked: the figures by dialect, and every disagreement."""
+
+from __future__ import annotations
+
+import difflib
+from collections import Counter
+from dataclasses import dataclass, field
+
+from .checked import CRASHED, put, quick_check
+from .damage import damaged
+from .verdict import judged
+from .works import Made
+
+
+@dataclass(frozen=True)
+class Case:
+    """One damaged program on which check and judge disagree."""
+
+    dialect: str
+    job: str
+    damage: str
+    verdict: str
+    why: str
+    refusals: tuple[str, ...]
+    changed: tuple[str, ...]
+
+
+@dataclass
+class Figures:
+    """counts: by (dialect, verdict, refused)."""
+
+    counts: Counter = field(default_factory=Counter)
+    cases: list[Case] = field(default_factory=list)
+    crashes: list[tuple] = field(default_factory=list)
+
+    def of(self, dialect: str, verdict: str | None = None, refused: bool | None = None) -> int:
+        return sum(
+            number
+            for (its, said, was), number in self.counts.items()
+            if its == dialect and verdict in (None, said) and refused in (None, was)
+        )
+
+    def table(self) -> str:
+        """As docs/machines.md has it."""
+        lines = [
+            "| dialect | damaged programs | dangerous | of them allowed | harmless | of them refused | neither |",
+            "|---|---|---|---|---|---|---|",
+        ]
+        for dialect in dict.fromkeys(dialect for dialect, _, _ in self.counts):
+            figures = (
+                self.of(dialect),
+                self.of(dialect, "dangerous"),
+                self.of(dialect, "dangerous", False),
+                self.of(dialect, "harmless"),
+                self.of(dialect, "harmless", True),
+                self.of(dialect, "neither"),
+            )
+            lines.append(f"| {dialect} | " + " | ".join(map(str, figures)) + " |")
+        return "\n".join(lines)
+
+
+def changed(before: str, after: str, most: int = 6) -> tuple[str, ...]:
+    """The lines that differ."""
+    differing = difflib.unified_diff(before.split("\n"), after.split("\n"), lineterm="", n=0)
+    return tuple(line for line in differing if line[:2] not in ("--", "++", "@@"))[:most]
+
+
+def measure(made: Made, count: int, seed: int, figures: Figures) -> None:
+    """So many damaged programs of one job, judged and checked."""
+    with quick_check() as check:
+        for damage, text in damaged(made.whole.text, made.dialect, count, [seed, *made.name.encode()]):
+            verdict, why = judged(text, made.whole)
+            refusals = tuple(check(put(made.program, text), *made.words))
+            figures.counts[made.dialect, verdict, bool(refusals)] += 1
+            wrong = verdict == "harmless" and refusals
+            crashed = any(CRASHED in said for said in refusals)
+            figures.crashes += [(made.dialect, made.name, damage, refusals)] if crashed else []
+            if wrong or crashed or (verdict == "dangerous" and not refusals) or verdict == "neither":
+                lines = changed(made.whole.text, text)
+                figures.cases.append(Case(made.dialect, made.name, damage, verdict, why, refusals, lines))

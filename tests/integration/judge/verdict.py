@@ -1,0 +1,649 @@
+"""A run held against a cell's limits along the whole way and against a plan; a damaged one against the sound one.
+
+A brush touches where its tip is at most LAST_MM over the paper. Lengths in mm, the paper's frame unless said otherwise.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from . import places
+from .gcode import run_gcode
+from .moves import Leg, Run, arc_points
+from .urscript import run_urscript
+
+OFF_MM = 0.1  # what the mark of a brush shows
+STEP_MM = 0.04  # of samples where the brush may touch: how exactly OFF_MM is known
+AIR_STEP_MM = 1.0
+LAST_MM = 0.01
+ROUNDING_MM = 0.002  # two units of the last decimal of the coarsest dialect
+LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length tells
+SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
+MOST = 4000  # samples of one leg
+
+
+@dataclass
+class Job:
+    """What was asked for: a cell as its file has it, a plan.json, the brush's fastest, the paper's height."""
+
+    cell: dict
+    plan: dict
+    brush_mm_s: float
+    z_offset_mm: float = 0.0
+    first_stroke: int = 1
+    compare: bool = True
+
+    @cached_property
+    def paper(self) -> np.ndarray:
+        return places.paper_of(self.cell, self.z_offset_mm)
+
+    @cached_property
+    def back(self) -> np.ndarray:
+        return np.linalg.inv(self.paper)
+
+    @cached_property
+    def language(self) -> str:
+        return self.cell["language"]
+
+    @cached_property
+    def servo_mm(self) -> tuple[float, float]:
+        """Of a servo: the height of one value at most, and the step; else nothing."""
+        servo = self.cell.get("servo")
+        if self.language != "grbl-servo":
+            return 0.0, 0.0
+        steps = np.diff(np.array(servo["table"], dtype=float), axis=0)
+        return float(np.abs(steps[:, 0] / steps[:, 1]).max()), servo.get("step_mm", 0.1)
+
+    @cached_property
+    def touch_mm(self) -> float:
+        return LAST_MM + self.servo_mm[0] / 2
+
+    @cached_property
+    def near_mm(self) -> float:
+        """To the way of a visit: a servo goes it in steps."""
+        return 1.5 * OFF_MM + sum(self.servo_mm) / 2
+
+    @cached_property
+    def fastest_mm_s(self) -> float:
+        return min(self.brush_mm_s, self.cell["speeds"]["paint_mm_s"])
+
+    @cached_property
+    def passes(self) -> list[np.ndarray]:
+        """The plan's passes from the first stroke on, circles with their points, sampled."""
+        return [_sampled(_round(each)) for each in self.plan["passes"][self.first_stroke - 1 :]]
+
+    @cached_property
+    def stations(self) -> list[np.ndarray]:
+        """The way of each visit."""
+        safe, clear = self.cell["heights"]["safe_mm"], self.cell["heights"]["clearance_mm"]
+        ways = []
+        for station in self.cell.get("stations", ()):
+            x, y = station["place_mm"]
+            bottom = station.get("surface_mm", 0.0) - station.get("depth_mm", 0.0)
+            wipes = [tuple(point) for point in station.get("wipe_mm", ())]
+            end = wipes[-1][:2] if wipes else (x, y)
+            way = [
+                (x, y, safe),
+                (x, y, bottom),
+                (x, y, station.get("rim_mm", 0.0) + clear),
+                *wipes,
+                (*end, safe),
+            ]
+            if station.get("by_hand"):
+                way = [(x, y, safe), (x, y, safe)]
+            ways.append(np.array(way, dtype=float))
+        return ways
+
+    @cached_property
+    def start(self) -> tuple:
+        """Where the tool is before: over the end of the job, low, so that a missing rise is seen."""
+        x, y, _ = self.plan["passes"][-1]["poses_mm"][-1]
+        low = np.array([[x, y, self.cell["heights"]["safe_mm"] / 2]])
+        return tuple(places.moved(self.paper, low)[0])
+
+    def interpret(self, text: str) -> Run:
+        if self.language == "urscript":
+            return run_urscript(
+                text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
+            )
+        dialect = "linuxcnc" if self.language == "linuxcnc" else "grbl"
+        servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None
+        return run_gcode(text, dialect, self.start, servo, self.cell["speeds"]["travel_mm_s"])
+
+
+def _round(a_pass: dict) -> np.ndarray:
+    poses = np.array(a_pass["poses_mm"], dtype=float)
+    circles = {}
+    for first, last, x, y, turn in a_pass.get("arcs", ()):
+        circles |= {k: (x, y, turn) for k in range(first, last)}
+    points = [poses[:1]]
+    for k in range(len(poses) - 1):
+        if k in circles:
+            x, y, turn = circles[k]
+            leg = Leg(0, "arc", tuple(poses[k]), tuple(poses[k + 1]), 1.0, (x, y), turn)
+            if np.linalg.norm(poses[k, :2] - poses[k + 1, :2]) > 1e-6:
+                points.append(arc_points(leg))
+                continue
+        points.append(poses[k + 1 : k + 2])
+    return np.vstack(points)
+
+
+def _sampled(points: np.ndarray) -> np.ndarray:
+    steps = np.diff(points, axis=0)
+    counts = np.maximum(1, np.ceil(np.linalg.norm(steps, axis=1) / STEP_MM)).astype(int)
+    which = np.repeat(np.arange(len(steps)), counts)
+    part = (np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[which]
+    return np.vstack([points[:1], points[which] + steps[which] * part[:, None]])
+
+
+@dataclass
+class Way:
+    """A run in the paper's frame. starts, ends (n, 3), speeds (n,) of its legs, circles as chords; leg: which leg each
+    belongs to; samples (m, 3) with the row that each belongs to; touches: of the samples, those of each touch."""
+
+    run: Run
+    starts: np.ndarray
+    ends: np.ndarray
+    leg: np.ndarray
+    samples: np.ndarray
+    row: np.ndarray
+    touches: list[np.ndarray] = field(default_factory=list)
+
+
+def way_of(run: Run, job: Job) -> Way:
+    moving = [k for k, leg in enumerate(run.legs) if leg.kind not in ("wait", "stop")]
+    both = np.array([(run.legs[k].start, run.legs[k].end) for k in moving], dtype=float).reshape(-1, 2, 3)
+    both = np.clip(both, -1e7, 1e7)
+    starts, ends = (places.moved(job.back, both[:, side]) for side in (0, 1))
+    owner = np.array(moving, dtype=int)
+    arcs = [n for n, k in enumerate(moving) if run.legs[k].kind == "arc"]
+    if arcs:
+        parts, done = [], 0
+        for n in arcs:
+            leg = run.legs[moving[n]]
+            if run.blends_by_radius:
+                points = arc_points(leg._replace(start=tuple(starts[n]), end=tuple(ends[n])))
+            else:
+                points = places.moved(job.back, arc_points(leg))
+            points = np.vstack([starts[n], points])
+            parts += [
+                (starts[done:n], ends[done:n], owner[done:n]),
+                (points[:-1], points[1:], np.full(len(points) - 1, moving[n])),
+            ]
+            done = n + 1
+        parts.append((starts[done:], ends[done:], owner[done:]))
+        starts, ends, owner = (np.concatenate(each) for each in zip(*parts, strict=True))
+    if not len(starts):
+        return Way(run, starts, ends, owner, starts, owner)
+    steps = ends - starts
+    low = np.minimum(starts[:, 2], ends[:, 2]) < 1.0
+    counts = np.ceil(np.linalg.norm(steps, axis=1) / np.where(low, STEP_MM, AIR_STEP_MM))
+    counts = np.clip(counts, 1, MOST).astype(int)
+    row = np.repeat(np.arange(len(steps)), counts)
+    part = (np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[row]
+    samples = starts[row] + steps[row] * part[:, None]
+    on = samples[:, 2] <= job.touch_mm
+    edges = np.flatnonzero(np.diff(np.r_[False, on, False].astype(int)))
+    touches = [samples[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    return Way(run, starts, ends, owner, samples, row, touches)
+
+
+# Limits -----------------------------------------------------------------------------------------------
+
+
+def broken(way: Way, job: Job) -> list[str]:
+    """A sentence for each limit that the run breaks, anywhere along the way, and for whatever is fast or low."""
+    if not len(way.starts):
+        return []
+    return [*_beyond(way, job), *_fast(way, job), *_low(way, job), *_leaning(way)]
+
+
+def _beyond(way: Way, job: Job):
+    cell, points = job.cell, way.samples[1:]
+    if not len(points):
+        return
+    workspace = cell["workspace"]
+    slack = SLACK_MM + job.servo_mm[0] / 2
+    margin = np.array([workspace["margin_mm"]] * 2) + SLACK_MM
+    over = np.maximum(-margin - points[:, :2], points[:, :2] - margin - np.array(job.plan["sheet_mm"])).max(
+        axis=1
+    )
+    if over.max() > 0:
+        yield f"{over.max():.3f} mm beyond the sheet's margin, line {_line(way, over.argmax() + 1)}"
+    least = points[:, 2].min()
+    if least < cell["heights"]["lowest_mm"] - slack:
+        yield f"height {least:.3f} mm, line {_line(way, points[:, 2].argmin() + 1)}"
+    robot = places.moved(job.paper, points)
+    if box := workspace.get("box_mm"):
+        over = np.maximum(np.array(box[0]) - robot, robot - np.array(box[1])).max(axis=1)
+        if over.max() > SLACK_MM:
+            yield f"{over.max():.3f} mm out of the box, line {_line(way, over.argmax() + 1)}"
+    for low, high in workspace.get("keep_out_mm", ()):
+        inside = np.minimum(robot - np.array(low), np.array(high) - robot).min(axis=1)
+        if inside.max() > SLACK_MM:
+            yield f"{inside.max():.3f} mm within what is kept out of, line {_line(way, inside.argmax() + 1)}"
+    if reach := workspace.get("reach_mm"):
+        away = np.linalg.norm(robot, axis=1)
+        over = np.maximum(reach[0] - away, away - reach[1])
+        if over.max() > SLACK_MM:
+            yield f"{over.max():.3f} mm out of reach, line {_line(way, over.argmax() + 1)}"
+
+
+def _line(way: Way, sample: int) -> int:
+    return way.run.legs[way.leg[way.row[sample]]].line
+
+
+def _fast(way: Way, job: Job):
+    legs = way.run.legs
+    kinds = np.array([legs[k].kind for k in way.leg])
+    speeds = np.array([legs[k].speed_mm_s for k in way.leg])
+    low = np.minimum(way.starts[:, 2], way.ends[:, 2]) <= job.touch_mm
+    still = np.linalg.norm(way.ends - way.starts, axis=1) < 1e-6
+    fast = (
+        low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01))
+    )
+    if fast.any():
+        k = int(fast.argmax())
+        yield f"fast while touching: {kinds[k]} at {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
+    travel = job.cell["speeds"]["travel_mm_s"]
+    if (over := ~still & (kinds != "jump") & (speeds > travel * 1.001 + 0.01)).any():
+        k = int(over.argmax())
+        yield f"faster than any speed of the cell: {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
+    if job.language == "grbl-servo":
+        yield from _jumps(way, job)
+
+
+def _jumps(way: Way, job: Job):
+    """A servo's heights over time: nowhere more than two steps ahead of the fastest while it touches."""
+    heights, times, lines, now = [], [], [], 0.0
+    value, step = job.servo_mm
+    for leg in way.run.legs:
+        if leg.kind == "jump":
+            heights += [leg.start[2], leg.end[2]]
+            times += [now, now]
+            lines += [leg.line, leg.line]
+        elif leg.kind == "wait":
+            now += leg.seconds
+        elif leg.kind != "stop":
+            now += float(np.linalg.norm(np.subtract(leg.end, leg.start))) / max(leg.speed_mm_s, 1e-9)
+    heights, times = np.array(heights), np.array(times)
+    for apart in (1, 3, 5, 7):
+        rise = heights[apart:] - heights[:-apart]
+        allowed = 2 * step + value + SLACK_MM + job.fastest_mm_s * 1.1 * (times[apart:] - times[:-apart])
+        on = np.minimum(heights[apart:], heights[:-apart]) <= job.touch_mm
+        # up to the paper it is in the air; beyond the clearance above the paper nothing bends
+        rise = np.minimum(np.abs(rise), job.touch_mm - np.minimum(heights[apart:], heights[:-apart]) + 1e-9)
+        if (bad := on & (rise > allowed)).any():
+            k = int(bad.argmax())
+            yield f"the height changes by {rise[k]:.2f} mm at once while touching, line {lines[k + apart]}"
+            return
+
+
+def _low(way: Way, job: Job):
+    """Sideways in the air below the safe height, but on the way of a visit."""
+    safe, legs = job.cell["heights"]["safe_mm"], way.run.legs
+    low, high = np.minimum(way.starts[:, 2], way.ends[:, 2]), np.maximum(way.starts[:, 2], way.ends[:, 2])
+    sideways = np.linalg.norm(way.ends[:, :2] - way.starts[:, :2], axis=1)
+    bad = (
+        (low < safe - 0.05 - job.servo_mm[0] / 2)
+        & (high > job.touch_mm + job.servo_mm[1])
+        & (sideways > OFF_MM)
+    )
+    for k in np.flatnonzero(bad):
+        a, b = legs[way.leg[k]].start, legs[way.leg[k]].end
+        if b[2] >= a[2] and max(abs(a[0] - b[0]), abs(a[1] - b[1])) < 1e-6:
+            continue  # straight up for the robot, though the paper leans
+        ends = np.array([way.starts[k], way.ends[k]])
+        if any(_to_path(ends, visit).max() < job.near_mm for visit in job.stations):
+            continue
+        yield f"sideways {sideways[k]:.2f} mm in the air at {low[k]:.2f} mm, line {legs[way.leg[k]].line}"
+        return
+
+
+def _leaning(way: Way):
+    leg = max(way.run.legs, key=lambda leg: leg.tilt_rad, default=None)
+    if leg and leg.tilt_rad * LEVER_MM > OFF_MM:
+        yield f"the tool leans by {np.degrees(leg.tilt_rad):.2f} degrees, line {leg.line}"
+
+
+def _to_path(points: np.ndarray, path: np.ndarray) -> np.ndarray:
+    """(n,) distance of points from straight moves."""
+    path = path if len(path) > 1 else np.vstack([path, path])
+    starts, steps = path[:-1], np.diff(path, axis=0)
+    squares = np.maximum((steps**2).sum(axis=1), 1e-18)
+    offset = points[:, None] - starts
+    along = np.clip((offset * steps).sum(axis=2) / squares, 0, 1)
+    return np.linalg.norm(offset - along[..., None] * steps, axis=2).min(axis=1)
+
+
+# The plan ---------------------------------------------------------------------------------------------
+
+
+def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
+    """The touches that are no visits to a vessel."""
+    width, height = job.plan["sheet_mm"]
+    found = []
+    for touch in way.touches:
+        beside = (touch[:, :2] <= 0).any(axis=1) | (touch[:, :2] >= (width, height)).any(axis=1)
+        if beside.all() and any(_to_path(touch, visit).max() < job.near_mm for visit in job.stations):
+            continue
+        found.append(touch)
+    return found
+
+
+def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[str]:
+    """What of the plan is not painted once, in order, in its direction, within OFF_MM and no deeper by that.
+
+    sound: the touches of a program that is known to paint the plan: what is the same needs no second look.
+    """
+    strokes = strokes_of(way, job)
+    said = []
+    if len(strokes) != len(job.passes):
+        said.append(f"{len(strokes)} strokes instead of {len(job.passes)}")
+    for k, (stroke, wanted) in enumerate(zip(strokes, job.passes, strict=False)):
+        if sound and k < len(sound) and sound[k].shape == stroke.shape and (sound[k] == stroke).all():
+            continue
+        if (away := off_mm(stroke, wanted, sound[k] if sound and k < len(sound) else None)) > OFF_MM:
+            said.append(f"stroke {k + 1} is {away:.3g} mm off, lost in part, or runs another way")
+            break
+    return said + _corners(way, job)
+
+
+def off_mm(stroke: np.ndarray, wanted: np.ndarray, sound: np.ndarray | None) -> float:
+    """OFF_MM at most when both can be walked from end to end, never back, without ever being farther apart (Frechet);
+    else how far the one is from the other at the worst place, but more than OFF_MM."""
+    near = OFF_MM + STEP_MM / 2
+    if sound is not None:  # only where it was changed could it be far
+        n = min(len(sound), len(stroke))
+        same = np.flatnonzero((sound[:n] != stroke[:n]).any(axis=1))
+        first = int(same[0]) if len(same) else n
+        same = np.flatnonzero((sound[-n:] != stroke[-n:]).any(axis=1))
+        last = len(stroke) - (n - 1 - int(same[-1]) if len(same) else n)
+        if first < last:
+            middle = stroke[max(0, first - 1) : last + 1]
+            gap = _to_path(
+                middle[:: max(1, len(middle) // 200)], wanted[:: max(1, len(wanted) // 2000)]
+            ).max()
+            if gap > 3 * OFF_MM:
+                return float(gap)
+    if walkable(stroke, wanted, near):
+        return 0.0
+    far = max(_to_path(stroke[::3], wanted[::3]).max(), _to_path(wanted[::3], stroke[::3]).max())
+    return max(float(far), OFF_MM * 1.001)
+
+
+def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:
+    """Whether two paths of points can be walked together, neither of them back, never farther apart."""
+    if len(one) < len(other):
+        one, other = other, one
+    if max(np.linalg.norm(one[0] - other[0]), np.linalg.norm(one[-1] - other[-1])) > near_mm:
+        return False
+    low, high, square = 0, 1, near_mm**2
+    reached = np.zeros(len(other), dtype=bool)
+    reached[0] = True
+    for k, point in enumerate(one):
+        # only what can be reached from here on: from the first that was reached to the first that is far behind it
+        high = min(len(other), high + 64)
+        while True:
+            free = ((other[low:high] - point) ** 2).sum(axis=1) <= square
+            if high == len(other) or not free[-1]:
+                break
+            high = min(len(other), high + 256)
+        if k:
+            from_before = reached[low:high].copy()
+            from_before[1:] |= reached[low : high - 1]
+        else:
+            from_before = np.zeros(high - low, dtype=bool)
+            from_before[0] = True
+        enter = free & from_before
+        runs = np.cumsum(~free)
+        # within a run of free places everything behind an entrance can be reached
+        index = np.where(enter, np.arange(len(free)), -1)
+        last_enter = np.maximum.accumulate(index)
+        ok = free & (last_enter >= 0)
+        ok &= runs == np.where(last_enter >= 0, runs[np.maximum(last_enter, 0)], -1)
+        reached[low:high] = ok
+        places_ = np.flatnonzero(ok)
+        if not len(places_):
+            return False
+        reached[:low] = False
+        reached[high:] = False
+        high = low + int(places_[-1]) + 1
+        low += int(places_[0])
+    return bool(reached[len(other) - 1])
+
+
+def cuts(way: Way, job: Job) -> np.ndarray:
+    """(n,) how far each leg's end may be passed at, corners cut as the controller may cut them at most."""
+    legs = way.run.legs
+    if not len(legs):
+        return np.zeros(0)
+    out = np.zeros(len(legs))
+    cut = np.array([leg.cut_mm for leg in legs])
+    moving = np.array([leg.kind not in ("wait", "stop") for leg in legs])
+    if not (cut[moving] > 0).any():
+        return out
+    starts, ends = np.array([leg.start for leg in legs]), np.array([leg.end for leg in legs])
+    steps = ends - starts
+    reaching, leaving = steps.copy(), steps.copy()
+    for k, leg in enumerate(legs):
+        if leg.kind == "arc":
+            here = (
+                places.moved(job.back, np.array([leg.start, leg.end]))
+                if way.run.blends_by_radius
+                else np.array([leg.start, leg.end])
+            )
+            for side, into in ((0, leaving), (1, reaching)):
+                spoke = here[side, :2] - leg.centre
+                into[k] = (-leg.turn * spoke[1], leg.turn * spoke[0], 0.0)
+                if way.run.blends_by_radius:
+                    into[k] = job.paper[:3, :3] @ into[k]
+    lengths = np.linalg.norm(steps, axis=1)
+    known = [k for k in range(len(legs)) if moving[k] and lengths[k] > 1e-9]
+    for a, b in itertools.pairwise(known):
+        if not cut[a] > 0 or not moving[a : b + 1].all():
+            continue
+        u, v = reaching[a] / np.linalg.norm(reaching[a]), leaving[b] / np.linalg.norm(leaving[b])
+        turn = np.arctan2(np.linalg.norm(v - u), np.linalg.norm(v + u))  # half the angle
+        half = min(lengths[a], lengths[b]) / 2
+        if way.run.blends_by_radius:
+            out[a] = min(cut[a], 2 * half) * np.tan(turn / 2)
+        else:
+            out[a] = min(cut[a], half * np.tan(turn / 2))
+    return out
+
+
+def _corners(way: Way, job: Job) -> list[str]:
+    cut = cuts(way, job)
+    if not len(cut):
+        return []
+    ends = places.moved(job.back, np.array([leg.end for leg in way.run.legs]))
+    bad = (cut > OFF_MM) & (ends[:, 2] <= job.touch_mm)
+    if bad.any():
+        k = int(bad.argmax())
+        return [f"a corner may be cut by {cut[k]:.3g} mm, line {way.run.legs[k].line}"]
+    return []
+
+
+# The judgement -----------------------------------------------------------------------------------------
+
+FACT = re.compile(r"(\w+): (.*)")
+TITLE = re.compile(r"(stroke \d+ of |paint: |end: |stop: |border |height )")
+
+
+def facts(run: Run) -> tuple[dict, list]:
+    """What the header says, and after how many mm sections begin: who resumes a job goes by their titles."""
+    said: dict[str, set] = {}
+    for line in run.header:
+        if found := FACT.fullmatch(line.strip()):
+            said.setdefault(found[1], set()).add(found[2])
+    said["frame"] = set(run.frame)
+    sizes = [float(np.linalg.norm(np.subtract(leg.end, leg.start))) for leg in run.legs]
+    done = np.concatenate([[0.0], np.cumsum(sizes)])
+    return said, [(words, float(done[at])) for words, at in run.titles if TITLE.match(words)]
+
+
+FASTER_MM_S = 0.01  # what rounding makes of a feed
+LIFT_S = 0.05  # what one step more or less of a servo's lift takes
+
+
+def same_facts(one: tuple[dict, list], other: tuple[dict, list]) -> bool:
+    (said, titles), (its, others) = one, other
+    if said != its or [words for words, _ in titles] != [words for words, _ in others]:
+        return False
+    return all(abs(a - b) < SAME_PLACE_MM for (_, a), (_, b) in zip(titles, others, strict=True))
+
+
+SAME_PLACE_MM = 0.5  # of a title along the way: what rounding adds up to, less than any move between strokes
+
+
+@dataclass
+class Sound:
+    """The undamaged program as it is run: what damaged ones are held against."""
+
+    job: Job
+    text: str
+    way: Way
+    strokes: list[np.ndarray]
+
+    @cached_property
+    def steps(self) -> list:
+        return _told(self.way, self.job)
+
+    @cached_property
+    def facts(self) -> tuple:
+        return facts(self.way.run)
+
+
+def sound(text: str, job: Job) -> Sound:
+    """AssertionError with what is wrong with a program that should be sound."""
+    run = job.interpret(text)
+    assert not run.refused and not run.acts, (run.refused, run.acts)
+    way = way_of(run, job)
+    said = broken(way, job) + (unlike(way, job) if job.compare else [])
+    assert not said, said
+    return Sound(job, text, way, strokes_of(way, job))
+
+
+def dangers(text: str, whole: Sound) -> tuple[list[str], Way]:
+    """Why nobody should run this program."""
+    job = whole.job
+    run = job.interpret(text)
+    way = way_of(run, job)
+    said = [f"acts: {what}" for what in run.acts]
+    said += broken(way, job)
+    said += unlike(way, job, whole.strokes)
+    if run.refused and (said or not run.legs):
+        said.append(f"the controller stops: {run.refused}")
+    return said, way
+
+
+def judged(text: str, whole: Sound) -> tuple[str, str]:
+    """(dangerous, harmless or neither; why)."""
+    said, way = dangers(text, whole)
+    if said:
+        return "dangerous", "; ".join(said[:3])
+    if way.run.refused:
+        return "neither", f"the controller stops: {way.run.refused}"
+    if not same_facts(facts(way.run), whole.facts):
+        return "neither", "the header or a title says something else"
+    told = _told(way, whole.job)
+    return (
+        ("harmless", "")
+        if _same(told, whole.steps, whole.job)
+        else ("neither", "other moves, yet not dangerous")
+    )
+
+
+def _told(way: Way, job: Job) -> list:
+    """Legs that move, waits and stops, in order, each with how far its corner may be cut; what a servo does on the spot
+    as one lift: its steps are but the rounding of a ramp."""
+    cut = cuts(way, job)
+    out: list = []
+    for k, leg in enumerate(way.run.legs):
+        if leg.kind in ("jump", "wait") and job.language == "grbl-servo":
+            if out and out[-1][0].kind == "lift":
+                out[-1] = (_lifted(out[-1][0], leg, job), 0.0)
+            else:
+                speed = leg.speed_mm_s if leg.kind == "jump" else 0.0
+                out.append((leg._replace(kind="lift", cut_mm=0.0, speed_mm_s=speed), 0.0))
+            continue
+        moves = leg.kind not in ("wait", "stop")
+        if moves and leg.kind != "arc" and np.linalg.norm(np.subtract(leg.end, leg.start)) < 1e-9:
+            if leg.cut_mm > 0 and way.run.blends_by_radius:
+                out.append((leg._replace(kind="stop"), 0.0))  # a blend of nothing: here a robot stops
+            continue
+        out.append((leg, cut[k]))
+    return [each for each in out if each[0].kind != "lift" or each[0].start != each[0].end or each[0].seconds]
+
+
+def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
+    """Two parts of a lift as one; cut_mm: how far it went at once on the paper, or back on the way."""
+    rise, more = before.end[2] - before.start[2], leg.end[2] - leg.start[2]
+    on = min(leg.start[2], leg.end[2]) <= job.touch_mm
+    back = max(before.cut_mm, abs(more) if on or rise * more < 0 else 0.0)
+    speed = max((each.speed_mm_s for each in (before, leg) if np.isfinite(each.speed_mm_s)), default=0.0)
+    return before._replace(end=leg.end, seconds=before.seconds + leg.seconds, cut_mm=back, speed_mm_s=speed)
+
+
+def _same(ours: list, theirs: list, job: Job) -> bool:
+    """Whether a list of legs is another within rounding, and nowhere faster."""
+    near = ROUNDING_MM if job.language != "grbl-servo" else max(ROUNDING_MM, 1.01 * job.servo_mm[0])
+    first = 0
+    while first < min(len(ours), len(theirs)) and _alike(ours[first], theirs[first], near, job):
+        first += 1
+    last = 0
+    most = min(len(ours), len(theirs)) - first
+    while last < most and _alike(ours[-1 - last], theirs[-1 - last], near, job):
+        last += 1
+    ours, theirs = ours[first : len(ours) - last], theirs[first : len(theirs) - last]
+    if not ours and not theirs:
+        return True
+    if not ours or not theirs or len(ours) + len(theirs) > 60:
+        return False
+    if {leg.kind for leg, _ in ours + theirs} - {"feed", "rapid", "process"} or len(
+        {leg.kind for leg, _ in ours + theirs}
+    ) > 1:
+        return False
+    if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
+        return False
+    if max(leg.speed_mm_s for leg, _ in ours) > min(leg.speed_mm_s for leg, _ in theirs) + FASTER_MM_S:
+        return False
+    if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
+        return False
+    one, other = (
+        _sampled(np.array([each[0][0].start] + [leg.end for leg, _ in each])) for each in (ours, theirs)
+    )
+    both = max(_to_path(one, other).max(), _to_path(other, one).max())
+    return both <= near and walkable(one, other, near + STEP_MM)
+
+
+def _alike(one, other, near: float, job: Job) -> bool:
+    (a, cut), (b, its) = one, other
+    if a.kind != b.kind or a.turn != b.turn or cut > its + ROUNDING_MM:
+        return False
+    if a.acceleration > b.acceleration * 1.001:
+        return False
+    if a.kind == "lift" and (abs(a.seconds - b.seconds) > LIFT_S or (a.seconds > 0) != (b.seconds > 0)):
+        return False
+    if a.kind == "lift" and a.cut_mm > max(b.cut_mm, 1.5 * job.servo_mm[1] + job.servo_mm[0] + SLACK_MM):
+        return False
+    if a.speed_mm_s > b.speed_mm_s + FASTER_MM_S or (
+        a.kind != "lift" and abs(a.seconds - b.seconds) > 0.0011
+    ):
+        return False
+    if a.centre and max(abs(p - q) for p, q in zip(a.centre, b.centre, strict=True)) > near:
+        return False
+    return all(abs(p - q) <= near for p, q in zip((*a.start, *a.end), (*b.start, *b.end), strict=True))
+
+
+def job_of(
+    cell: dict, plan_json: str, brush_mm_s: float, z_offset_mm: float = 0.0, first_stroke: int = 1
+) -> Job:
+    return Job(cell, json.loads(plan_json), brush_mm_s, z_offset_mm, first_stroke)

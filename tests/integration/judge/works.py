@@ -1,0 +1,148 @@
+"""Ten small jobs for every dialect: what is drawn, how it is asked for, and on which machine."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from brushsvg.brushes import find_brush
+from brushsvg.cell import Paper, Reload, Station
+from brushsvg.cell_file import find_cell, write_cell
+
+from .checked import converted, put
+from .verdict import Job, Sound, job_of, sound
+
+CELLS = {
+    "linuxcnc": ("linuxcnc-3axis", ".ngc"),
+    "grbl": ("grbl-3axis", ".gcode"),
+    "grbl-servo": ("grbl-servo", ".nc"),
+    "urscript": ("ur5e", ".script"),
+}
+OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
+
+
+def lines(*paths: str, width="2") -> str:
+    drawn = "".join(
+        f'<path id="p{k}" d="{d}" fill="none" stroke="#000" stroke-width="{width}"/>'
+        for k, d in enumerate(paths, 1)
+    )
+    return f"{OPEN}{drawn}</svg>"
+
+
+@dataclass(frozen=True)
+class Work:
+    """flags of convert; check_flags: those of them that check needs again; change: of the cell, by its language."""
+
+    svg: str
+    flags: tuple[str, ...] = ()
+    check_flags: tuple[str, ...] = ()
+    change: object = None
+    by_plan: bool = False
+
+
+def _turned(cell):
+    """On paper that lies askew, and higher."""
+    if cell.language == "grbl-servo":
+        return replace(cell, paper=Paper(origin_mm=(40.0, 30.0, 0.0), rotation_deg=(0.0, 0.0, 30.0)))
+    paper = Paper(origin_mm=(-30.0, -450.0, 12.5), rotation_deg=(0.0, 0.0, 30.0))
+    return replace(cell, paper=paper)
+
+
+def _leaning(cell):
+    if cell.language == "grbl-servo":
+        return replace(
+            cell, servo=replace(cell.servo, table=((-10.0, 900.0), (-2.0, 660.0), (0.0, 600.0), (5.0, 400.0)))
+        )
+    paper = Paper(origin_mm=(-30.0, -450.0, 12.5), rotation_deg=(1.0, -0.7, 10.0))
+    return replace(cell, paper=paper)
+
+
+def _higher(cell):
+    """A servo that can lift the brush over paper that lies higher than thought."""
+    if cell.language == "grbl-servo":
+        return replace(cell, servo=replace(cell.servo, table=((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0))))
+    return cell
+
+
+def _painted(cell):
+    safe = cell.heights.safe_mm
+    rim = min(2.0, safe - cell.heights.clearance_mm)
+    ink = Station("ink", (-15.0, 20.0), surface_mm=-1.0, depth_mm=3.0, rim_mm=rim, hold_s=0.4, drip_s=0.5)
+    red = Station("red", (-15.0, 35.0), ("#ff0000",), surface_mm=0.0, depth_mm=2.0, rim_mm=rim)
+    red = replace(red, wipe_mm=((-10.0, 35.0, rim + 0.5), (-7.0, 35.0, rim + 0.5)))
+    return replace(cell, reload=Reload("stroke"), stations=(red, ink))
+
+
+WORKS = {
+    "two lines": Work(lines("M20 25 L48 27", "M20 35 L50 33")),
+    "a curve": Work(lines("M18 30 C28 10 42 10 52 32", "M20 40 C30 36 40 44 50 40", width="3")),
+    "corners": Work(lines("M20 38 L34 14 L48 38", "M27 28 L42 28")),
+    "circles": Work(
+        lines("M20 38 L34 16 L48 38", "M22 42 L44 42"), ("--compensation", "constant", "--lag", "4")
+    ),
+    "a dab and a hook": Work(lines("M25 20 L25 20", "M30 16 L44 16 L44 30", "M25 38 L32 38")),
+    "askew": Work(lines("M20 25 L46 30", "M24 34 C34 30 40 40 48 36"), change=_turned),
+    "leaning": Work(lines("M20 22 L46 30", "M24 34 L34 38 L48 33"), change=_leaning),
+    "paint": Work(lines("M20 20 L44 22", "M22 30 L44 31").replace('#000"', '#ff0000"', 1), change=_painted),
+    "higher, in another order": Work(
+        lines("M20 20 L30 20", "M50 40 L40 40", "M34 22 L46 22"),
+        ("--z-offset", "0.3", "--order", "nearest"),
+        change=_higher,
+    ),
+    "a plan, resumed": Work(
+        lines("M20 20 L32 20", "M20 30 L34 28", "M20 40 L30 40"), ("--from-stroke", "2"), by_plan=True
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Made:
+    """A job that was written. words: what check is asked with; program: where damaged ones go."""
+
+    name: str
+    dialect: str
+    whole: Sound
+    program: Path
+    words: tuple
+
+
+def cell_of(dialect: str, change=None):
+    cell = find_cell(CELLS[dialect][0])
+    cell = change(cell) if change else cell
+    return replace(cell, name="mine") if change else cell
+
+
+def job_for(cell_toml: str, plan_json: str, brush_name: str, flags=()) -> Job:
+    said = dict(itertools.pairwise(flags))
+    brush = find_brush(brush_name)
+    z_offset, first = float(said.get("--z-offset", 0)), int(said.get("--from-stroke", 1))
+    return job_of(tomllib.loads(cell_toml), plan_json, brush.max_speed_mm_s, z_offset, first)
+
+
+def make(name: str, dialect: str, folder: Path) -> Made:
+    """Converted by the command, and judged sound."""
+    work, suffix = WORKS[name], CELLS[dialect][1]
+    folder.mkdir(parents=True, exist_ok=True)
+    cell_toml = write_cell(cell_of(dialect, work.change))
+    cell = put(folder / "mine.toml", cell_toml)
+    svg = put(folder / "drawing.svg", work.svg)
+    plan, program = folder / "plan.json", folder / f"program{suffix}"
+    flags = work.flags
+    planned = [
+        flag
+        for k, flag in enumerate(flags)
+        if not {"--z-offset", "--from-stroke"} & set(flags[max(0, k - 1) : k + 1])
+    ]
+    assert not (said := converted(svg, plan, "--cell", cell, *planned)), said
+    source = plan if work.by_plan else svg
+    assert not (said := converted(source, program, "--cell", cell, *flags)), said
+    text = program.read_text(encoding="ascii")
+    brush = json.loads(plan.read_text())["brush"]
+    job = job_for(cell_toml, plan.read_text(), brush, flags)
+    whole = sound(text, job)
+    return Made(
+        name, dialect, whole, folder / f"damaged{suffix}", (source, "--cell", cell, *work.check_flags)
+    )

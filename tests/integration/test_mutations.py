@@ -1,0 +1,114 @@
+"""Damaged programs: what `brushsvg check` allows and refuses, held against a judge that shares no code with it.
+
+A sample, a thousand programs a dialect; benchmarks/mutations.py runs a thousand for each of the ten jobs.
+"""
+
+import re
+import subprocess
+
+import pytest
+from judge.damage import DAMAGES, damaged
+from judge.table import Figures, measure
+from judge.verdict import judged
+from judge.works import CELLS, WORKS, make
+
+A_JOB = 100
+SEED = 1
+EVEN_FOR_RS274 = ("a curve", "circles", "corners", "leaning", "paint")
+
+
+def made(name, dialect, tmp_path):
+    return make(name, dialect, tmp_path / dialect / str(list(WORKS).index(name)))
+
+
+@pytest.mark.parametrize("dialect", CELLS)
+def test_check_tells_dangerous_from_harmless(dialect, tmp_path, capsys):
+    figures = Figures()
+    for name in WORKS:
+        measure(made(name, dialect, tmp_path), A_JOB, SEED, figures)
+    with capsys.disabled():
+        print("\n" + figures.table())
+    allowed = [case for case in figures.cases if case.verdict == "dangerous" and not case.refusals]
+    refused = [case for case in figures.cases if case.verdict == "harmless" and case.refusals]
+    assert figures.crashes == []
+    assert allowed == []
+    assert 50 * len(refused) < figures.of(dialect, "harmless"), refused
+    assert 4 * figures.of(dialect, "neither") <= figures.of(dialect)
+    assert figures.of(dialect, "harmless") > A_JOB < figures.of(dialect, "dangerous"), "both are tried"
+
+
+@pytest.mark.parametrize("dialect", CELLS)
+def test_the_judge_tells_them_apart(dialect, tmp_path):
+    """What every kind of damage may be, so that the table above says something."""
+    whole = made("two lines", dialect, tmp_path).whole
+    assert judged(whole.text, whole) == ("harmless", "")
+    seen = {name: set() for name in DAMAGES}
+    for name, text in damaged(whole.text, dialect, 600, 7):
+        seen[name].add(judged(text, whole)[0])
+    always = {"strokes swapped", "stroke lost", "stroke doubled", "stroke reversed"}
+    for name in always:
+        assert seen[name] <= {"dangerous"}, name
+    assert seen["remark"] == seen["blank line"] == {"harmless"}
+    for name in ("sign", "digit", "line lost", "line moved", "mode"):
+        assert "dangerous" in seen[name], name
+    assert "harmless" in seen["last digit"] and "neither" in seen["header"]
+
+
+RS274_SILENT = re.compile("compensation|mode|%|return|places|system|length|M2|letters|comment")
+
+
+def rs274(text, folder):
+    """(refused, legs) as LinuxCNC's own interpreter prints them."""
+    (folder / "p.ngc").write_bytes(text.encode("latin-1"))
+    (folder / "rs274ngc.var").touch()
+    done = subprocess.run(
+        ["rs274", "-g", "p.ngc"], cwd=folder, capture_output=True, timeout=60, encoding="latin-1", check=False
+    )
+    legs, feed = [], 0.0
+    for line in done.stdout.splitlines():
+        if not (found := re.fullmatch(r" *\d+ N\.* +(\w+)\((.*)\)", line)):
+            continue
+        name, words = found.groups()
+        if name == "SET_FEED_RATE":
+            feed = float(words) / 60
+        elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
+            place = [float(word) for word in words.split(",")[:3]]
+            legs.append(("rapid" if name == "STRAIGHT_TRAVERSE" else "feed", *place, feed))
+        elif name == "ARC_FEED":
+            x, y, centre_x, centre_y, turn, z = (float(word) for word in words.split(",")[:6])
+            legs.append(("arc", x, y, z, feed, centre_x, centre_y, turn))
+    return done.returncode != 0, legs
+
+
+@pytest.mark.parametrize("name", EVEN_FOR_RS274)
+def test_the_judge_reads_as_linuxcnc_does(name, tmp_path):
+    """Whole and damaged programs: the same moves, and the same ones refused."""
+    whole = made(name, "linuxcnc", tmp_path).whole
+    compared = 0
+    for damage, text in [("", whole.text), *damaged(whole.text, "linuxcnc", 60, 77)]:
+        run = whole.job.interpret(text)
+        if damage in ("mode", "cut off", "acting comment") or any(map(RS274_SILENT.search, run.acts)):
+            continue  # what the judge warns of, LinuxCNC would do
+        if "G21" not in text or not re.search("(?m)^G0 Z", text):
+            continue
+        refused, legs = rs274(text, tmp_path)
+        ours = [leg for leg in run.legs if leg.kind in ("rapid", "feed", "arc")]
+        assert refused == bool(run.refused), (text, run.refused)
+        if not refused:
+            assert len(legs) == len(ours)
+        compared += 1
+        known = [False] * 3  # where the tool was before the program, nobody knows
+        for leg, theirs in zip(ours, legs, strict=False):
+            assert leg.kind == theirs[0]
+            known = [
+                is_so or abs(a - b) < 2e-4 for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True)
+            ]
+            for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True):
+                assert not is_so or a == pytest.approx(b, abs=2e-4), (damage, leg, theirs)
+            if leg.kind != "rapid":
+                assert leg.speed_mm_s == pytest.approx(theirs[4], abs=1e-4)
+            if leg.kind == "arc":
+                assert leg.centre == pytest.approx(theirs[5:7], abs=2e-4)
+                assert leg.turn == theirs[7]
+        assert all(known) or refused or len(ours) < 3
+    assert compared > 30
