@@ -114,7 +114,7 @@ class _Reader:
             )
         if values and first != "G64" and self.out.modes is None:
             self.out.modes = frozenset(self.seen)
-        if first not in ("G4", ""):
+        if first not in ("G4", "M3", ""):
             self.lift = None
         if first in WAYS or not first:
             self._move(number, line, first, values)
@@ -212,6 +212,9 @@ class _Reader:
         """At once, if nothing is waited for afterwards, or too far for one step."""
         self.value = values.get("S", self.value)
         before, height = self.at["Z"], self._height(number, self.value)
+        if height == before:
+            return  # the value that holds
+        self.lift = None
         self._go(number, False, {"Z": height}, None, math.inf)
         self.out.acts.append(Act(number, "lift", same=(self.value,)))
         if not abs(height - before) > self.lift_mm:
