@@ -146,7 +146,7 @@ class _Robot:
                 if self.here is None:
                     raise RefusedError(f"line {number}: here is not known")
                 self.run.frame.append(
-                    f"if {found[1]} {float(found[2])} {[each[1] for each in lines[at + 1 : end]]}"
+                    f"if {found[1]} {float(found[2])} {[each[1] for each in lines[at + 1 : end] if each[1] != 'comment']}"
                 )
                 if self.here[int(found[1])] < float(found[2]):
                     self._body(lines[at + 1 : end])
