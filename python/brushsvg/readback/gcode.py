@@ -212,8 +212,8 @@ class _Reader:
         """At once, if nothing is waited for afterwards, or too far for one step."""
         self.value = values.get("S", self.value)
         before, height = self.at["Z"], self._height(number, self.value)
-        if height == before and self.lift:
-            return  # told twice: what is waited for goes on
+        if height == before:
+            return  # the value that holds
         self.lift = None
         self._go(number, False, {"Z": height}, None, math.inf)
         self.out.acts.append(Act(number, "lift", same=(self.value,)))

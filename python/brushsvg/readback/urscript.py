@@ -62,7 +62,8 @@ def read_urscript(text: str) -> Readback:
             raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes")
     if not out.paper:
         raise Error("the line that sets the paper is missing")
-    if [line for _, line in lines[-2:]] != ["end", "brushsvg()"]:
+    code = [line for _, line in lines if not line.startswith("# ")]
+    if code[-2:] != ["end", "brushsvg()"] or lines[-1][1] != code[-1]:
         raise Error("the last lines are missing: half of the program was lost")
     return out
 

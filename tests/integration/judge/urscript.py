@@ -145,9 +145,8 @@ class _Robot:
                 end = self._end(lines, at)
                 if self.here is None:
                     raise RefusedError(f"line {number}: here is not known")
-                self.run.frame.append(
-                    f"if {found[1]} {float(found[2])} {[each[1] for each in lines[at + 1 : end]]}"
-                )
+                inner = [each[1] for each in lines[at + 1 : end] if each[1] != "comment"]
+                self.run.frame.append(f"if {found[1]} {float(found[2])} {inner}")
                 if self.here[int(found[1])] < float(found[2]):
                     self._body(lines[at + 1 : end])
                 at = end + 1

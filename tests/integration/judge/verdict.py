@@ -620,8 +620,10 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
     one, other = (
         _sampled(np.array([each[0][0].start] + [leg.end for leg, _ in each])) for each in (ours, theirs)
     )
+    flat = (1.0, 1.0, ROUNDING_MM / near)  # a servo's heights are rounded to values, its places are not
+    one, other = one * flat, other * flat
     both = max(_to_path(one, other).max(), _to_path(other, one).max())
-    return both <= near and walkable(one, other, near + STEP_MM)
+    return both <= ROUNDING_MM and walkable(one, other, ROUNDING_MM + STEP_MM)
 
 
 def _alike(one, other, near: float, job: Job) -> bool:
@@ -640,7 +642,8 @@ def _alike(one, other, near: float, job: Job) -> bool:
         return False
     if a.centre and max(abs(p - q) for p, q in zip(a.centre, b.centre, strict=True)) > near:
         return False
-    return all(abs(p - q) <= near for p, q in zip((*a.start, *a.end), (*b.start, *b.end), strict=True))
+    nears = (ROUNDING_MM, ROUNDING_MM, near) * 2
+    return all(abs(p - q) <= n for p, q, n in zip((*a.start, *a.end), (*b.start, *b.end), nears, strict=True))
 
 
 def job_of(
