@@ -183,7 +183,8 @@ TEXTS = [
     '{"format": "brushsvg/marks", "version": 1, "passes": [{"stroke": "a", "pose": [1e300], "contact_mm": [[0, 0]], '
     '"heading_rad": [0], "depth_mm": [0], "taut": [true]}]}',
 ]
-SOUND_CELL = (Path(brushsvg.__file__).parent / "data" / "cells" / "grbl-3axis.toml").read_text()
+SOUND_CELL = Path(brushsvg.__file__).parent / "data" / "cells" / "grbl-3axis.toml"
+(FOLDER / "huge.toml").write_text(SOUND_CELL.read_text().replace("= 5", "= 1e400"))
 NAMES = ["", "\0", "no-such", "../x", "a" * 5000, *PATHS]
 
 SHEETS = [(100, 100), (0, 0), (NAN, 9), (1e300, 1e300)]
@@ -233,9 +234,7 @@ ARGUMENTS = {
     "marks_png": [marks, brushes, SHEETS, COLOURS],
     "marks_svg": [marks, SHEETS, COLOURS],
     "overlap": [rings, rings],
-    "read_cell": [
-        [*PATHS, SOUND_CELL, "name = [[[[", "[" * 10_000, *TEXTS, SOUND_CELL.replace("= 5", "= 1e400")]
-    ],
+    "read_cell": [[SOUND_CELL, *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
     "read_drawing": [[FOLDER / "d.svg", *PATHS]],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
     "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
