@@ -15,11 +15,11 @@ import cv2
 import numpy as np
 
 from brushsvg import _core
-from brushsvg.importers.svg import read_svg
-from brushsvg.outlines import LEAST_SHARE, _connected, _strokes, filled, outline_strokes
-from brushsvg.outlines.habit import joined, ordered
-from brushsvg.outlines.skeleton import skeleton
-from brushsvg.text import text_svg
+from brushsvg.drawing.svg import read_svg
+from brushsvg.drawing.text import text_svg
+from brushsvg.strokes.skeleton import LEAST_SHARE, _connected, _strokes, filled, outline_strokes
+from brushsvg.strokes.skeleton.graph import skeleton
+from brushsvg.strokes.skeleton.writing_order import joined, ordered
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
 PX_PER_MM = 20

@@ -14,11 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from brushsvg import _core
-from brushsvg.brushes import find_brush
-from brushsvg.cell_file import find_cell
-from brushsvg.importers import read_drawing
-from brushsvg.machine import encode, problems
-from brushsvg.strokes import strokes as strokes_of
+from brushsvg.brush.library import find_brush
+from brushsvg.drawing import read_drawing
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.preflight import problems
+from brushsvg.machine.writer import encode
+from brushsvg.strokes.extraction import strokes as strokes_of
 
 STROKES = 1000
 

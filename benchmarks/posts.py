@@ -12,11 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from brushsvg import _core, machine
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Workspace
-from brushsvg.cell_file import cell_names, find_cell
-from brushsvg.posts import POSTS
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.machine import writer
+from brushsvg.machine.cell import Workspace
+from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.posts import POSTS
 
 STROKES = 1000
 POSES = 150
@@ -43,7 +44,7 @@ def roomy(name: str):
 def write(name: str, plan, brush) -> int:
     """Bytes of the program, which is thrown away piece by piece."""
     suffix = POSTS[find_cell(name).language].extensions[0]
-    return sum(len(piece) for piece in machine.encode(suffix, plan, brush, "page", (), roomy(name)))
+    return sum(len(piece) for piece in writer.encode(suffix, plan, brush, "page", (), roomy(name)))
 
 
 def peak_mb() -> float:

@@ -18,11 +18,11 @@ from xml.parsers import expat
 import numpy as np
 
 from brushsvg import units
-from brushsvg.importers import svg_colour, svg_frame, svg_rules, svg_shapes, svg_style, svg_transform
-from brushsvg.importers.svg import read_svg
-from brushsvg.importers.svg_trace import trace
-from brushsvg.importers.svg_xml import parse_xml
-from brushsvg.strokes import strokes
+from brushsvg.drawing.svg import colour, css_cascade, css_selectors, read_svg, transform, viewport
+from brushsvg.drawing.svg import shapes as svg_shapes
+from brushsvg.drawing.svg.path_to_cubics import trace
+from brushsvg.drawing.svg.xml import parse_xml
+from brushsvg.strokes.extraction import strokes
 
 ELEMENTS = 1000
 SEGMENTS = 10
@@ -86,7 +86,7 @@ def _style(random) -> str:
 def cold_ms(work, rounds: int) -> float:
     times = []
     for _ in range(rounds):
-        for remembering in (svg_rules.declarations, svg_colour.parse_colour, units._parts):
+        for remembering in (css_selectors.declarations, colour.parse_colour, units._parts):
             remembering.cache_clear()
         begin = time.perf_counter()
         work()
@@ -96,18 +96,18 @@ def cold_ms(work, rounds: int) -> float:
 
 def styles(root) -> None:
     """The rules, and the style of every element from its parent's."""
-    rules = svg_rules.Rules(root)
-    waiting = [(root, svg_style.INITIAL)]
+    rules = css_selectors.Rules(root)
+    waiting = [(root, css_cascade.INITIAL)]
     while waiting:
         node, parent = waiting.pop()
-        style, _ = svg_style.cascade(parent, node.attrib, rules.of(node), 100.0)
+        style, _ = css_cascade.cascade(parent, node.attrib, rules.of(node), 100.0)
         waiting += [(child, style) for child in node]
 
 
 def stages(data: bytes, rounds: int) -> dict[str, float]:
     root = parse_xml(data).root
-    page = svg_frame.read_page(root.attrib)
-    scale = svg_transform.scales(page.paper_from_user)[0]
+    page = viewport.read_page(root.attrib)
+    scale = transform.scales(page.paper_from_user)[0]
     shapes = [
         (tag, node.attrib) for node in root.iter() if (tag := node.tag.rpartition("}")[2]) in svg_shapes.TAGS
     ]

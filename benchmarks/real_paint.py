@@ -28,8 +28,8 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
 from brushsvg import _core
-from brushsvg.mark_calibrate import brush_of
-from brushsvg.masks import mask_outlines
+from brushsvg.calibration.from_marks import brush_of
+from brushsvg.calibration.mask_contours import mask_outlines
 
 LEVEL = 70
 FARTHEST_MM = 3.0

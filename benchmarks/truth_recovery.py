@@ -25,9 +25,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "laws"))
 import painter
 
 from brushsvg import _core
-from brushsvg.chart import chart
-from brushsvg.mark_calibrate import brush_of
-from brushsvg.usage import values
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.from_marks import brush_of
+from brushsvg.cli.arguments import values
 
 KNOWN_TO = 0.15
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest

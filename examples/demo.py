@@ -6,22 +6,24 @@ from pathlib import Path
 import numpy as np
 
 import brushsvg
-from brushsvg import convert, machine, report
-from brushsvg.cell_file import find_cell
-from brushsvg.console import RefusedError, about, say, warn
-from brushsvg.describe import one_line
+from brushsvg.brush.describe import one_line
+from brushsvg.cli.console import RefusedError, about, say, warn
+from brushsvg.evaluation import report
 from brushsvg.files import write_files
-from brushsvg.render import MIDDLE_LINE, Panel, panels_png
+from brushsvg.machine import preflight, writer
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.pictures.marks_png import MIDDLE_LINE, Panel, panels_png
+from brushsvg.pipeline import comparison, outputs, prediction, preparation
 
 
 def main(drawing: Path, directory: Path) -> None:
     cell = find_cell()
     ways = ("none", "constant", "closed", "refined")
-    works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ways}
+    works = {how: preparation.prepare(drawing, preparation.Options(compensation=how)) for how in ways}
     work = works["closed"]
-    works["best"] = convert.best_constant(work)
-    marks = {how: convert.predict(works[how]) for how in works}
-    problems = machine.problems(work.plan, work.brush, marks["closed"], cell, work.options.tolerance_mm)
+    works["best"] = comparison.best_constant(work)
+    marks = {how: prediction.predict(works[how]) for how in works}
+    problems = preflight.problems(work.plan, work.brush, marks["closed"], cell, work.options.tolerance_mm)
     if problems:
         raise RefusedError([(str(drawing), *problem) for problem in problems])
     warn(str(drawing), [(notice.where, notice.sentence) for notice in work.notices])
@@ -38,12 +40,12 @@ def main(drawing: Path, directory: Path) -> None:
     }
     table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
     files = {
-        ".plan.json": machine.encode(".json", work.plan, work.brush, work.title),
-        ".ngc": machine.encode(".ngc", work.plan, work.brush, work.title, convert.notes(work), cell),
-        ".marks.svg": convert.picture(".svg", work, marks["closed"]),
-        ".report.txt": convert.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
-        ".html": convert.played(work, marks["closed"], cell),
-        ".png": comparison(works, marks, totals),
+        ".plan.json": writer.encode(".json", work.plan, work.brush, work.title),
+        ".ngc": writer.encode(".ngc", work.plan, work.brush, work.title, outputs.notes(work), cell),
+        ".marks.svg": outputs.picture(".svg", work, marks["closed"]),
+        ".report.txt": outputs.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
+        ".html": outputs.played(work, marks["closed"], cell),
+        ".png": three_panels(works, marks, totals),
     }
     directory.mkdir(parents=True, exist_ok=True)
     paths = {directory / (drawing.stem + ending): data for ending, data in files.items()}
@@ -51,7 +53,7 @@ def main(drawing: Path, directory: Path) -> None:
     print(table, *paths, sep="\n")
 
 
-def comparison(works, marks, totals) -> bytes:
+def three_panels(works, marks, totals) -> bytes:
     """Three panels: what was drawn, what is painted without and with compensation."""
     work = works["closed"]
     wanted = report.wanted_rings(work.strokes)

@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 from brushsvg import _core
+from brushsvg.brush.footprint_shapes import disc, drop
 from brushsvg.files import write_files
-from brushsvg.shapes import disc, drop
 
 SHIPPED = Path(__file__).parents[1] / "python" / "brushsvg" / "data" / "brushes"
 

@@ -40,7 +40,7 @@ Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::Co
 
 struct Compensated {
     brushsvg::Plan plan;
-    std::vector<brushsvg::Miss> misses;
+    std::vector<brushsvg::TrackingError> misses;
     std::vector<std::pair<std::string, std::string>> warnings;
 };
 
@@ -48,16 +48,17 @@ struct Compensated {
 
 void bind_compensate(py::module_& m) {
     using namespace brushsvg;
-    py::class_<Miss>(m, "Miss",
-                     R"(Distance of the widest point from the middle line [mm], from the first taut row to the last.
+    py::class_<TrackingError>(
+        m, "Miss",
+        R"(Distance of the widest point from the middle line [mm], from the first taut row to the last.
 
 largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
 too sharp for the lever.)")
-        .def_readonly("largest_mm", &Miss::largest_mm)
-        .def_property_readonly("at_mm", frozen_copy(&Miss::at_mm))
-        .def_readonly("mean_mm", &Miss::mean_mm)
-        .def_readonly("within_tolerance", &Miss::within_tolerance)
-        .def_readonly("has_turn_in_place", &Miss::has_turn_in_place);
+        .def_readonly("largest_mm", &TrackingError::largest_mm)
+        .def_property_readonly("at_mm", frozen_copy(&TrackingError::at_mm))
+        .def_readonly("mean_mm", &TrackingError::mean_mm)
+        .def_readonly("within_tolerance", &TrackingError::within_tolerance)
+        .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place);
     py::class_<Compensated>(m, "Compensated", "A plan, what each pass still misses, and warnings [(stroke, sentence)].")
         .def_readonly("plan", &Compensated::plan)
         .def_property_readonly("misses", parts(&Compensated::misses))
@@ -104,6 +105,7 @@ the brush's. progress: called with (strokes done, strokes). few_poses: closed on
 asks for.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
-    m.def("miss_of", &miss_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,
-          py::call_guard<Unlocked>(), "Miss of one pass against the stroke it should paint, by simulating it.");
+    m.def("miss_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
+          py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
+          "Miss of one pass against the stroke it should paint, by simulating it.");
 }

@@ -1,6 +1,6 @@
 #include "bindings.hpp"
 #include "brushsvg/stroke.hpp"
-#include "brushsvg/wanted.hpp"
+#include "brushsvg/target_mark.hpp"
 
 void bind_stroke(py::module_& m) {
     using namespace brushsvg;

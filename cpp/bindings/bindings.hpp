@@ -16,7 +16,7 @@
 namespace py = pybind11;
 
 void bind_profile(py::module_& m);
-void bind_student(py::module_& m);
+void bind_student_t(py::module_& m);
 void bind_footprint(py::module_& m);
 void bind_brush(py::module_& m);
 void bind_stroke(py::module_& m);
@@ -29,10 +29,10 @@ void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);
 void bind_curve_fit(py::module_& m);
 void bind_coverage(py::module_& m);
-void bind_overlay(py::module_& m);
-void bind_verdict(py::module_& m);
+void bind_mark_overlap(py::module_& m);
+void bind_stroke_score(py::module_& m);
 void bind_compensate(py::module_& m);
-void bind_interrupt(py::module_& m);
+void bind_paint_loads(py::module_& m);
 void bind_thin_out(py::module_& m);
 void bind_io(py::module_& m);
 void bind_fit(py::module_& m);

@@ -18,7 +18,7 @@ PYBIND11_MODULE(_core, m) {
     });
 
     bind_profile(m);
-    bind_student(m);
+    bind_student_t(m);
     bind_footprint(m);
     bind_brush(m);
     bind_stroke(m);
@@ -31,10 +31,10 @@ PYBIND11_MODULE(_core, m) {
     bind_medial_axis(m);
     bind_curve_fit(m);
     bind_coverage(m);
-    bind_overlay(m);
-    bind_verdict(m);
+    bind_mark_overlap(m);
+    bind_stroke_score(m);
     bind_compensate(m);
-    bind_interrupt(m);
+    bind_paint_loads(m);
     bind_thin_out(m);
     bind_io(m);
 #ifdef BRUSHSVG_FIT

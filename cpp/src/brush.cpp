@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "brushsvg/error.hpp"
-#include "brushsvg/student.hpp"
+#include "brushsvg/student_t.hpp"
 
 namespace brushsvg {
 namespace {

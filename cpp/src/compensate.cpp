@@ -8,9 +8,9 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/thin_out.hpp"
+#include "landing.hpp"
 #include "middle_line.hpp"
 #include "tolerance.hpp"
-#include "touch.hpp"
 #include "usable.hpp"
 
 namespace brushsvg {
@@ -290,9 +290,9 @@ constexpr double kHairShare = 0.1;
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
-              double tolerance_mm, Pass& pass, Miss& miss) {
+              double tolerance_mm, Pass& pass, TrackingError& miss) {
     const Pass fewer = thin_out(from, brush, share * tolerance_mm);
-    const Miss remains = miss_of(fewer, stroke, brush, tolerance_mm);
+    const TrackingError remains = tracking_error_of(fewer, stroke, brush, tolerance_mm);
     if (remains.largest_mm > limit_mm) return false;
     pass = fewer;
     miss = remains;
@@ -326,7 +326,7 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         if (options.method == Compensation::constant)
             r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
         offset(stroke, brush, line, r0, step_tolerance).into(pass);
-        result.miss = miss_of(pass, stroke, brush, options.tolerance_mm);
+        result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
     // the plan is simulated before it is handed over; finer steps as long as they help
@@ -340,7 +340,7 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
             result.miss.has_turn_in_place = turns;
             return result;
         }
-        Miss miss = miss_of(trial, stroke, brush, options.tolerance_mm);
+        TrackingError miss = tracking_error_of(trial, stroke, brush, options.tolerance_mm);
         miss.has_turn_in_place = turns;
         const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
         if (better) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "kept_branches.hpp"
 #include "outline.hpp"
+#include "skeleton_pruning.hpp"
 #include "voronoi_axis.hpp"
 
 namespace brushsvg {

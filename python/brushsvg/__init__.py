@@ -31,40 +31,40 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
-    from .brushes import brush_names, find_brush
-    from .cell import Cell
-    from .cell_file import cell_names, find_cell, read_cell, write_cell
-    from .documents import read_marks, read_plan
+    from .brush.library import brush_names, find_brush
+    from .drawing import ReadOptions, read_drawing
+    from .drawing.text import text_svg
     from .errors import Error
-    from .importers import ReadOptions, read_drawing
-    from .machine import write_program
-    from .reach import within_reach
-    from .render import marks_png
-    from .strokes import strokes
-    from .svg_marks import marks_svg
-    from .text import text_svg
+    from .machine.cell import Cell
+    from .machine.cell_file import cell_names, find_cell, read_cell, write_cell
+    from .machine.writer import write_program
+    from .pictures.marks_png import marks_png
+    from .pictures.marks_svg import marks_svg
+    from .pipeline.json_files import read_marks, read_plan
+    from .strokes.extraction import strokes
+    from .strokes.width_limits import within_reach
 
     __version__: str
 
 _HOME = {
     "Error": "errors",
-    "ReadOptions": "importers",
-    "read_drawing": "importers",
-    "text_svg": "text",
-    "strokes": "strokes",
-    "Cell": "cell",
-    "brush_names": "brushes",
-    "cell_names": "cell_file",
-    "find_cell": "cell_file",
-    "read_cell": "cell_file",
-    "write_cell": "cell_file",
-    "find_brush": "brushes",
-    "read_marks": "documents",
-    "read_plan": "documents",
-    "write_program": "machine",
-    "within_reach": "reach",
-    "marks_png": "render",
-    "marks_svg": "svg_marks",
+    "ReadOptions": "drawing",
+    "read_drawing": "drawing",
+    "text_svg": "drawing.text",
+    "strokes": "strokes.extraction",
+    "Cell": "machine.cell",
+    "brush_names": "brush.library",
+    "cell_names": "machine.cell_file",
+    "find_cell": "machine.cell_file",
+    "read_cell": "machine.cell_file",
+    "write_cell": "machine.cell_file",
+    "find_brush": "brush.library",
+    "read_marks": "pipeline.json_files",
+    "read_plan": "pipeline.json_files",
+    "write_program": "machine.writer",
+    "within_reach": "strokes.width_limits",
+    "marks_png": "pictures.marks_png",
+    "marks_svg": "pictures.marks_svg",
 } | dict.fromkeys(
     [
         "Arc",

@@ -1,4 +1,4 @@
-"""The only reader of lengths written by people and drawing programs: "0.5in", "10mm", "5", "25%"."""
+"""The only reader of lengths written by people and drawing programs: "0.5in", "10mm", "5", "25%"; times in words."""
 
 from __future__ import annotations
 
@@ -88,3 +88,12 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
             sentence = f"{value} mm in the size {_shown(text)} is outside the range (0, 1000000] mm"
             raise Error(sentence, value=value, range=(0.0, 1e6))
     return size
+
+
+def clock(seconds: float) -> str:
+    """A time for people: "1 min 19 s"."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return (
+        f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
+    )

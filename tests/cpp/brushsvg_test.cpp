@@ -1,4 +1,6 @@
 // Whatever the public functions are given ends in a result or in Error: no crash, no hang.
+#include "brushsvg/brushsvg.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -9,7 +11,6 @@
 
 #include "boxes.hpp"
 #include "brush_json.hpp"
-#include "brushsvg/brushsvg.hpp"
 #include "marks_json.hpp"
 #include "plan_json.hpp"
 #include "round6.hpp"
@@ -202,14 +203,14 @@ TEST_CASE("any brush with a sound stroke, pass and marks") {
             ends([&, &b = brush] { compensate(stroke, b, {method}); });
         ends([&, &b = brush] { simulate(pass, b); });
         ends([&, &b = brush] { thin_out(pass, b, 0.05); });
-        ends([&, &b = brush] { miss_of(pass, stroke, b, 0.05); });
+        ends([&, &b = brush] { tracking_error_of(pass, stroke, b, 0.05); });
         ends([&, &b = brush] { interrupted(pass, b, {10.0, 30.0, 5.0}); });
         ends([&, &b = brush] { outline(mark, b); });
         ends([&, &b = brush] { painted_bounds(mark, b); });
         ends([&, &b = brush] { coverage(Marks{{mark}, {}}, b, {0, 0, 40, 20}, 4.0); });
-        ends([&, &b = brush] { overlay({mark}, {stroke}, b); });
+        ends([&, &b = brush] { mark_overlap({mark}, {stroke}, b); });
         ends([&, &b = brush] { common_area({mark}, {stroke}, b); });
-        ends([&, &b = brush] { verdict(mark, stroke, b); });
+        ends([&, &b = brush] { stroke_score(mark, stroke, b); });
         ends([&, &b = brush] { widest_points(mark, b); });
         ends([&, &b = brush] { io::write_brush(b); });
         for (const double x : kNumbers) {
@@ -241,9 +242,9 @@ TEST_CASE("any stroke with a sound brush") {
         ends([&] { wanted_pieces(s, 0.01); });
         ends([&] { wanted_outline(s, 0.05); });
         ends([&] { wanted_coverage({s}, {0, 0, 40, 20}, 4.0); });
-        ends([&] { overlay({mark}, {s}, brush); });
-        ends([&] { verdict(mark, s, brush); });
-        ends([&] { miss_of(passes()[1].second, s, brush, 0.05); });
+        ends([&] { mark_overlap({mark}, {s}, brush); });
+        ends([&] { stroke_score(mark, s, brush); });
+        ends([&] { tracking_error_of(passes()[1].second, s, brush, 0.05); });
         ends([&] { touching({s, s}); });
     }
 }
@@ -257,7 +258,7 @@ TEST_CASE("any pass with a sound brush") {
         for (const Brush* b : {&brush, &pen}) {
             ends([&] { simulate(p, *b); });
             ends([&] { thin_out(p, *b, 0.05); });
-            ends([&] { miss_of(p, stroke, *b, 0.05); });
+            ends([&] { tracking_error_of(p, stroke, *b, 0.05); });
             ends([&] { interrupted(p, *b, {10.0, 30.0, 5.0}); });
         }
         for (std::size_t k = 0; k < p.arcs.size(); ++k) ends([&] { check_arc(p, k, ""); });
@@ -275,9 +276,9 @@ TEST_CASE("any marks with a sound brush") {
         ends([&] { painted_bounds(m, brush); });
         ends([&] { widest_points(m, brush); });
         ends([&] { coverage(Marks{{m}, {}}, brush, {0, 0, 40, 20}, 4.0); });
-        ends([&] { overlay({m}, {stroke}, brush); });
+        ends([&] { mark_overlap({m}, {stroke}, brush); });
         ends([&] { common_area({m}, {stroke}, brush); });
-        ends([&] { verdict(m, stroke, brush); });
+        ends([&] { stroke_score(m, stroke, brush); });
         ends([&] { io::write_marks({{m}, {}}); });
     }
 }
@@ -315,7 +316,7 @@ TEST_CASE("any number where one is asked for") {
     const Stroke stroke = strokes()[1].second;
     const Pass pass = passes()[1].second;
     const PassMarks mark = marks()[0].second;
-    const Overlay seen = overlay({mark}, {stroke}, brush);
+    const MarkOverlap seen = mark_overlap({mark}, {stroke}, brush);
     for (const double x : kNumbers) {
         CAPTURE(x);
         CompensateOptions options;
@@ -327,7 +328,7 @@ TEST_CASE("any number where one is asked for") {
         ends([&] { compensate(stroke, brush, options); });
         ends([&] { simulate(pass, brush, x); });
         ends([&] { thin_out(pass, brush, x); });
-        ends([&] { miss_of(pass, stroke, brush, x); });
+        ends([&] { tracking_error_of(pass, stroke, brush, x); });
         for (const double y : kNumbers) {
             ends([&] { interrupted(pass, brush, {x, y, 0.0}); });
             ends([&] { interrupted(pass, brush, {0.0, x, y}); });
@@ -359,7 +360,7 @@ TEST_CASE("any number where one is asked for") {
     ends([&] { fit_curve(WideLine(0, 3), 0.05, true); });
     ends([&] { worst_place({{0, 0, 1, 1}, 1.0, Coverage(0, 0), Coverage(0, 0)}, 1.0); });
     ends([&] { worst_place({{0, 0, 1, 1}, 1.0, Coverage::Zero(9, 9), Coverage::Zero(3, 3)}, 1.0); });
-    ends([&] { common_area(Overlay{{0, 0, 1, 1}, 1.0, Coverage::Zero(9, 9), Coverage::Zero(3, 3)}); });
+    ends([&] { common_area(MarkOverlap{{0, 0, 1, 1}, 1.0, Coverage::Zero(9, 9), Coverage::Zero(3, 3)}); });
 }
 
 TEST_CASE("a footprint no brush has is refused when the file is checked") {

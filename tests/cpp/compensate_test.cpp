@@ -8,7 +8,7 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
-#include "brushsvg/wanted.hpp"
+#include "brushsvg/target_mark.hpp"
 #include "middle_line.hpp"
 #include "round6.hpp"
 
@@ -66,7 +66,7 @@ TEST_CASE("a turn in place is one arc about the resting contact, with the same m
                     to = pass.poses_mm.row(arc.last).head<2>().transpose();
             CHECK((from - arc.centre_mm).norm() == doctest::Approx(brush.lag(depth)));
             CHECK(std::abs(std::remainder(turn_between(arc, from, to) - a, 2 * kPi)) < 1.7);
-            const Miss exact = miss_of(pass, s, brush, 0.05);
+            const TrackingError exact = tracking_error_of(pass, s, brush, 0.05);
             const Ring with = at_poses(simulate(pass, brush, 1e-3));
             // rounded to 1e-4 mm, as a program's text has it
             Pass rounded = pass;
@@ -75,7 +75,7 @@ TEST_CASE("a turn in place is one arc about the resting contact, with the same m
             pass.arcs.clear();
             CHECK((at_poses(simulate(pass, brush, 1e-3)) - with).rowwise().norm().maxCoeff() < 1e-3);
             CHECK((at_poses(simulate(rounded, brush, 1e-3)) - with).rowwise().norm().maxCoeff() < 1e-3);
-            CHECK(std::abs(miss_of(pass, s, brush, 0.05).largest_mm - exact.largest_mm) < 1e-3);
+            CHECK(std::abs(tracking_error_of(pass, s, brush, 0.05).largest_mm - exact.largest_mm) < 1e-3);
         }
     const Stroke bend = stroke_of(polyline({V(20, 20), V(60, 20), V(60, 60)}), {{0.0, brush.half_width(4.0)}});
     CHECK(compensate(bend, brush).pass.arcs.empty());

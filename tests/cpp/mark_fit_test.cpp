@@ -7,10 +7,10 @@
 
 #include "brushsvg/error.hpp"
 #include "drop.hpp"
-#include "mark_doubts.hpp"
+#include "identifiability.hpp"
 #include "mark_model.hpp"
-#include "mark_noise.hpp"
 #include "mark_problem.hpp"
+#include "noise_covariance.hpp"
 
 using namespace brushsvg;
 using namespace brushsvg::fit;

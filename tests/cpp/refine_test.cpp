@@ -8,7 +8,7 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
-#include "brushsvg/wanted.hpp"
+#include "brushsvg/target_mark.hpp"
 #include "painted_edge.hpp"
 #include "patch_path.hpp"
 #include "round6.hpp"

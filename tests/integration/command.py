@@ -7,7 +7,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from brushsvg.brushes import SHIPPED
+from brushsvg.brush.library import SHIPPED
 
 COMMAND = Path(sys.executable).with_name("brushsvg")
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'

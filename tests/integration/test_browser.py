@@ -10,10 +10,11 @@ import pytest
 from command import OPEN, SOUND, brush_file, brushsvg
 
 import brushsvg as package
-from brushsvg import _core, convert
-from brushsvg.cell_file import SHIPPED, find_cell
-from brushsvg.machine import whole_program
-from brushsvg.timeline import timeline
+from brushsvg import _core
+from brushsvg.machine.cell_file import SHIPPED, find_cell
+from brushsvg.machine.writer import whole_program
+from brushsvg.pictures.timeline import timeline
+from brushsvg.pipeline import outputs, prediction, preparation
 
 SIZE = (1300, 860)
 COLOUR = "1b1b3a"  # of all strokes of the demo's drawing
@@ -69,8 +70,8 @@ def page(tmp_path_factory, drawing):
 @pytest.fixture(scope="module")
 def played(drawing):
     """Work, marks and timeline of the demo's drawing."""
-    work = convert.prepare(drawing("vincent"))
-    marks = convert.predict(work, outlines=False)
+    work = preparation.prepare(drawing("vincent"))
+    marks = prediction.predict(work, outlines=False)
     return work, marks, timeline(whole_program(work.plan, work.brush, find_cell()), marks)
 
 
@@ -144,16 +145,16 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     (tmp_path / "a.svg").write_text(
         f'{OPEN}<path id="p" d="M15 30H105" stroke="#{COLOUR}" stroke-width="6"/></svg>'
     )
-    work = convert.prepare(
-        tmp_path / "a.svg", convert.Options(brush=package.find_brush(tmp_path / "brush.json"))
+    work = preparation.prepare(
+        tmp_path / "a.svg", preparation.Options(brush=package.find_brush(tmp_path / "brush.json"))
     )
-    marks = convert.predict(work)
+    marks = prediction.predict(work)
     step_mm = np.linalg.norm(np.diff(marks.passes[0].contact_mm, axis=0), axis=1)
     row = int(step_mm.argmax()) + 1
     assert step_mm.max() > 30
     rows = timeline(whole_program(work.plan, work.brush, find_cell()), marks)
     moment = rows.time_s[np.flatnonzero(~np.isnan(rows.depth_mm))[row]]
-    (tmp_path / "a.html").write_bytes(convert.played(work, marks, find_cell()))
+    (tmp_path / "a.html").write_bytes(outputs.played(work, marks, find_cell()))
     image, said = browser.shown(tmp_path / "a.html", f"t={moment:.3f}&bare")
     assert said == []
     assert overlap(image, until(marks, 0, marks.passes[0].pose[row]), work) > 0.98

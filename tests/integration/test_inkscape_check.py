@@ -7,7 +7,7 @@ import pytest
 from command import OPEN, SOUND
 
 from brushsvg import read_drawing
-from brushsvg.importers import ReadOptions
+from brushsvg.drawing import ReadOptions
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"

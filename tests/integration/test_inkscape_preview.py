@@ -9,7 +9,7 @@ from command import SOUND, brushsvg
 from plugin import sentence
 
 from brushsvg import read_drawing
-from brushsvg.importers import ReadOptions
+from brushsvg.drawing import ReadOptions
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"

@@ -6,8 +6,8 @@ import pytest
 from command import SOUND, brushsvg
 from plugin import SOURCE, sentence
 
-from brushsvg.cell_file import DEFAULT_CELL
-from brushsvg.convert import DEFAULT_BRUSH, Options
+from brushsvg.machine.cell_file import DEFAULT_CELL
+from brushsvg.pipeline.preparation import DEFAULT_BRUSH, Options
 
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
 

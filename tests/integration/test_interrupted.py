@@ -84,7 +84,7 @@ def test_progress_is_told_to_a_terminal_only(desk):
     assert line.startswith("brushsvg: out.ngc: written; 1 stroke, ")
 
 
-@pytest.mark.parametrize("module", ["argparse", "brushsvg.commands", "numpy", "brushsvg._core"])
+@pytest.mark.parametrize("module", ["argparse", "brushsvg.cli.commands", "numpy", "brushsvg._core"])
 def test_ctrl_c_while_starting_up(desk, module):
     """Before there is any progress to see: while what the command needs is being loaded."""
     code = (

@@ -20,10 +20,10 @@ from lettering import (
 )
 
 from brushsvg import _core, find_brush
-from brushsvg.design import Design, Element
-from brushsvg.outlines import filled
-from brushsvg.reach import within_reach
-from brushsvg.strokes import strokes
+from brushsvg.drawing.design import Design, Element
+from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.width_limits import within_reach
 
 SEED = 20260
 CHARACTERS = 300

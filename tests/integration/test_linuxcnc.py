@@ -13,7 +13,7 @@ from command import brush_file, brushsvg
 from drawings import SOURCES
 
 from brushsvg import _core
-from brushsvg.brushes import find_brush
+from brushsvg.brush.library import find_brush
 
 INTERPRET = Path(__file__).with_name("interpret.py")
 NEAR_MM = 1e-3

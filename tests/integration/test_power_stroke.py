@@ -9,9 +9,9 @@ import pytest
 import shapely
 
 from brushsvg import flatten, strokes
-from brushsvg.importers.svg import read_svg
-from brushsvg.lines_svg import lines_svg
-from brushsvg.text import text_svg
+from brushsvg.drawing.svg import read_svg
+from brushsvg.drawing.text import text_svg
+from brushsvg.pictures.editable_svg import lines_svg
 
 FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"

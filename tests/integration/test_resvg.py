@@ -17,7 +17,7 @@ from shapely import LineString
 from shapely.ops import substring
 
 import brushsvg
-from brushsvg.importers import ReadOptions
+from brushsvg.drawing import ReadOptions
 
 DRAWINGS = svg_features.DRAWINGS | svg_styles.DRAWINGS
 TOLD_OTHERWISE = svg_features.TOLD_OTHERWISE | svg_styles.TOLD_OTHERWISE

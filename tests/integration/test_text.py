@@ -11,8 +11,8 @@ import uharfbuzz
 from fontTools.pens.boundsPen import BoundsPen
 from fontTools.ttLib import TTFont
 
-from brushsvg.importers import read_drawing
-from brushsvg.text import text_svg
+from brushsvg.drawing import read_drawing
+from brushsvg.drawing.text import text_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 LINES = Path("/usr/share/inkscape/extensions/svg_fonts")

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 core = pytest.importorskip("brushsvg._core")
-find_brush = pytest.importorskip("brushsvg.brushes").find_brush
+find_brush = pytest.importorskip("brushsvg.brush.library").find_brush
 
 DEPTH = 5.0
 LAG = float(law("round")(DEPTH))

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 import shapely
 
-from brushsvg import _core, convert, find_brush, uncertainty
-from brushsvg.calibrate import calibrate
-from brushsvg.measurements import Measurements, Row
+from brushsvg import _core, find_brush
+from brushsvg.brush.perturbed import with_lag
+from brushsvg.calibration.from_measurements import calibrate
+from brushsvg.calibration.measurements import Measurements, Row
+from brushsvg.evaluation import uncertainty
+from brushsvg.pipeline import prediction, preparation
 
 LAWS = uncertainty.LAWS
 DRAWN = 400
@@ -47,8 +50,8 @@ def brush():
 
 @pytest.fixture(scope="module")
 def painted(brush):
-    work = convert.prepare("examples/vincent.svg", convert.Options(brush=brush))
-    marks = convert.predict(work)
+    work = preparation.prepare("examples/vincent.svg", preparation.Options(brush=brush))
+    marks = prediction.predict(work)
     rng = np.random.default_rng(9)
     mean = np.concatenate([getattr(brush, law).coefficients for law in LAWS])
     draws = rng.multivariate_normal(mean, np.array(brush.covariance), DRAWN, method="eigh")
@@ -56,7 +59,7 @@ def painted(brush):
 
 
 def drawn(brush, coefficients):
-    other = uncertainty.with_lag(brush, 0.0)
+    other = with_lag(brush, 0.0)
     first = 0
     for law in LAWS:
         profile = getattr(brush, law)

@@ -10,9 +10,9 @@ import pytest
 from conftest import law
 
 from brushsvg import _core
-from brushsvg.calibrate import calibrate
+from brushsvg.calibration.from_measurements import calibrate
+from brushsvg.calibration.measurements import read_measurements
 from brushsvg.errors import Error
-from brushsvg.measurements import read_measurements
 
 DEPTHS = np.arange(1.0, 11.0)
 LAG = np.array([3.1, 0.86, 0.31, -5.0e-2, 2.1e-3])

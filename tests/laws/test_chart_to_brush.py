@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from brushsvg import _core, find_brush
-from brushsvg.bands import law_band
-from brushsvg.chart_json import read_chart
+from brushsvg.brush.confidence import law_band
+from brushsvg.calibration.chart.file import read_chart
+from brushsvg.calibration.from_marks import brush_of, expected_brush
 from brushsvg.cli import main
-from brushsvg.mark_calibrate import brush_of, expected_brush
 
 NOISE_MM, DISPLACED_MM, TURN_RAD, SHIFT_MM = 0.1, 0.3, 0.008, np.array([0.8, -0.6])
 DEPTHS = np.linspace(1, 10, 7)

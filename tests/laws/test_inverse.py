@@ -10,7 +10,7 @@ from conftest import LAGS, WIDEST, make_brush, make_plan
 from scipy.integrate import solve_ivp
 
 core = pytest.importorskip("brushsvg._core")
-find_brush = pytest.importorskip("brushsvg.brushes").find_brush
+find_brush = pytest.importorskip("brushsvg.brush.library").find_brush
 
 ROUND = find_brush("round-6")
 LAG = oracle.Law(*LAGS["round"])

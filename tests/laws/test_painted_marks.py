@@ -13,12 +13,12 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
-from brushsvg import mark_report  # noqa: E402
-from brushsvg.bands import law_band  # noqa: E402
+from brushsvg.brush.confidence import law_band  # noqa: E402
+from brushsvg.calibration import mark_report  # noqa: E402
+from brushsvg.calibration.from_marks import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
+from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.mark_report import report  # noqa: E402
 from brushsvg.errors import Error  # noqa: E402
-from brushsvg.mark_calibrate import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
-from brushsvg.mark_report import report  # noqa: E402
-from brushsvg.painted import read_painted  # noqa: E402
 
 DEPTHS = np.linspace(0.2, 1.0, 5)
 

@@ -9,12 +9,13 @@ from conftest import make_brush, random_poses
 from hypothesis import given
 from hypothesis import strategies as st
 
-from brushsvg import _core, machine
-from brushsvg.cell import Heights, Paper, Reload, Station, robot_from_paper
-from brushsvg.cell_file import find_cell
+from brushsvg import _core
 from brushsvg.errors import Error
-from brushsvg.posts import POSTS
-from brushsvg.program import Job
+from brushsvg.machine import writer
+from brushsvg.machine.cell import Heights, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.program import Job
 
 LANGUAGES = {"linuxcnc-3axis": ".ngc", "grbl-3axis": ".ngc", "grbl-servo": ".ngc", "ur5e": ".script"}
 SHEET = (400.0, 400.0)
@@ -116,11 +117,11 @@ def test_whatever_is_written_is_safe(name, seed):
     z_offset = float(rng.choice([0.0, 0.7]))
     job = Job(z_offset, int(rng.integers(1, len(plan.passes) + 1)))
     try:
-        text = "".join(machine.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
+        text = "".join(writer.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
     except Error as refusal:
         assert len(str(refusal)) > 20 and "mm" in str(refusal)
         return
-    again = "".join(machine.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
+    again = "".join(writer.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
     assert text == again and text.isascii() and "\r" not in text and text.endswith("\n")
     code = re.sub(r"\(.*\)|#.*", "", text) if name != "ur5e" else text
     assert not re.search(r"\d[eE][-+]?\d|nan|inf\b|-0\.0+(?![\d])", code)

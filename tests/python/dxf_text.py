@@ -5,9 +5,9 @@ import io
 import numpy as np
 import shapely
 
-from brushsvg.importers import ReadOptions
-from brushsvg.importers.dxf import read_dxf
-from brushsvg.importers.dxf_library import ezdxf
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.dxf import read_dxf
+from brushsvg.drawing.dxf.library import ezdxf
 
 SHEET = (1000.0, 1000.0)  # given: the drawing's origin stays where it is
 

@@ -15,7 +15,7 @@ import numpy as np
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.design import Design
+from brushsvg.drawing.design import Design
 
 NAN, INF = float("nan"), float("inf")
 NUMBERS = [0, -1, 1e-300, 1e300, 5.5e9, NAN, INF, -INF, 10**30]

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from brushsvg import Stroke, _core, report
+from brushsvg import Stroke, _core
+from brushsvg.evaluation import report
 
 SHEET_MM = (120.0, 120.0)
 

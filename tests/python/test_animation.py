@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from brushsvg import convert
-from brushsvg.cell_file import find_cell
-from brushsvg.machine import whole_program
-from brushsvg.timeline import timeline
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.writer import whole_program
+from brushsvg.pictures.timeline import timeline
+from brushsvg.pipeline import outputs, prediction, preparation
 
 HOSTILE = "</script><script>alert(1)</script><!-- ]]> & \" ' \u2028 \ud83d"
 LINE = '<path id="{}" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/>'
@@ -19,9 +19,9 @@ def work_of(folder, name="line", title="A line"):
     file = folder / "a.svg"
     size = 'width="120mm" height="60mm" viewBox="0 0 120 60"'
     file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{LINE.format(name)}</svg>')
-    work = convert.prepare(file)
+    work = preparation.prepare(file)
     object.__setattr__(work, "title", title)
-    return work, convert.predict(work)
+    return work, prediction.predict(work)
 
 
 def data_of(page: bytes) -> dict:
@@ -34,7 +34,7 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
     rows = timeline(whole_program(work.plan, work.brush, find_cell()), marks)
     sent = {
         name: np.cumsum(steps)
-        for name, steps in data_of(convert.played(work, marks, find_cell()))["rows"].items()
+        for name, steps in data_of(outputs.played(work, marks, find_cell()))["rows"].items()
     }
     assert np.abs(sent["t"] / 1000 - rows.time_s).max() <= 0.0005 + 1e-9
     for axis, name in enumerate("xyz"):
@@ -51,7 +51,7 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
 
 def test_the_rings_are_those_of_the_prediction(tmp_path):
     work, marks = work_of(tmp_path)
-    data = data_of(convert.played(work, marks, find_cell()))
+    data = data_of(outputs.played(work, marks, find_cell()))
     (a_pass,) = data["passes"]
     assert (a_pass["name"], a_pass["colour"]) == ("line", "#203060")
     for sent, ring in zip(a_pass["rings"], marks.passes[0].outline_mm, strict=True):
@@ -65,7 +65,7 @@ def test_the_rings_are_those_of_the_prediction(tmp_path):
 def test_a_plan_does_not_say_what_was_wanted(tmp_path):
     work, marks = work_of(tmp_path)
     object.__setattr__(work, "strokes", None)
-    assert data_of(convert.played(work, marks, find_cell()))["wanted"] == []
+    assert data_of(outputs.played(work, marks, find_cell()))["wanted"] == []
 
 
 def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
@@ -74,8 +74,8 @@ def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
     passes = plan.passes
     passes[0].stroke, passes[0].colour = HOSTILE.replace("\ud83d", ""), '"><img src=x onerror=alert(1)>'
     plan.passes = passes
-    page = convert.played(work, marks, find_cell())
-    plain = convert.played(*work_of(tmp_path), find_cell())
+    page = outputs.played(work, marks, find_cell())
+    plain = outputs.played(*work_of(tmp_path), find_cell())
     for word in (b"<script", b"</script", b"<!--", b"<img"):
         assert page.lower().count(word) == plain.lower().count(word), word
     data = data_of(page)
@@ -84,20 +84,20 @@ def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
 
 
 def test_the_page_asks_for_nothing_from_outside(tmp_path):
-    page = convert.played(*work_of(tmp_path), find_cell()).decode()
+    page = outputs.played(*work_of(tmp_path), find_cell()).decode()
     assert "default-src 'none'" in page
     assert not re.findall(r"(?:https?:|\bsrc=|\bhref=|@import|url\()", page)
     assert "/*" not in re.sub(r"(?s)<style>.*?</style>", "", page)  # every mark of the template was filled
 
 
 def test_same_input_same_bytes(tmp_path):
-    first, second = (convert.played(*work_of(tmp_path), find_cell(), 5.0) for _ in range(2))
+    first, second = (outputs.played(*work_of(tmp_path), find_cell(), 5.0) for _ in range(2))
     assert first == second
     assert data_of(first)["speed"] == 5.0
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.5])
 def test_numbers_are_whole(tmp_path, speed):
-    data = data_of(convert.played(*work_of(tmp_path), find_cell(), speed))
+    data = data_of(outputs.played(*work_of(tmp_path), find_cell(), speed))
     for name, steps in data["rows"].items():
         assert all(isinstance(step, int) for step in steps), name

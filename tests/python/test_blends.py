@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from brushsvg import _core
-from brushsvg.blends import blend_radii, blended, turns_rad
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Blending
-from brushsvg.cell_file import find_cell
+from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
-from brushsvg.machine import as_exact_as, problems
+from brushsvg.machine.cell import Blending
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.corner_blending import blend_radii, blended, turns_rad
+from brushsvg.machine.preflight import as_exact_as, problems
 
 CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from brushsvg import _core
-from brushsvg.brushes import SHIPPED, brush_names, find_brush, save_brush
+from brushsvg.brush.library import SHIPPED, brush_names, find_brush, save_brush
 from brushsvg.errors import Error
 
 ROOT = Path(__file__).parents[2]

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from brushsvg import _core, find_brush, plausible
-from brushsvg.bands import law_band
-from brushsvg.calibrate import calibrate
+from brushsvg import _core, find_brush
+from brushsvg.brush.confidence import law_band
+from brushsvg.calibration import plausibility
+from brushsvg.calibration.from_measurements import calibrate
+from brushsvg.calibration.measurements import Row, read_measurements
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.measurements import Row, read_measurements
 
 ROOT = Path(__file__).parents[2]
 TABLE = "kind,depth_mm,value_mm\n" + "".join(
@@ -276,8 +277,8 @@ def test_finely_stepped_depths_are_many(tmp_path):
     fine = np.arange(10, 101) / 10
     code, out = table(tmp_path, [("lag", d, 3 + 0.8 * d) for d in fine] + [("width", d, d) for d in fine])
     assert code == 0 and find_brush(out).lag(5) == pytest.approx(7, abs=1e-6)
-    assert plausible.different([*np.linspace(2, 6, 41), 10.0]) > 15
-    assert plausible.different([5.0, 5.1, 5.2, 10.0]) == 2
+    assert plausibility.different([*np.linspace(2, 6, 41), 10.0]) > 15
+    assert plausibility.different([5.0, 5.1, 5.2, 10.0]) == 2
 
 
 @pytest.mark.parametrize(
@@ -304,10 +305,10 @@ def test_half_widths_and_widths_with_noise_go_together():
         }
 
     for _ in range(200):
-        plausible.refuse_halves_as_widths(
+        plausibility.refuse_halves_as_widths(
             rows("half_width", np.array([1.0, 2.0]), 1) | rows("width", np.array([6.0, 7.0, 8.0, 9.0]), 2)
         )
-        plausible.refuse_halves_as_widths(
+        plausibility.refuse_halves_as_widths(
             rows("half_width", np.array([8.0, 9.0]), 1) | rows("width", np.array([1.0, 2.0, 4.0, 6.0]), 2)
         )
 
@@ -367,7 +368,9 @@ def test_normal_noise_is_seldom_called_wild():
     rng, depths = np.random.default_rng(1), np.linspace(1, 10, 12)
     columns = np.vander(depths, 5, increasing=True)
     off = np.eye(12) - columns @ np.linalg.pinv(columns)
-    named = sum(bool(plausible.wild(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000))
+    named = sum(
+        bool(plausibility.wild(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000)
+    )
     assert named <= 6  # one in ten thousand values
 
 
@@ -413,9 +416,9 @@ def test_normal_noise_above_a_floor_is_seldom_called_wild(floored):
     law = np.maximum(0, WIDEST(depths - (floored - 1) * 0.8))
     sizes, named = [], 0
     for _ in range(300):
-        found = plausible.off_the_others(depths, law + rng.normal(0, 0.2, 10), (0.0, 10.0), 3)
+        found = plausibility.off_the_others(depths, law + rng.normal(0, 0.2, 10), (0.0, 10.0), 3)
         sizes += [size for size, _ in found.values()]
-        named += any(size > plausible.WILD for size, _ in found.values())
+        named += any(size > plausibility.WILD for size, _ in found.values())
     assert len(sizes) == 3000
     assert 0.03 <= np.mean(np.array(sizes) > 1.96) <= 0.07  # 0.05 of normal values
     assert named <= 1  # six in a hundred thousand values
@@ -426,7 +429,7 @@ def test_a_slip_above_a_floor_is_named():
     for k in range(10):
         values = np.maximum(0, WIDEST(depths)) + rng.normal(0, 0.05, 10)
         values[k] += 3.0
-        assert list(plausible.wild_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
+        assert list(plausibility.wild_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
 
 
 def test_a_fit_stays_as_it_was_when_the_brush_is_made():

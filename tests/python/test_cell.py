@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from brushsvg.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
-from brushsvg.cell_check import out_of_reach, remarks
-from brushsvg.cell_file import SHIPPED, cell_names, find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
-from brushsvg.frame import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
-from brushsvg.posts import POSTS
+from brushsvg.machine.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
+from brushsvg.machine.cell_check import out_of_reach, remarks
+from brushsvg.machine.cell_file import SHIPPED, cell_names, find_cell, parse_cell, write_cell
+from brushsvg.machine.frames import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
+from brushsvg.machine.posts import POSTS
 
 TEXT = (SHIPPED / "linuxcnc-3axis.toml").read_text(encoding="utf-8")
 

@@ -10,15 +10,15 @@ import pytest
 import shapely
 
 from brushsvg import _core, find_brush
-from brushsvg.cell_file import cell_names, find_cell
-from brushsvg.chart import chart
-from brushsvg.chart_json import DICTIONARY, read_chart, write_chart
-from brushsvg.chart_page import TEXT_MM, chart_page
+from brushsvg.brush.perturbed import with_lag
+from brushsvg.calibration.chart.file import DICTIONARY, read_chart, write_chart
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.chart.page import TEXT_MM, chart_page
+from brushsvg.calibration.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.new_brush import new_brush
-from brushsvg.posts import POSTS
-from brushsvg.uncertainty import with_lag
+from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.posts import POSTS
 
 A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)
 PX_PER_MM = 8

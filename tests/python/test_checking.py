@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from programs import LANGUAGES, call
 
-from brushsvg import _core, checking, convert, machine
-from brushsvg.cell_file import SHIPPED, find_cell
+from brushsvg import _core
 from brushsvg.errors import Error
-from brushsvg.readback import Act, read_program
-from brushsvg.rewriting import _Alike
+from brushsvg.machine import preflight, writer
+from brushsvg.machine.cell_file import SHIPPED, find_cell
+from brushsvg.pipeline import preparation
+from brushsvg.verification import simulate_program
+from brushsvg.verification.against_regenerated import _Alike
+from brushsvg.verification.readback import Act, read_program
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>
@@ -27,18 +30,20 @@ def desk(tmp_path, monkeypatch):
 
 
 def text_of(work, name, **job):
-    cell = machine.as_exact_as(find_cell(name), 0.05)
-    text = "".join(machine.encode(LANGUAGES[name], work.plan, work.brush, "two", (), cell, **job))
+    cell = preflight.as_exact_as(find_cell(name), 0.05)
+    text = "".join(writer.encode(LANGUAGES[name], work.plan, work.brush, "two", (), cell, **job))
     return text, cell
 
 
 def ran(text, cell, work):
-    return checking.run(read_program(text, LANGUAGES[cell.name], cell), work.brush, cell, work.plan.sheet_mm)
+    return simulate_program.run(
+        read_program(text, LANGUAGES[cell.name], cell), work.brush, cell, work.plan.sheet_mm
+    )
 
 
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_what_was_planned_comes_back(desk, name):
-    work = convert.prepare("two.svg")
+    work = preparation.prepare("two.svg")
     back = ran(*text_of(work, name), work)
     assert back.problems == []
     assert [p.stroke for p in back.plan.passes] == ["curve", "hook (1)" if name == "ur5e" else "hook [1]"]
@@ -79,7 +84,7 @@ BROKEN = {
 
 @pytest.mark.parametrize("fault", BROKEN)
 def test_a_dangerous_program_is_told_by_line(desk, fault):
-    work = convert.prepare("two.svg")
+    work = preparation.prepare("two.svg")
     text, cell = text_of(work, "linuxcnc-3axis")
     edit, words = BROKEN[fault]
     try:
@@ -114,7 +119,7 @@ UNREADABLE = {
 
 @pytest.mark.parametrize("name", UNREADABLE)
 def test_what_is_not_ours_is_refused(desk, name):
-    work = convert.prepare("two.svg")
+    work = preparation.prepare("two.svg")
     text, cell = text_of(work, name)
     for edit, words in UNREADABLE[name]:
         with pytest.raises(Error, match=words):

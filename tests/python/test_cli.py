@@ -10,10 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from brushsvg import commands
-from brushsvg.brushes import SHIPPED
-from brushsvg.cli import main
-from brushsvg.console import say
+from brushsvg.brush.library import SHIPPED
+from brushsvg.cli import commands, main
+from brushsvg.cli.console import say
 
 LINE = '<path id="line" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/>'
 DAB = '<path id="dab" d="M97 20h0" stroke="#802010" stroke-width="3"/>'
@@ -98,7 +97,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
         for kind, slope in (("lag", 2), ("width", 0.8))
     ]
     (desk / "m.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
-    cell = (Path(commands.__file__).parents[1] / "data" / "cells" / "ur5e.toml").read_text()
+    cell = (Path(commands.__file__).parents[2] / "data" / "cells" / "ur5e.toml").read_text()
     paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "red"\nplace_mm = [-50, 50]\ndepth_mm = 5\n'
     (desk / "nowhere.toml").write_text(f'{cell}\n{paint}colours = ["#ff0000"]\n')
     assert run(capsys, "convert", "a.svg", "own.ngc")[0] == 0
@@ -570,7 +569,15 @@ HIDDEN_STOP = f"""
 @pytest.mark.parametrize("how", [STOP, HIDDEN_STOP], ids=["plain", "hidden"])
 @pytest.mark.parametrize(
     "name",
-    ["brushsvg.console", "argparse", "brushsvg.usage", "brushsvg.commands", "numpy", "brushsvg._core", "cv2"],
+    [
+        "brushsvg.cli.console",
+        "argparse",
+        "brushsvg.cli.arguments",
+        "brushsvg.cli.commands",
+        "numpy",
+        "brushsvg._core",
+        "cv2",
+    ],
 )
 def test_ctrl_c_during_start_up_leaves_no_traceback(desk, name, how):
     code = STOPPED_AT.format(name=name, how=how)
@@ -643,7 +650,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     assert flags == choices | job | {"--help", "--preview", "--report", "--quiet"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.convert"} & set(done.stderr.split())
+    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.pipeline.preparation"} & set(done.stderr.split())
 
 
 def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
@@ -662,7 +669,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
-    text = (Path(commands.__file__).parents[1] / "data" / "cells" / "grbl-3axis.toml").read_text()
+    text = (Path(commands.__file__).parents[2] / "data" / "cells" / "grbl-3axis.toml").read_text()
     for old, new, said in (
         (
             "press_mm_s = 6.0",

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from brushsvg import _core
-from brushsvg.cell_file import find_cell
-from brushsvg.comparing import IN_A_BOX, _farthest, _strayed, follows
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.verification.against_plan import IN_A_BOX, _farthest, _strayed, follows
 
 
 def by_every_move(points, path):
@@ -149,13 +149,13 @@ def test_the_place_where_a_path_leaves_the_other_is_told():
 
 def test_long_paths_take_no_more_than_what_lies_beside_them(monkeypatch):
     """Of the cells of two paths few are looked at: a page is compared in its own time, not in the square of it."""
-    from brushsvg import comparing
+    from brushsvg.verification import against_plan
 
     t = np.linspace(0, 60, 3000)
     asked = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
     found = np.repeat(asked, 2, axis=0)
     counted = []
-    within = comparing._within
-    monkeypatch.setattr(comparing, "_within", lambda *some_: counted.append(1) or within(*some_))
+    within = against_plan._within
+    monkeypatch.setattr(against_plan, "_within", lambda *some_: counted.append(1) or within(*some_))
     assert follows(found, asked, 0.02) is None
     assert len(counted) < 8 * len(found)

@@ -5,10 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from brushsvg import convert, machine, report
-from brushsvg.brushes import find_brush
-from brushsvg.cell_file import find_cell
+from brushsvg.brush.library import find_brush
 from brushsvg.errors import Error
+from brushsvg.evaluation import report
+from brushsvg.machine import writer
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.pipeline import comparison, prediction, preparation
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
@@ -23,30 +25,32 @@ def drawing(tmp_path):
 
 
 def total(work):
-    return report.measure(work.plan, convert.predict(work), work.brush, work.strokes)[1]
+    return report.measure(work.plan, prediction.predict(work), work.brush, work.strokes)[1]
 
 
 def test_the_best_constant_lag_is_the_best_of_all(drawing):
-    best = convert.best_constant(convert.prepare(drawing))
+    best = comparison.best_constant(preparation.prepare(drawing))
     assert best.options.compensation == "constant"
     assert 3 < best.options.lag_mm < 12
     assert best.options.lag_mm % 0.25 == 0
     there = total(best).overlap
     for lag_mm in (0.0, best.options.lag_mm - 1, best.options.lag_mm + 1, 13.0):
-        options = convert.Options(compensation="constant", lag_mm=lag_mm)
-        assert total(convert.prepare(drawing, options)).overlap < there
-    again = convert.prepare(drawing, best.options)
+        options = preparation.Options(compensation="constant", lag_mm=lag_mm)
+        assert total(preparation.prepare(drawing, options)).overlap < there
+    again = preparation.prepare(drawing, best.options)
     assert [p.poses_mm.tolist() for p in again.plan.passes] == [p.poses_mm.tolist() for p in best.plan.passes]
     assert len(best.misses) == 2
 
 
 def test_the_best_constant_lag_of_a_pen_is_none(drawing):
-    work = convert.prepare(drawing, convert.Options(brush=find_brush("rigid")))
-    assert convert.best_constant(work).options.lag_mm == 0
+    work = preparation.prepare(drawing, preparation.Options(brush=find_brush("rigid")))
+    assert comparison.best_constant(work).options.lag_mm == 0
 
 
 def test_the_comparison_is_a_table(drawing):
-    works = {how: convert.prepare(drawing, convert.Options(compensation=how)) for how in ("none", "closed")}
+    works = {
+        how: preparation.prepare(drawing, preparation.Options(compensation=how)) for how in ("none", "closed")
+    }
     totals = {how: total(work) for how, work in works.items()}
     lines = report.comparison_text(list(totals.items())).splitlines()
     assert re.split("  +", lines[2]) == ["compensation", "overlap", "centre mean", "largest"]
@@ -59,26 +63,26 @@ def test_the_comparison_is_a_table(drawing):
 
 
 def test_a_program_is_in_the_language_of_its_cell(drawing):
-    work = convert.prepare(drawing)
+    work = preparation.prepare(drawing)
     parts = work.plan, work.brush, "two"
-    assert "".join(machine.encode(".ngc", *parts)).startswith("(title: two)")
+    assert "".join(writer.encode(".ngc", *parts)).startswith("(title: two)")
     for suffix in (".txt", "", ".NGC"):
         with pytest.raises(Error, match=r"neither \.json.* nor \.ngc or .*, for G-code for LinuxCNC"):
-            machine.encode(suffix, *parts)
+            writer.encode(suffix, *parts)
     cell = replace(find_cell(), language="semaphore")
-    assert machine.encode(".json", *parts, cell=cell).startswith(b"{")
+    assert writer.encode(".json", *parts, cell=cell).startswith(b"{")
     with pytest.raises(
         Error, match="'semaphore', the language of cell linuxcnc-3axis; known: linuxcnc"
     ) as refusal:
-        machine.encode(".ngc", *parts, cell=cell)
+        writer.encode(".ngc", *parts, cell=cell)
     assert refusal.value.where == "language"
 
 
 def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
-    work = convert.prepare(drawing)
+    work = preparation.prepare(drawing)
     work.plan.passes[1].speed_mm_s = 25.5
     with pytest.raises(Error, match=r"speed 25\.5 mm/s .* \(0, 25\.0\] mm/s of brush round-6") as refusal:
-        machine.encode(".ngc", work.plan, work.brush, "two")
+        writer.encode(".ngc", work.plan, work.brush, "two")
     assert refusal.value.where == "bold"
 
 
@@ -92,8 +96,8 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
         + line("near", 40)
         + "</svg>"
     )
-    work = convert.prepare(path)
-    moved = convert.nearest_first(work)
+    work = preparation.prepare(path)
+    moved = preparation.nearest_first(work)
     assert [p.stroke for p in moved.plan.passes] == [s.id for s in moved.strokes] == ["a", "near", "far"]
     assert [p.stroke for p in work.plan.passes] == [s.id for s in work.strokes] == ["a", "far", "near"]
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256

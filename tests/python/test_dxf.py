@@ -6,11 +6,11 @@ import pytest
 from dxf_text import SHEET, along, apart, bulged, circle, drawing, encoded, only, read
 from scipy.interpolate import BSpline, CubicSpline
 
+from brushsvg.drawing import READERS, ReadOptions, read_drawing
+from brushsvg.drawing.dxf import read_dxf
+from brushsvg.drawing.dxf.library import ezdxf
 from brushsvg.errors import Error
-from brushsvg.importers import READERS, ReadOptions, read_drawing
-from brushsvg.importers.dxf import read_dxf
-from brushsvg.importers.dxf_library import ezdxf
-from brushsvg.strokes import strokes
+from brushsvg.strokes.extraction import strokes
 
 CONTROL = np.array(
     [(0, 0, 0), (20, 40, 0), (50, -30, 0), (70, 10, 0), (90, 35, 0), (120, 0, 0), (130, 30, 0)], float
@@ -550,7 +550,7 @@ def test_ezdxf_is_loaded_for_dxf_alone_and_leaves_nothing_at_home(tmp_path):
         '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><path stroke="red" d="M1 1h5"/></svg>'
     )
     script = (
-        "import sys, brushsvg.importers as i; i.read_drawing('a.svg'); assert 'ezdxf' not in sys.modules; "
+        "import sys, brushsvg.drawing as i; i.read_drawing('a.svg'); assert 'ezdxf' not in sys.modules; "
         "i.read_drawing('a.dxf'); import ezdxf, os; assert os.environ['HOME'] == os.getcwd(); "
         "assert 'XDG_CACHE_HOME' not in os.environ"
     )

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from dxf_text import SHEET, apart, bulged, drawing, encoded, read, text_dxf
 
-from brushsvg.design import Design
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.design import Design
+from brushsvg.drawing.dxf import read_dxf
 from brushsvg.errors import Error
-from brushsvg.importers import ReadOptions
-from brushsvg.importers.dxf import read_dxf
-from brushsvg.strokes import strokes
+from brushsvg.strokes.extraction import strokes
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from dxf_text import circle, drawing, encoded, only, read
 
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.dxf import read_dxf
+from brushsvg.drawing.dxf.library import ezdxf
 from brushsvg.errors import Error
-from brushsvg.importers import ReadOptions
-from brushsvg.importers.dxf import read_dxf
-from brushsvg.importers.dxf_library import ezdxf
 
 NOT_READ = "the line type is not read: its lines count as unbroken"
 PATTERNS = {

@@ -10,10 +10,10 @@ from dxf_text import drawing, encoded, only, read, text_dxf
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.dxf import read_dxf
+from brushsvg.drawing.dxf.library import ezdxf
 from brushsvg.errors import Error
-from brushsvg.importers import ReadOptions
-from brushsvg.importers.dxf import read_dxf
-from brushsvg.importers.dxf_library import ezdxf
 
 ALIGN = ezdxf.enums.TextEntityAlignment
 FOLDERS = ezdxf.fonts.font_manager.FONT_DIRECTORIES
@@ -340,7 +340,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
 def test_text_leaves_nothing_at_home(tmp_path):
     """Whatever fonts this machine has."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
-    script = "import brushsvg.importers as i; print(i.read_drawing('a.dxf'))"
+    script = "import brushsvg.drawing as i; print(i.read_drawing('a.dxf'))"
     runs = [
         subprocess.run(
             [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True

@@ -8,10 +8,11 @@ import shapely
 from svg_text import read
 
 from brushsvg import _core, find_brush
-from brushsvg.beside import Line
-from brushsvg.contour import contour_passes, painted, region
-from brushsvg.reach import within_reach
-from brushsvg.strokes import strokes
+from brushsvg.strokes import skeleton
+from brushsvg.strokes.contour_fill import contour_passes, painted, region
+from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.offset_passes import Line
+from brushsvg.strokes.width_limits import within_reach
 
 HALF_MM = 4.2  # of round-6 at its deepest
 SQUARE = "M5 0H50V45H5Z"
@@ -76,7 +77,7 @@ def test_holes_belong_to_no_stroke():
 
 
 def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
-    monkeypatch.setattr("brushsvg.outlines.MOST_CUT", 0)
+    monkeypatch.setattr(skeleton, "MOST_CUT", 0)
     test_holes_belong_to_no_stroke()
 
 

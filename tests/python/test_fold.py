@@ -1,4 +1,4 @@
-from brushsvg.fold import MOST_ALIKE, folded
+from brushsvg.text_summary import MOST_ALIKE, folded
 
 
 def test_few_of_a_kind_stay_as_they_are():

@@ -8,11 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from brushsvg.cell_file import find_cell
-from brushsvg.moves import in_robot_frame
-from brushsvg.posts import POSTS
-from brushsvg.posts.gcode import LINE_LIMIT
-from brushsvg.program import program
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.posts.gcode import LINE_LIMIT
+from brushsvg.machine.program import program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 

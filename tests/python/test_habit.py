@@ -5,8 +5,8 @@ import pytest
 from svg_text import read
 
 from brushsvg import _core
-from brushsvg.outlines.habit import in_rows
-from brushsvg.strokes import strokes
+from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.skeleton.writing_order import in_rows
 
 # outline, and a place on each line in the order of writing; y down as in the drawing
 LETTERS = {

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from brushsvg.brushes import find_brush
-from brushsvg.cell_file import find_cell
+from brushsvg.brush.library import find_brush
 from brushsvg.errors import Error
-from brushsvg.jobs import border, paper_height
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.setup_programs import border, paper_height
 
 BRUSH = find_brush("round-6")
 CELL = find_cell()

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from programs import call
 
-from brushsvg import _core, limits
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Reload, Station
-from brushsvg.cell_file import find_cell, parse_cell, write_cell
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
 from brushsvg.errors import Error
-from brushsvg.jobs import border, paper_height
-from brushsvg.limits import astray, astray_between
-from brushsvg.program import forbidden
-from brushsvg.ways import ways
+from brushsvg.machine import limits
+from brushsvg.machine.cell import Reload, Station
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.limits import astray, astray_between
+from brushsvg.machine.move_extents import ways
+from brushsvg.machine.program import forbidden
+from brushsvg.machine.setup_programs import border, paper_height
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)

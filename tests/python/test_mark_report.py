@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from brushsvg import _core
-from brushsvg.mark_calibrate import brush_of
-from brushsvg.mark_report import overlaps
-from brushsvg.painted import Painted
+from brushsvg.calibration.from_marks import brush_of
+from brushsvg.calibration.mark_input import Painted
+from brushsvg.calibration.mark_report import overlaps
 
 
 def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():

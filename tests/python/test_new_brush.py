@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from brushsvg import _core, compensate, find_brush, read_drawing, strokes
+from brushsvg.calibration.from_widths import new_brush
+from brushsvg.calibration.measurements import read_measurements, read_widths
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.measurements import read_measurements, read_widths
-from brushsvg.new_brush import new_brush
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from svg_text import read
 
 from brushsvg import _core
 from brushsvg.errors import Error
-from brushsvg.strokes import strokes
+from brushsvg.strokes.extraction import strokes
 
 BAR = "M10 20H60V26H10Z"
 
@@ -82,7 +82,7 @@ def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
     assert _core.overlap(marks(made), shape) > 0.91
     assert made[0].closed == (name == "O")
     (outline,) = read(f'<g fill="red" stroke="none">{path(d)}</g>').elements
-    from brushsvg.outlines import filled
+    from brushsvg.strokes.skeleton import filled
 
     assert _core.overlap(shape, filled(outline)) > 0.999, "the parts make up the shape"
 
@@ -137,7 +137,7 @@ def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
 
 
 def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a_line_that_ends_there():
-    from brushsvg.outlines import outline_strokes
+    from brushsvg.strokes.skeleton import outline_strokes
 
     square = [[4.3, 11.6], [7.1, 15.8], [2.2, 19.0], [-0.5, 14.8]]
     slanted = [[14.7, 1.2], [2.6, 13.5], [-1.6, 9.3], [10.4, -3.0]]
@@ -147,7 +147,7 @@ def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a
 
 
 def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
-    from brushsvg.outlines import outline_strokes
+    from brushsvg.strokes.skeleton import outline_strokes
 
     random = np.random.default_rng(5)
     for _ in range(40):
@@ -264,7 +264,7 @@ def test_hostile_outlines(name, rule):
         assert np.isfinite(stroke.middle_mm).all()
         assert all(np.isfinite(knot).all() and knot[1] >= 0 for knot in stroke.half_width)
         assert stroke.wanted_mm
-    from brushsvg.outlines import filled
+    from brushsvg.strokes.skeleton import filled
 
     shape = filled(design.elements[0])
     assert _core.area(wanted(made)) == pytest.approx(_core.area(shape), rel=0.02, abs=1e-3)
@@ -303,7 +303,7 @@ def test_outlines_that_lie_too_densely_are_left_out_with_a_warning():
 
 
 def test_shapes_of_more_lines_than_any_page_are_refused():
-    from brushsvg.outlines import outline_strokes
+    from brushsvg.strokes.skeleton import outline_strokes
 
     there = zigzag(10_100)
     with pytest.raises(Error, match="branches into 20197 lines, more than 20000"):
@@ -311,7 +311,7 @@ def test_shapes_of_more_lines_than_any_page_are_refused():
 
 
 def test_edges_side_by_side_are_counted_in_bands():
-    from brushsvg.outlines.shape import _side_by_side
+    from brushsvg.strokes.skeleton.fill_rule import _side_by_side
 
     def pairs(ring):
         ring = np.asarray(ring, float)
@@ -347,7 +347,7 @@ def test_clearance_is_the_distance_from_the_outline_inside_and_out():
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])
-    from brushsvg.outlines import outline_strokes
+    from brushsvg.strokes.skeleton import outline_strokes
 
     made = outline_strokes(_core.fill([ring], "nonzero"))
     assert len(made) == 1

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 from svg_text import read
 
-from brushsvg.design import Notice
-from brushsvg.overview import overview
-from brushsvg.strokes import strokes
+from brushsvg.drawing.design import Notice
+from brushsvg.pictures.overview import overview
+from brushsvg.strokes.extraction import strokes
 
 BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 30h30"/>
   <circle r="5" cx="80" cy="20" fill="red" stroke="none"/>"""

@@ -6,14 +6,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from brushsvg import _core, machine
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Reload, Station
-from brushsvg.cell_file import find_cell
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
 from brushsvg.errors import Error
-from brushsvg.moves import Wait
-from brushsvg.paint import in_loads, painted_mm, too_long, visits
-from brushsvg.program import forbidden, visit
+from brushsvg.machine import writer
+from brushsvg.machine.cell import Reload, Station
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.motion import Wait
+from brushsvg.machine.paint_reload import in_loads, painted_mm, too_long, visits
+from brushsvg.machine.program import forbidden, visit
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
@@ -231,7 +232,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
 def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
     brush = find_brush("round-6")
     text = "".join(
-        machine.encode(".ngc", long_plan(brush), brush, "t", (), cell_with(Reload("length", 120.0, 6.0)))
+        writer.encode(".ngc", long_plan(brush), brush, "t", (), cell_with(Reload("length", 120.0, 6.0)))
     )
     titles = [line.strip("()") for line in text.splitlines() if line.startswith(("(stroke", "(paint"))]
     assert titles[:5] == [

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from brushsvg import _core
+from brushsvg.calibration.mark_input import depths_painted, read_painted
+from brushsvg.calibration.measurements import read_measurements
 from brushsvg.errors import Error
-from brushsvg.measurements import read_measurements
-from brushsvg.painted import depths_painted, read_painted
 
 
 def strokes():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from brushsvg import find_brush
+from brushsvg.brush.plot import brush_picture, law_band
 from brushsvg.cli import main
-from brushsvg.plot import brush_picture, law_band
 
 
 @pytest.mark.parametrize("name", ["round-6", "rigid"])

@@ -9,7 +9,7 @@ import pytest
 
 from brushsvg import Error
 from brushsvg.cli import main
-from brushsvg.plugin import extensions_folder, install_inkscape
+from brushsvg.cli.install_plugin import extensions_folder, install_inkscape
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "plugins" / "inkscape"

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from brushsvg.cell_file import find_cell
 from brushsvg.errors import Error
-from brushsvg.moves import SAFE_MEANINGS, duration_s
-from brushsvg.program import Job, forbidden, program, unchecked_program
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.motion import SAFE_MEANINGS, duration_s
+from brushsvg.machine.program import Job, forbidden, program, unchecked_program
 
 
 def plan_of(*poses, speed=20.0, sheet=(100.0, 60.0)):

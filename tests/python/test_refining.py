@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from brushsvg import _core, cli, compensate, find_brush, find_cell
-from brushsvg.convert import Options, _misses, predict, prepare
-from brushsvg.machine import as_exact_as, problems
-from brushsvg.refining import towards_reach
+from brushsvg.machine.preflight import as_exact_as, problems
+from brushsvg.pipeline.prediction import predict
+from brushsvg.pipeline.preparation import Options, _misses, prepare
+from brushsvg.planning.refinement import towards_reach
 
 BRUSH = find_brush("round-6")
 BARS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="90mm" viewBox="0 0 120 90">

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, compensate, find_brush, report, simulate
-from brushsvg.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
+from brushsvg import Stroke, compensate, find_brush, simulate
+from brushsvg.evaluation import report
+from brushsvg.evaluation.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
 
 
 def straight(stroke_id, start, end, half_width, knots=None):

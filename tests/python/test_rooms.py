@@ -1,4 +1,8 @@
-"""Includes and imports held against the table of rooms in ARCHITECTURE.md; one stem everywhere."""
+"""Includes and imports held against the tables of rooms in ARCHITECTURE.md; one stem everywhere.
+
+A room is a header with its source, a folder of C++, or a folder (with a slash) or single file of the package. Large
+folders have a table of their own for the files inside of them.
+"""
 
 from __future__ import annotations
 
@@ -20,18 +24,24 @@ UNTESTED = {
     "error": "two value types; what is said with them is tested where it is said",
     "lag_impl": "the bodies of lag.hpp, tested with it",
     "marks": "value types; simulate, coverage and io fill and carry them",
+    **dict.fromkeys(("interrupt", "wanted", "miss", "verdict", "overlay"), "a name until 0.2"),
 }
 
 
 # The table ------------------------------------------------------------------------------------------
 
 
+LARGE = ("machine", "calibration", "drawing/svg", "drawing/dxf")  # folders with a table of their own
+
+
 @cache
-def table() -> tuple[tuple[tuple[str, ...], frozenset[str]], ...]:
-    """(Rooms of a row, what they may touch), from top to bottom."""
+def table(folder: str = "") -> tuple[tuple[tuple[str, ...], frozenset[str]], ...]:
+    """(Rooms of a row, what they may touch), from top to bottom; of a large folder its files or folders, and what they
+    may touch of each other."""
     text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
     lines = iter(text.splitlines())
-    next(line for line in lines if line.startswith("| room | may touch |"))
+    title = f"| inside `{folder}` | may touch |" if folder else "| room | may touch |"
+    next(line for line in lines if line.startswith(title))
     next(lines)
     rows = []
     for line in lines:
@@ -42,8 +52,8 @@ def table() -> tuple[tuple[tuple[str, ...], frozenset[str]], ...]:
     return tuple(rows)
 
 
-def row_of(room: str) -> int | None:
-    return next((number for number, (rooms, _) in enumerate(table()) if room in rooms), None)
+def row_of(room: str, folder: str = "") -> int | None:
+    return next((number for number, (rooms, _) in enumerate(table(folder)) if room in rooms), None)
 
 
 # What a file touches --------------------------------------------------------------------------------
@@ -51,8 +61,8 @@ def row_of(room: str) -> int | None:
 
 def cpp_room(path: Path) -> str:
     """Stem of a header or source of the core, folder of anything else."""
-    folder = path.relative_to(CPP).parts[0]
-    return path.stem if folder in ("include", "src") else folder
+    folder = path.relative_to(CPP).parent.as_posix()
+    return path.stem if folder in ("include/brushsvg", "src") else folder
 
 
 def cpp_touches(path: Path, text: str) -> set[str]:
@@ -74,21 +84,28 @@ def cpp_touches(path: Path, text: str) -> set[str]:
     return touched - {cpp_room(path)}
 
 
-def python_room(path: Path) -> str:
-    return path.relative_to(PACKAGE).with_suffix("").parts[0]
+def python_room(path: Path, folder: str = "") -> str:
+    parts = path.relative_to(PACKAGE / folder).with_suffix("").parts
+    return f"{parts[0]}/" if len(parts) > 1 else parts[0]
 
 
-def python_target(parts: list[str]) -> str:
-    """Room of a module by its full name; a name that is no module of the package comes from __init__."""
+def python_target(parts: list[str], folder: str = "") -> str | None:
+    """Room of a module by its full name; a name that is no module of the package comes from __init__. In a folder: of
+    its own files, None for anything outside."""
     if parts[0] != "brushsvg":
-        return parts[0]
-    inside = parts[1] if len(parts) > 1 else "__init__"
-    is_module = inside == "_core" or (PACKAGE / inside).is_dir() or (PACKAGE / f"{inside}.py").is_file()
-    return inside if is_module else "__init__"
+        return None if folder else parts[0]
+    above = folder.split("/") if folder else []
+    if parts[1 : 1 + len(above)] != above:
+        return None
+    inside = parts[1 + len(above)] if len(parts) > 1 + len(above) else "__init__"
+    home = PACKAGE / folder / inside
+    if home.is_dir():
+        return f"{inside}/"
+    return inside if inside == "_core" or home.with_suffix(".py").is_file() else "__init__"
 
 
-def python_touches(path: Path, text: str) -> set[str]:
-    """Every import anywhere in the file, those inside functions and for type checkers too."""
+def imported(path: Path, text: str) -> list[list[str]]:
+    """Every import anywhere in the file, those inside functions and for type checkers too, by its full name."""
     folder = ["brushsvg", *path.relative_to(PACKAGE).parts[:-1]]
     names: list[list[str]] = []
     for node in ast.walk(ast.parse(text)):
@@ -102,27 +119,48 @@ def python_touches(path: Path, text: str) -> set[str]:
             constant = node.args and isinstance(node.args[0], ast.Constant)
             assert constant or path == PACKAGE / "__init__.py", f"{path}: an import that cannot be followed"
             names += [node.args[0].value.split(".")] if constant else []
-    touched = {python_target(name) for name in names}
-    return {name for name in touched if name not in sys.stdlib_module_names} - {python_room(path)}
+    return names
+
+
+def python_touches(path: Path, text: str, folder: str = "") -> set[str]:
+    touched = {python_target(name, folder) for name in imported(path, text)}
+    known = {name for name in touched if name and name not in sys.stdlib_module_names}
+    return known - {python_room(path, folder)}
+
+
+def allowed_to(room: str, folder: str = "") -> set[str] | None:
+    number = row_of(room, folder)
+    if number is None:
+        return None
+    rooms, may = table(folder)[number]
+    allowed = {*may, *rooms}
+    if "*" in may:
+        allowed.update(*(names for names, _ in table(folder)[:number]))
+    return allowed
 
 
 def complaints(path: Path, text: str) -> list[str]:
     """What a file does that its room may not, in sentences."""
     is_python = path.suffix == ".py"
-    room = python_room(path) if is_python else cpp_room(path)
     where = path.relative_to(ROOT).as_posix()
-    number = row_of(room)
-    if number is None:
-        return [f"{where} belongs to room {room}, which has no row in ARCHITECTURE.md"]
-    rooms, may = table()[number]
-    allowed = {*may, *rooms}
-    if "*" in may:
-        allowed.update(*(names for names, _ in table()[:number]))
     touched = python_touches(path, text) if is_python else cpp_touches(path, text)
-    found = [
-        f"{where} touches {name}, which room {room} may not: see the table in ARCHITECTURE.md"
-        for name in sorted(touched - allowed)
+    both = [("", python_room(path) if is_python else cpp_room(path), touched)]
+    both += [
+        (folder, python_room(path, folder), python_touches(path, text, folder))
+        for folder in LARGE
+        if is_python and path.is_relative_to(PACKAGE / folder)
     ]
+    found = []
+    for folder, room, touches in both:
+        inside = f" inside {folder}" if folder else ""
+        allowed = allowed_to(room, folder)
+        if allowed is None:
+            found.append(f"{where} belongs to room {room}{inside}, which has no row in ARCHITECTURE.md")
+        else:
+            found += [
+                f"{where} touches {name}, which room {room}{inside} may not: see the table in ARCHITECTURE.md"
+                for name in sorted(touches - allowed)
+            ]
     if "ceres" in touched and path.suffix == ".hpp":
         found.append(f"{where} includes Ceres in a header: whoever includes it would have to have it")
     if "boost" in touched and path.suffix == ".hpp":
@@ -146,28 +184,37 @@ def test_every_file_keeps_to_its_room():
     assert not found, "\n" + "\n".join(found)
 
 
-def test_the_table_allows_what_is_needed_and_no_more():
-    touched: dict[int, set[str]] = {number: set() for number in range(len(table()))}
+@pytest.mark.parametrize("folder", ["", *LARGE])
+def test_the_table_allows_what_is_needed_and_no_more(folder):
+    rows = table(folder)
+    touched: dict[int, set[str]] = {number: set() for number in range(len(rows))}
     inhabited = set()
     for path, text in files().items():
-        room = python_room(path) if path.suffix == ".py" else cpp_room(path)
+        is_python = path.suffix == ".py"
+        if folder and not (is_python and path.is_relative_to(PACKAGE / folder)):
+            continue
+        room = python_room(path, folder) if is_python else cpp_room(path)
         inhabited.add(room)
-        touches = python_touches if path.suffix == ".py" else cpp_touches
-        if (number := row_of(room)) is not None:
-            touched[number] |= touches(path, text)
-    for number, (rooms, may) in enumerate(table()):
+        if (number := row_of(room, folder)) is not None:
+            touched[number] |= python_touches(path, text, folder) if is_python else cpp_touches(path, text)
+    for number, (rooms, may) in enumerate(rows):
         empty = set(rooms) - inhabited - {"_core"}  # the built module
         assert not empty, f"the table has a row for {sorted(empty)}, where there is no file"
         unused = may - touched[number] - {"*"}
         assert not unused, f"the table lets {rooms[0]} touch {sorted(unused)}, which it does not"
 
 
-def test_nothing_points_left():
-    rooms = [name for names, _ in table() for name in names]
+@pytest.mark.parametrize("folder", ["", *LARGE])
+def test_nothing_points_left(folder):
+    rooms = [name for names, _ in table(folder) for name in names]
     assert len(rooms) == len(set(rooms)), "a room has two rows"
-    for number, (names, may) in enumerate(table()):
+    for number, (names, may) in enumerate(table(folder)):
         for name in may & set(rooms):
-            assert row_of(name) < number, f"the row of {names[0]} touches {name}, which is not above it"
+            assert row_of(name, folder) < number, f"{names[0]} touches {name}, whose row is not above its own"
+
+
+def test_a_large_folder_has_a_table_of_its_own():
+    assert len(table()) <= 46, "a table that nobody reads tells nothing"
 
 
 def test_arrows_that_must_not_be():
@@ -176,12 +223,11 @@ def test_arrows_that_must_not_be():
         return below.union(*(reach(name, seen | below) for name in below))
 
     for room, others in {
-        "simulate": {"compensate", "stroke", "wanted"},
+        "simulate": {"compensate", "stroke", "target_mark"},
         "compensate": {"io", "bindings"},
-        "importers": {"_core", "strokes", "brushes", "cell", "program"},
-        "program": {"_core", "design", "brushes", "strokes"},
-        "posts": {"_core", "design", "brushes", "strokes", "importers", "cv2"},
-        "render": {"design", "brushes", "cell", "program"},
+        "drawing/": {"_core", "strokes/", "brush/", "machine/"},
+        "machine/": {"drawing/", "strokes/", "brush/", "cv2"},
+        "pictures/": {"brush/", "strokes/", "pipeline/"},
     }.items():
         assert not reach(room) & others, f"{room} reaches {sorted(reach(room) & others)}"
 
@@ -202,7 +248,7 @@ def test_one_stem_everywhere(header):
         assert not test.exists(), f"{test.name} exists: take {stem} off the list of headers without a test"
     else:
         assert test.exists(), f"{header.name} has no {test.name}"
-    if stem not in ("brushsvg", "lag_impl"):
+    if stem not in ("brushsvg", "lag_impl") and "until 0.2" not in UNTESTED.get(stem, ""):
         assert f'#include "brushsvg/{stem}.hpp"' in files()[HEADERS / "brushsvg.hpp"], (
             f"brushsvg.hpp lacks {stem}.hpp"
         )
@@ -218,16 +264,14 @@ def test_no_test_and_no_binding_is_forgotten():
     for test in (ROOT / "tests" / "cpp").glob("*_test.cpp"):
         assert test.name in listed, f"{test.name} is not built: name it in tests/cpp/CMakeLists.txt"
         stem = test.stem.removesuffix("_test")
-        homes = (HEADERS / f"{stem}.hpp", CPP / "fit" / f"{stem}.hpp")
-        assert any(home.exists() for home in homes) or (CPP / stem).is_dir(), f"{test.name} tests no header"
+        homes = [*CPP.rglob(f"{stem}.hpp")]
+        assert homes or (CPP / stem).is_dir(), f"{test.name} tests no header"
     called = files()[CPP / "bindings" / "module.cpp"]
     for binding in (CPP / "bindings").glob("bind_*.cpp"):
         stem = binding.stem.removeprefix("bind_")
         assert f"    {binding.stem}(m);" in called, f"module.cpp does not call {binding.stem}"
-        homes = (HEADERS / f"{stem}.hpp", CPP / "fit" / f"{stem}.hpp")
-        assert any(home.exists() for home in homes) or (CPP / stem).is_dir(), (
-            f"{binding.name} binds no header"
-        )
+        homes = [*CPP.rglob(f"{stem}.hpp")]
+        assert homes or (CPP / stem).is_dir(), f"{binding.name} binds no header"
 
 
 # The documents --------------------------------------------------------------------------------------
@@ -242,7 +286,9 @@ def test_documents_name_files_that_exist(document):
     for path in quoted:
         if path.isupper() or "NAME" in path or path.startswith("brushsvg/"):  # a pattern; a format's name
             continue
-        assert (ROOT / path).exists() or (PACKAGE / path).exists(), f"{document} names {path}, which is gone"
+        assert any(
+            (home / name).exists() for home in (ROOT, PACKAGE, CPP) for name in (path, f"{path}.py")
+        ), f"{document} names {path}, which is gone"
 
 
 def test_equations_name_code_and_tests_that_exist():
@@ -268,7 +314,7 @@ def test_equations_name_code_and_tests_that_exist():
     ("path", "text", "named"),
     [
         ("cpp/src/simulate.cpp", '#include "brushsvg/compensate.hpp"', "touches compensate"),
-        ("cpp/include/brushsvg/plan.hpp", '  #  include  "brushsvg/brush.hpp"', "touches brush"),
+        ("cpp/include/brushsvg/plan.hpp", '  #  include  "brushsvg/simulate.hpp"', "touches simulate"),
         ("cpp/src/brush.cpp", "#include <nlohmann/json.hpp>", "touches nlohmann"),
         ("cpp/src/lag.cpp", "#include <pybind11/eigen.h>", "touches pybind11"),
         ("cpp/src/coverage.cpp", "#include <boost/polygon/polygon.hpp>", "touches boost"),
@@ -278,19 +324,42 @@ def test_equations_name_code_and_tests_that_exist():
             "includes Boost in a header",
         ),
         ("cpp/src/sweep.hpp", '#include "brush_json.hpp"', "touches io"),
-        ("cpp/bindings/bind_io.cpp", 'py::module_::import("brushsvg.convert")', "touches convert"),
+        (
+            "cpp/bindings/bind_io.cpp",
+            'py::module_::import("brushsvg.pipeline.preparation")',
+            "touches pipeline/",
+        ),
         ("cpp/src/spline.cpp", "", "room spline, which has no row"),
         ("cpp/vision/scan.cpp", "", "room vision, which has no row"),
         ("cpp/src/lag.cpp", "#include <ceres/ceres.h>", "touches ceres"),
-        ("cpp/fit/law_fit.hpp", "#include <ceres/ceres.h>", "includes Ceres in a header"),
-        ("python/brushsvg/posts/gcode.py", "def f():\n    from ..design import Design", "touches design"),
-        ("python/brushsvg/posts/abc.py", "from shapely.geometry import Point", "touches shapely"),
-        ("python/brushsvg/importers/dxf.py", "from .. import _core", "touches _core"),
-        ("python/brushsvg/importers/dxf.py", "import brushsvg.cell as c", "touches cell"),
-        ("python/brushsvg/program.py", "from brushsvg import find_brush", "touches __init__"),
-        ("python/brushsvg/program.py", "if TYPE_CHECKING:\n    from .design import Design", "touches design"),
-        ("python/brushsvg/report.py", "import importlib\nimportlib.import_module('cv2')", "touches cv2"),
-        ("python/brushsvg/scan.py", "", "room scan, which has no row"),
+        ("cpp/fit/laws/law_fit.hpp", "#include <ceres/ceres.h>", "includes Ceres in a header"),
+        (
+            "python/brushsvg/machine/posts/gcode.py",
+            "def f():\n    from ...drawing.design import Design",
+            "drawing/",
+        ),
+        ("python/brushsvg/machine/posts/abc.py", "from shapely.geometry import Point", "touches shapely"),
+        (
+            "python/brushsvg/machine/cell.py",
+            "from . import program",
+            "touches program, which room cell inside",
+        ),
+        ("python/brushsvg/machine/new.py", "", "room new inside machine, which has no row"),
+        ("python/brushsvg/drawing/dxf/__init__.py", "from ... import _core", "touches _core"),
+        ("python/brushsvg/drawing/dxf/__init__.py", "import brushsvg.machine.cell as c", "touches machine/"),
+        ("python/brushsvg/drawing/svg/colour.py", "from .element import x", "touches element"),
+        ("python/brushsvg/machine/program.py", "from brushsvg import find_brush", "touches __init__"),
+        (
+            "python/brushsvg/machine/program.py",
+            "if TYPE_CHECKING:\n    from ..brush import x",
+            "touches brush/",
+        ),
+        (
+            "python/brushsvg/evaluation/report.py",
+            "import importlib\nimportlib.import_module('cv2')",
+            "touches cv2",
+        ),
+        ("python/brushsvg/spying.py", "", "room spying, which has no row"),
     ],
 )
 def test_a_planted_fault_is_named(path, text, named):
@@ -300,9 +369,11 @@ def test_a_planted_fault_is_named(path, text, named):
 
 def test_what_is_allowed_is_not_named():
     assert not complaints(CPP / "src" / "simulate.cpp", '#include <vector>\n#include "brushsvg/lag.hpp"')
-    assert not complaints(PACKAGE / "posts" / "new.py", "import math\nfrom ..moves import Move\n")
+    assert not complaints(
+        PACKAGE / "machine" / "posts" / "new.py", "import math\nfrom ..motion import Move\n"
+    )
 
 
 def test_an_import_that_cannot_be_followed_is_refused():
     with pytest.raises(AssertionError, match="cannot be followed"):
-        complaints(PACKAGE / "report.py", "import importlib\nimportlib.import_module(name)")
+        complaints(PACKAGE / "evaluation" / "report.py", "import importlib\nimportlib.import_module(name)")

@@ -11,14 +11,14 @@ import pytest
 from programs import call
 from test_gcode import TWO, text_of
 
-from brushsvg.cell import Reload, Servo, Station
-from brushsvg.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.errors import Error
-from brushsvg.jobs import border
-from brushsvg.posts.gcode_servo import grbl_servo, value_at
-from brushsvg.program import Job, program
-from brushsvg.readback import Act
-from brushsvg.rewriting import _Alike
+from brushsvg.machine.cell import Reload, Servo, Station
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
+from brushsvg.machine.program import Job, program
+from brushsvg.machine.setup_programs import border
+from brushsvg.verification.against_regenerated import _Alike
+from brushsvg.verification.readback import Act
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")

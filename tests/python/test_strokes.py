@@ -2,9 +2,9 @@ import json
 
 import numpy as np
 
-from brushsvg.design import Design, Element, SubPath
-from brushsvg.importers.svg import read_svg
-from brushsvg.strokes import strokes
+from brushsvg.drawing.design import Design, Element, SubPath
+from brushsvg.drawing.svg import read_svg
+from brushsvg.strokes.extraction import strokes
 
 LINE = SubPath(np.array([[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]]))
 

@@ -6,8 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, _core, convert, find_brush, suit
+from brushsvg import Stroke, _core, find_brush
 from brushsvg.cli import main
+from brushsvg.pipeline import comparison, prediction, preparation
+from brushsvg.planning import size_advice
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="a" d="M20 30 H70"/>
@@ -29,19 +31,19 @@ def painted(strokes):
 
 
 def test_too_large_a_drawing_is_advised_to_shrink():
-    found = suit.best_size([line(200, 8.0)] * 3, BRUSH, painted)
+    found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
     assert found.best == 0.35
-    assert "0.98 in place of 0.00 (tried; --scale 0.35)" in suit.advice(found)
-    assert "--scale 0.7)" in suit.advice(found, 2.0)
-    assert "--scale" not in suit.advice(found, None)
+    assert "0.98 in place of 0.00 (tried; --scale 0.35)" in size_advice.advice(found)
+    assert "--scale 0.7)" in size_advice.advice(found, 2.0)
+    assert "--scale" not in size_advice.advice(found, None)
 
 
 def test_a_drawing_of_the_right_size_is_left_alone():
-    found = suit.best_size([line(150, 1.5)] * 40, BRUSH, painted)
-    assert (found.best, found.tried, found.strokes) == (1.0, suit.FEW, 40)
-    assert suit.advice(found).startswith("Size: none from 0.35 to 2.8")
-    assert "tried on 6 of 40 strokes" in suit.advice(found)
+    found = size_advice.best_size([line(150, 1.5)] * 40, BRUSH, painted)
+    assert (found.best, found.tried, found.strokes) == (1.0, size_advice.FEW, 40)
+    assert size_advice.advice(found).startswith("Size: none from 0.35 to 2.8")
+    assert "tried on 6 of 40 strokes" in size_advice.advice(found)
 
 
 def test_what_looks_better_is_tried_as_it_is_made():
@@ -52,24 +54,28 @@ def test_what_looks_better_is_tried_as_it_is_made():
         seen.extend(strokes)
         return painted(strokes)
 
-    found = suit.best_size([line(150, 4.0), line(150, 5.0)] * 20, BRUSH, made, quick=painted)
+    found = size_advice.best_size([line(150, 4.0), line(150, 5.0)] * 20, BRUSH, made, quick=painted)
     assert found.overlaps[1.0] == pytest.approx(0.4, abs=0.15)  # half of them are refused
-    assert (found.best, found.tried, len(seen)) == (0.7, suit.TRIED, suit.TRIED * len(found.overlaps))
-    found = suit.best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
+    assert (found.best, found.tried, len(seen)) == (
+        0.7,
+        size_advice.TRIED,
+        size_advice.TRIED * len(found.overlaps),
+    )
+    found = size_advice.best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
     assert found.best == 1.0  # nothing looked better
 
 
 def test_nothing_is_advised_where_no_size_can_be_painted():
-    assert suit.advice(suit.best_size([line(200, 40.0)], BRUSH, painted)) == ""
+    assert size_advice.advice(size_advice.best_size([line(200, 40.0)], BRUSH, painted)) == ""
 
 
 def said(tmp_path, text, **options):
     """(overlap at a scale, advice) of a drawing."""
     path = tmp_path / "said.svg"
     path.write_text(text)
-    work = convert.prepare(path, convert.Options(**options), partly=True)
-    marks = convert.predict(work, outlines=False)
-    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, convert.advice(work)
+    work = preparation.prepare(path, preparation.Options(**options), partly=True)
+    marks = prediction.predict(work, outlines=False)
+    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, comparison.advice(work)
 
 
 DABS = "".join(f'<path d="M{20 * k} 50h0" stroke-width="{w}"/>' for k, w in enumerate((1, 2, 3, 4, 6, 8), 1))
@@ -100,7 +106,7 @@ def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
 def test_scaling_a_stroke_scales_all_of_it():
     stroke = line(50, 2.0)
     stroke.wanted_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
-    twice = suit.scaled(stroke, 2.0)
+    twice = size_advice.scaled(stroke, 2.0)
     assert twice.middle_mm == pytest.approx(2 * stroke.middle_mm)
     assert twice.half_width == ((0.0, 4.0), (1.0, 4.0))
     assert twice.wanted_mm[0] == pytest.approx(2 * stroke.wanted_mm[0])

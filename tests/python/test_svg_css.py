@@ -4,7 +4,7 @@ import pytest
 from svg_text import read, sentences
 
 from brushsvg import Error
-from brushsvg.importers import svg_rules
+from brushsvg.drawing.svg import css_selectors
 
 P = '<path id="p" class="a b" d="M0 0H5"/>'
 
@@ -133,7 +133,7 @@ def test_a_variable_that_leads_to_itself_is_no_value():
     ],
 )
 def test_selectors_that_would_take_for_ever_are_refused(css, body, monkeypatch):
-    monkeypatch.setattr(svg_rules, "STEP_LIMIT", 200_000)
+    monkeypatch.setattr(css_selectors, "STEP_LIMIT", 200_000)
     with pytest.raises(Error, match="take too long"):
         read(f"<style>{css}</style>{body}")
 
@@ -174,6 +174,6 @@ def test_css_nested_too_deeply(body):
 
 
 def test_style_sheets_without_end_are_refused(monkeypatch):
-    monkeypatch.setattr(svg_rules, "TEXT_LIMIT", 1000)
+    monkeypatch.setattr(css_selectors, "TEXT_LIMIT", 1000)
     with pytest.raises(Error, match="its CSS of 1300 characters is beyond the limit of 1000"):
         read(f"<style>{'.a{top:1;red}' * 50}</style><style>{'.a{top:1;red}' * 50}</style>{P}")

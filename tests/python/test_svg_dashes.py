@@ -4,10 +4,10 @@ from scipy.integrate import quad
 from svg_text import lines, read, sentences
 
 from brushsvg import Error
-from brushsvg.design import SubPath
-from brushsvg.importers import svg_element
-from brushsvg.importers.arc_length import knots, parameters_at
-from brushsvg.importers.svg_dashes import dashed
+from brushsvg.drawing.design import SubPath
+from brushsvg.drawing.svg import element
+from brushsvg.drawing.svg.dashes import dashed
+from brushsvg.geometry.arc_length import knots, parameters_at
 
 
 def speed(t, cubic):
@@ -111,7 +111,7 @@ def test_each_dash_lies_on_the_line():
 
 
 def test_dashes_too_many_to_paint_are_refused(monkeypatch):
-    monkeypatch.setattr(svg_element, "_MOST_DASHES", 300)
+    monkeypatch.setattr(element, "_MOST_DASHES", 300)
     line = '<path id="p" d="M0 0H20" stroke-dasharray="0.05"/>'
     assert len(read(line).elements[0].subpaths) == 200
     with pytest.raises(Error, match="would make 200 strokes where 100 are left"):

@@ -4,9 +4,9 @@ import pytest
 from svg_text import HEAD, read
 
 from brushsvg import Error
-from brushsvg.importers import ReadOptions
-from brushsvg.importers.svg import read_svg
-from brushsvg.layout import Layout, arrange
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.layout import Layout, arrange
+from brushsvg.drawing.svg import read_svg
 
 A, B = '<path id="a" d="M1 1H9"/>', '<path id="b" d="M1 5H9"/>'
 

@@ -4,7 +4,7 @@ import pytest
 from svg_text import read, sentences
 
 from brushsvg import Error
-from brushsvg.importers import svg_element, svg_paint
+from brushsvg.drawing.svg import element, paint
 
 STOPS = '<stop stop-color="red"/><stop offset="1" stop-color="blue"/>'
 TILE = '<path d="M0 1H2"/>'
@@ -103,7 +103,7 @@ def test_a_visibility_that_is_none_counts_as_not_given():
 def test_a_paint_is_looked_up_once(monkeypatch):
     """3,000 shapes with a gradient of 3,000 stops took twenty seconds."""
     asked = []
-    monkeypatch.setattr(svg_paint.Paints, "_stop", lambda _self, stop: asked.append(stop) or "#00ff00")
+    monkeypatch.setattr(paint.Paints, "_stop", lambda _self, stop: asked.append(stop) or "#00ff00")
     gradient = '<linearGradient id="s">' + "<stop/>" * 50 + "</linearGradient>"
     assert len(read(gradient + BOTH.format("url(#s)", "none", "") * 50).elements) == 50
     assert len(asked) == 50
@@ -111,8 +111,8 @@ def test_a_paint_is_looked_up_once(monkeypatch):
 
 def test_a_box_is_measured_once(monkeypatch):
     asked = []
-    bounds = svg_element.Painted.bounds
-    monkeypatch.setattr(svg_element.Painted, "bounds", lambda *words: asked.append(1) or bounds(*words))
+    bounds = element.Painted.bounds
+    monkeypatch.setattr(element.Painted, "bounds", lambda *words: asked.append(1) or bounds(*words))
     move = "translate(1%, 1%)" * 50
     read(f'<path d="M0 0H5V5" style="transform-box:fill-box;transform:{move};transform-origin:center"/>')
     assert len(asked) == 1

@@ -4,8 +4,9 @@ import pytest
 from svg_text import HEAD, lines, read, sentences
 
 from brushsvg import Error
-from brushsvg.importers import ReadOptions, svg_element
-from brushsvg.importers.svg import read_svg
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.svg import element as svg_element
+from brushsvg.drawing.svg import read_svg
 
 LINE = '<path id="l" d="M0 0H4"/>'
 
@@ -329,7 +330,7 @@ def test_filled_shapes_are_read():
 def test_illustrator_is_known_by_its_comment():
     head = b'<!-- Generator: Adobe Illustrator 24.0 --><svg xmlns="http://www.w3.org/2000/svg" '
     head += b'width="72px" height="72px">'
-    from brushsvg.importers.svg import read_svg
+    from brushsvg.drawing.svg import read_svg
 
     design = read_svg(head + b'<path d="M0 0H5" stroke="red"/></svg>')
     assert '25.4 x 25.4 mm there, give its svg width="72pt" height="72pt"' in design.notices[0].sentence

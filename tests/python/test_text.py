@@ -15,8 +15,8 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import SFNTReader, SFNTWriter
 
+from brushsvg.drawing.text import text_svg
 from brushsvg.errors import Error
-from brushsvg.text import text_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 GLYPHS = """
@@ -474,7 +474,7 @@ def test_woff_is_unpacked_and_woff2_refused(ttf):
 
 
 def test_a_woff_bomb_is_refused(ttf, monkeypatch):
-    monkeypatch.setattr("brushsvg.text.outline_font._UNPACKED", 500)
+    monkeypatch.setattr("brushsvg.drawing.text.outline_font._UNPACKED", 500)
     assert sentence("A", repacked(ttf, "woff")) == "the font unpacks to more than 500 bytes"
 
 
@@ -490,8 +490,8 @@ def test_the_first_of_a_collection(ttf):
 
 
 def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypatch):
-    monkeypatch.delitem(sys.modules, "brushsvg.text.outline_font", raising=False)
-    monkeypatch.delattr("brushsvg.text.outline_font", raising=False)
+    monkeypatch.delitem(sys.modules, "brushsvg.drawing.text.outline_font", raising=False)
+    monkeypatch.delattr("brushsvg.drawing.text.outline_font", raising=False)
     monkeypatch.setitem(sys.modules, "uharfbuzz", None)
     pip = f"{sys.executable} -m pip install fonttools uharfbuzz"
     assert sentence("A", ttf) == f"outline fonts need fonttools and uharfbuzz: install with  {pip}"

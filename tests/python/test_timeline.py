@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from brushsvg._core import Marks, Pass, simulate
 
-from brushsvg import convert
-from brushsvg.cell import Reload, Station
-from brushsvg.cell_file import find_cell
+from brushsvg.brush import library
 from brushsvg.errors import Error
-from brushsvg.machine import whole_program
-from brushsvg.moves import Wait, distances, duration_s
-from brushsvg.timeline import HAND_PAUSE_S, timeline
+from brushsvg.machine.cell import Reload, Station
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.motion import Wait, distances, duration_s
+from brushsvg.machine.writer import whole_program
+from brushsvg.pictures.timeline import HAND_PAUSE_S, timeline
+from brushsvg.pipeline import prediction, preparation
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">
 <path id="line" d="M20 40 C40 10 60 10 90 30 L60 50" fill="none" stroke="#203060" stroke-width="3"/>
@@ -34,8 +35,10 @@ def works(tmp_path_factory):
     file.write_text(DRAWING)
 
     def make(how="closed", brush="round-6"):
-        work = convert.prepare(file, convert.Options(brush=convert.find_brush(brush), compensation=how))
-        return work, convert.predict(work, outlines=False)
+        work = preparation.prepare(
+            file, preparation.Options(brush=library.find_brush(brush), compensation=how)
+        )
+        return work, prediction.predict(work, outlines=False)
 
     return make
 

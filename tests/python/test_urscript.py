@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 from urscript_stub import matrix, run
 
-from brushsvg import _core, convert, machine
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Paper, Reload, Station, robot_from_paper
-from brushsvg.cell_file import find_cell
-from brushsvg.frame import moved
-from brushsvg.machine import text_of
-from brushsvg.posts import POSTS
-from brushsvg.program import Job, program
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.machine import preflight, writer
+from brushsvg.machine.cell import Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.frames import moved
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.program import Job, program
+from brushsvg.machine.writer import text_of
+from brushsvg.pipeline import preparation
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.script"
 CELL = find_cell("ur5e")
@@ -87,10 +89,10 @@ def test_the_robot_goes_through_the_plans_poses(paper):
 
 def test_the_marks_are_the_plans():
     brush = find_brush("round-6")
-    work = convert.prepare(EXAMPLE)
-    cell = machine.as_exact_as(CELL, 0.05)
+    work = preparation.prepare(EXAMPLE)
+    cell = preflight.as_exact_as(CELL, 0.05)
     cell = replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
-    robot = run("".join(machine.encode(".script", work.plan, brush, "v", (), cell)))
+    robot = run("".join(writer.encode(".script", work.plan, brush, "v", (), cell)))
     passes, here = [], []
     for _, point, _, _ in rows_of(robot, cell):
         if point[2] > 1e-6 and here:

@@ -1,7 +1,7 @@
 """Refined strokes that touch are kept only where they make a better letter."""
 
 from brushsvg import _core
-from brushsvg.convert import Options, prepare
+from brushsvg.pipeline.preparation import Options, prepare
 
 SHORT_BAR = '<path d="M10 12H34V28H10Z"/>'
 

@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 from programs import LANGUAGES, call
 
-from brushsvg import _core, checking, rewriting
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Paper, robot_from_paper
-from brushsvg.cell_file import find_cell, write_cell
-from brushsvg.machine import text_of
-from brushsvg.posts import POSTS
-from brushsvg.program import unchecked_program
-from brushsvg.readback import read_program
-from brushsvg.written import as_written
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.machine.cell import Paper, robot_from_paper
+from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.program import unchecked_program
+from brushsvg.machine.rounding import as_written
+from brushsvg.machine.writer import text_of
+from brushsvg.verification import against_regenerated, simulate_program
+from brushsvg.verification.readback import read_program
 
 BRUSH = find_brush("round-6")
 SHEET_MM = (100.0, 80.0)
@@ -39,8 +40,10 @@ def found_by_check(poses, arcs, cell):
     made = unchecked_program(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass]), BRUSH, cell)
     text = "".join(text_of(POSTS[cell.language], made))
     read = read_program(text, LANGUAGES[cell.name], cell)
-    ran = checking.run(read, BRUSH, cell, SHEET_MM)
-    return text, rewriting.differing_line(text, read, rewriting.again(ran, BRUSH, cell, 0.0), cell)
+    ran = simulate_program.run(read, BRUSH, cell, SHEET_MM)
+    return text, against_regenerated.differing_line(
+        text, read, against_regenerated.again(ran, BRUSH, cell, 0.0), cell
+    )
 
 
 # a chord of 0.7 mm on a circle of 14 mm between lines, as a turn that fills a corner ends

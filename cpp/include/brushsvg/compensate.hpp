@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "brushsvg/brush.hpp"
-#include "brushsvg/miss.hpp"
 #include "brushsvg/plan.hpp"
 #include "brushsvg/stroke.hpp"
+#include "brushsvg/tracking_error.hpp"
 
 namespace brushsvg {
 
@@ -27,7 +27,7 @@ struct CompensateOptions {
 
 struct CompensatedPass {
     Pass pass;
-    Miss miss;
+    TrackingError miss;
     std::vector<Warning> warnings;
 };
 

@@ -1,23 +1,13 @@
 #pragma once
 
-#include <array>
-
-#include "brushsvg/brush.hpp"
-#include "brushsvg/plan.hpp"
-#include "brushsvg/stroke.hpp"
+/// The name until 0.2: tracking_error.hpp.
+#include "brushsvg/tracking_error.hpp"
 
 namespace brushsvg {
 
-/// Distance of the widest point from the middle line, found by simulating the plan: from the first taut row to the
-/// last, so that the landing and a slack lift do not count and a turn in place does.
-struct Miss {
-    double largest_mm = 0.0;
-    std::array<double, 2> at_mm{};  ///< where the widest point is farthest off
-    double mean_mm = 0.0;           ///< over the length that the widest point travels
-    bool within_tolerance = false;
-    bool has_turn_in_place = false;  ///< set by compensate(): a corner too sharp for the lever, where the miss stays
-};
-
-Miss miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm);
+using Miss = TrackingError;
+inline TrackingError miss_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
+    return tracking_error_of(pass, stroke, brush, tolerance_mm);
+}
 
 }  // namespace brushsvg

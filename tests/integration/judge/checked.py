@@ -6,11 +6,12 @@ import copy
 from contextlib import contextmanager
 from pathlib import Path
 
-from brushsvg import _core, convert
-from brushsvg.commands import check as command
-from brushsvg.commands import convert_file
-from brushsvg.console import RefusedError
-from brushsvg.usage import parse
+from brushsvg import _core
+from brushsvg.cli.arguments import parse
+from brushsvg.cli.commands import check as command
+from brushsvg.cli.commands import convert_file
+from brushsvg.cli.console import RefusedError
+from brushsvg.pipeline import preparation
 
 CRASHED = "this should not happen"
 
@@ -30,7 +31,7 @@ def quick_check():
 
     What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
     """
-    known: dict[tuple, convert.Work] = {}
+    known: dict[tuple, preparation.Work] = {}
     cells: dict[str, object] = {}
     asked: dict[tuple, object] = {}
     whole = command.prepare, command.find_cell, command.convert.report_text, command.tell

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from brushsvg.cell_file import find_cell, write_cell
 from brushsvg.errors import Error
+from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import CRASHED, converted, put
 from .random_works import random_cell, random_flags, random_svg

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from brushsvg.cell import Blending, Paper, Reload, Servo, Station
-from brushsvg.cell_file import find_cell
+from brushsvg.machine.cell import Blending, Paper, Reload, Servo, Station
+from brushsvg.machine.cell_file import find_cell
 
 from .works import CELLS
 

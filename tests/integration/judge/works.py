@@ -8,9 +8,9 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from brushsvg.brushes import find_brush
-from brushsvg.cell import Paper, Reload, Station
-from brushsvg.cell_file import find_cell, write_cell
+from brushsvg.brush.library import find_brush
+from brushsvg.machine.cell import Paper, Reload, Station
+from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import converted, put
 from .verdict import Job, Sound, job_of, sound

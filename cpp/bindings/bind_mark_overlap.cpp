@@ -1,0 +1,28 @@
+#include "bindings.hpp"
+#include "brushsvg/mark_overlap.hpp"
+
+void bind_mark_overlap(py::module_& m) {
+    using namespace brushsvg;
+    py::class_<CommonArea>(m, "CommonArea", "Areas [mm^2] of paint and wanted mark.")
+        .def(py::init([](double common_mm2, double together_mm2) { return CommonArea{common_mm2, together_mm2}; }),
+             py::arg("common_mm2"), py::arg("together_mm2"))
+        .def_readonly("common_mm2", &CommonArea::common_mm2)
+        .def_readonly("together_mm2", &CommonArea::together_mm2)
+        .def_property_readonly("overlap", &CommonArea::overlap);
+    m.def(
+        "common_area",
+        [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
+            return common_area(painted, wanted, brush);
+        },
+        py::arg("painted"), py::arg("wanted"), py::arg("brush"), py::call_guard<Unlocked>(),
+        "What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.");
+    m.def(
+        "wanted_coverage",
+        [](const std::vector<Stroke>& wanted, const std::array<double, 4>& w, double px_per_mm) {
+            return wanted_coverage(wanted, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
+        },
+        py::arg("wanted"), py::arg("window_mm"), py::arg("px_per_mm"), py::call_guard<Unlocked>(),
+        "What strokes should cover of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].");
+    m.def("touching", &touching, py::arg("wanted"), py::call_guard<Unlocked>(),
+          "Numbers of strokes whose wanted marks touch, a list per letter; those that stand alone are not named.");
+}

@@ -1,0 +1,30 @@
+#include "bindings.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/stroke_score.hpp"
+
+void bind_stroke_score(py::module_& m) {
+    using namespace brushsvg;
+    py::class_<WorstPlace>(m, "WorstPlace", "Where paint and drawing differ most, and by how much.")
+        .def_property_readonly("at_mm", frozen_copy(&WorstPlace::at_mm))
+        .def_readonly("is_missing", &WorstPlace::is_missing)
+        .def_readonly("area_mm2", &WorstPlace::area_mm2);
+    py::class_<StrokeScore>(m, "Verdict",
+                            R"(How well a pass paints its stroke.
+
+overlap: common over joint area; width_error_mm: mean absolute difference of widths across the line, None where none can
+be measured; worst: a WorstPlace.)")
+        .def_readonly("overlap", &StrokeScore::overlap)
+        .def_readonly("width_error_mm", &StrokeScore::width_error_mm)
+        .def_readonly("worst", &StrokeScore::worst);
+    m.def(
+        "verdicts",
+        [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
+            if (painted.size() != wanted.size()) throw Error("a stroke is needed for each pass of marks");
+            std::vector<StrokeScore> found(painted.size());
+            in_parallel_chunks(found.size(), 64, py::none(),
+                               [&](std::size_t i) { found[i] = stroke_score(painted[i], wanted[i], brush); });
+            return found;
+        },
+        py::arg("painted"), py::arg("wanted"), py::arg("brush"),
+        "How well each pass of marks paints the stroke it should be: a Verdict each, on all processors.");
+}

@@ -1,0 +1,346 @@
+#include "law_fit.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "bernstein.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/student_t.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// What an absolute residual counts as at least when it is a weight's denominator: far below what a ruler or a camera
+// tells apart, far above rounding.
+constexpr double kLeastResidualMm = 1e-9;
+constexpr int kMostReweightings = 500;
+// Ways to lie below a floor that are tried: all of a cubic at some 20 depths, in some 10 ms; with more depths it is let
+// through its floor less often. Absolute residuals take some thirty times as long each.
+constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
+constexpr double kHeld = 1e6;  // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
+constexpr double kLeastPositiveMm = 0.01;  // of a law that must stay above 0: a lever of no length has no heading
+
+struct Problem {
+    VectorXd depth, value;
+    LawShape shape;
+    Index terms() const { return shape.degree + (shape.through_zero ? 0 : 1); }
+};
+
+/// Powers of depth, without the constant term where there is none.
+MatrixXd powers(const VectorXd& depth, const LawShape& shape) {
+    const Index first = shape.through_zero ? 1 : 0;
+    MatrixXd out(depth.size(), shape.degree + 1 - first);
+    for (Index j = 0; j < out.cols(); ++j) out.col(j) = depth.array().pow(double(j + first));
+    return out;
+}
+
+std::vector<double> coefficients_of(const VectorXd& free, bool through_zero) {
+    std::vector<double> out(through_zero ? 1 : 0, 0.0);
+    out.insert(out.end(), free.data(), free.data() + free.size());
+    return out;
+}
+
+bool keeps(const std::vector<double>& c, const LawShape& shape) {
+    const double lo = shape.range_mm[0], hi = shape.range_mm[1];
+    const auto value = [](const std::vector<double>& p, double x) {
+        double y = 0.0;
+        for (std::size_t i = p.size(); i-- > 0;) y = y * x + p[i];
+        return y;
+    };
+    const auto slope_of = [](const std::vector<double>& p) {
+        std::vector<double> out;
+        for (std::size_t i = 1; i < p.size(); ++i) out.push_back(double(i) * p[i]);
+        return out;
+    };
+    const auto least = [&](const std::vector<double>& p) {
+        double out = std::min(value(p, lo), value(p, hi));
+        for (double d : real_roots(slope_of(p), lo, hi)) out = std::min(out, value(p, d));
+        return out;
+    };
+    const bool from_zero = shape.through_zero && lo == 0.0;
+    if (shape.positive && !(from_zero ? least(c) >= 0.0 : least(c) >= kLeastPositiveMm)) return false;
+    return !shape.rising || (value(c, lo) >= 0.0 && least(slope_of(c)) >= -1e-12);
+}
+
+/// min |A x - y| over x >= 0 by Lawson and Hanson's active sets: exact after finitely many steps. (Ceres' bounds, which
+/// project each step, stall far from the optimum on columns as alike as these.)
+VectorXd least_squares_above_zero(const MatrixXd& a, const VectorXd& y) {
+    const Index n = a.cols();
+    VectorXd x = VectorXd::Zero(n);
+    std::vector<Index> in;
+    const double tiny = 1e-12 * a.norm() * y.norm();
+    for (Index step = 0; step < 10 * n; ++step) {
+        VectorXd pull = a.transpose() * (y - a * x);
+        for (Index i : in) pull[i] = 0.0;
+        Index best = 0;
+        if (!(pull.maxCoeff(&best) > tiny)) break;
+        in.push_back(best);
+        while (!in.empty()) {
+            const VectorXd s = a(Eigen::all, in).colPivHouseholderQr().solve(y);
+            double reach = 1.0;
+            for (std::size_t k = 0; k < in.size(); ++k)
+                if (s[Index(k)] <= 0.0) reach = std::min(reach, x[in[k]] / (x[in[k]] - s[Index(k)]));
+            std::vector<Index> left;
+            for (std::size_t k = 0; k < in.size(); ++k) {
+                x[in[k]] += reach * (s[Index(k)] - x[in[k]]);
+                if (reach < 1.0 && s[Index(k)] <= 0.0 && x[in[k]] <= 1e-14 * (1.0 - s[Index(k)]))
+                    x[in[k]] = 0.0;
+                else
+                    left.push_back(in[k]);
+            }
+            const bool whole = left.size() == in.size();
+            in = left;
+            if (whole) break;
+        }
+    }
+    return x;
+}
+
+/// Over the values of the law's control points on the range: all at least kLeastPositiveMm, or none below the one
+/// before.
+VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool held) {
+    const LawShape& shape = problem.shape;
+    const int n = shape.degree;
+    const Index first = shape.through_zero ? 1 : 0;
+    MatrixXd from_x = powers_from_controls(n, first ? 0.0 : shape.range_mm[0], shape.range_mm[1]);
+    MatrixXd bends = MatrixXd::Zero(std::max(0, n - 1), n + 1);
+    for (Index i = 0; i < bends.rows(); ++i) bends.row(i).segment(i, 3) << 1.0, -2.0, 1.0;
+    if (shape.rising) {  // x: the first control point, then the steps up
+        const MatrixXd sums = MatrixXd::Ones(n + 1, n + 1).triangularView<Eigen::Lower>();
+        from_x = from_x * sums;
+        bends = bends * sums;
+    }
+    LawShape whole = shape;
+    whole.through_zero = false;
+    const Index rows = problem.depth.size();
+    MatrixXd a(rows + bends.rows(), n + 1);
+    a << weight.asDiagonal() * powers(problem.depth, whole) * from_x, shape.smoothing * bends;
+    VectorXd y = VectorXd::Zero(a.rows());
+    y.head(rows) = weight.cwiseProduct(problem.value);
+    VectorXd x = VectorXd::Constant(n + 1, held && !shape.rising ? kLeastPositiveMm : 0.0);
+    if (first) x[0] = 0.0;
+    y -= a * x;
+    const MatrixXd free = a.rightCols(n + 1 - first);
+    x.tail(n + 1 - first) += held ? least_squares_above_zero(free, y) : VectorXd(free.colPivHouseholderQr().solve(y));
+    const VectorXd c = from_x * x;
+    return c.tail(n + 1 - first);
+}
+
+/// Free coefficients for given weights. `held`: under the bounds of the shape.
+VectorXd solve(const Problem& problem, const VectorXd& weight, bool held) {
+    if (held || problem.shape.smoothing > 0.0) return solve_controls(problem, weight, held);
+    const MatrixXd a = powers(problem.depth, problem.shape);
+    return (weight.asDiagonal() * a).colPivHouseholderQr().solve(weight.cwiseProduct(problem.value));
+}
+
+VectorXd residuals(const Problem& problem, const VectorXd& free) {
+    return problem.value - (powers(problem.depth, problem.shape) * free).cwiseMax(problem.shape.floor);
+}
+
+/// Least squares by `solve(weights)`, or least absolute residuals by reweighting them: residuals weighted by
+/// 1 / sqrt|residual| count by their size, not its square. `left(x)`: the residuals.
+template <class Solve, class Left>
+VectorXd in_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
+    VectorXd free = solve(VectorXd(VectorXd::Ones(rows)));
+    if (norm == Norm::squares) return free;
+    double cost = left(free).template lpNorm<1>();
+    for (int i = 0; i < kMostReweightings; ++i) {
+        const VectorXd weight = left(free).cwiseAbs().cwiseMax(kLeastResidualMm).cwiseSqrt().cwiseInverse();
+        const VectorXd next = solve(VectorXd(weight / weight.maxCoeff()));
+        const double now = left(next).template lpNorm<1>();
+        const bool still = std::abs(now - cost) <= 1e-12 * cost;
+        free = next;
+        cost = now;
+        if (still) break;
+    }
+    return free;
+}
+
+double size(const VectorXd& residual, Norm norm) {
+    return norm == Norm::squares ? residual.squaredNorm() : residual.lpNorm<1>();
+}
+
+/// Where a polynomial lies at one depth: above its floor, below, or on it.
+enum class Side : char { above, below, on };
+
+/// Every way in which a polynomial with so many roots less its floor can lie at depths in ascending order; `on` only
+/// where `may_stop` says so. At most `most` and one.
+class Ways {
+ public:
+    Ways(const std::vector<bool>& may_stop, int roots, std::size_t most) : may_stop_(may_stop), most_(most) {
+        for (Side first : {Side::above, Side::below}) extend({}, first, roots);
+    }
+    std::vector<std::vector<Side>> found;
+
+ private:
+    /// `side`: on which it lies between this depth and the one before.
+    void extend(std::vector<Side> way, Side side, int roots) {
+        if (found.size() > most_) return;
+        if (way.size() == may_stop_.size()) {
+            found.push_back(std::move(way));
+            return;
+        }
+        const Side other = side == Side::above ? Side::below : Side::above;
+        const bool stops = may_stop_[way.size()];
+        way.push_back(side);
+        extend(way, side, roots);
+        if (roots < 1) return;
+        if (stops) {
+            way.back() = Side::on;
+            extend(way, other, roots - 1);
+            if (roots > 1) extend(way, side, roots - 2);  // touches it
+        }
+        if (way.size() == 1) return;  // that begins on the other side
+        way.back() = other;
+        extend(way, other, roots - 1);
+    }
+    std::vector<bool> may_stop_;
+    std::size_t most_;
+};
+
+/// The law with a floor that lies best. Where its polynomial lies below the floor a value pulls at nothing, so one
+/// hollow is as deep as the next only by chance, and a solver ends in that where it began: all ways to lie above and
+/// below are tried. A value below the floor pulls the law down to the floor and no further: there it may stop.
+VectorXd solve_floored(const Problem& problem) {
+    const LawShape& shape = problem.shape;
+    const MatrixXd a = powers(problem.depth, shape);
+    const std::set<double> depths(problem.depth.data(), problem.depth.data() + problem.depth.size());
+    std::vector<bool> may_stop(depths.size(), false);
+    std::vector<std::size_t> place;
+    for (Index i = 0; i < problem.depth.size(); ++i) {
+        place.push_back(std::size_t(std::distance(depths.begin(), depths.find(problem.depth[i]))));
+        if (problem.value[i] < shape.floor) may_stop[place.back()] = true;
+    }
+    const std::size_t most = shape.norm == Norm::squares ? kMostWays : kMostWaysAbsolute;
+    std::vector<std::vector<Side>> ways;
+    for (int roots = shape.degree; roots >= 0; --roots) {
+        ways = Ways(may_stop, roots, most).found;
+        if (ways.size() <= most) break;
+    }
+    VectorXd best, kept(a.rows()), wanted = problem.value;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::vector<Side>& way : ways) {
+        for (Index i = 0; i < a.rows(); ++i) {
+            const Side side = way[place[std::size_t(i)]];
+            kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
+            wanted[i] = side == Side::on ? shape.floor : problem.value[i];
+        }
+        const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
+            const VectorXd both = weight.cwiseProduct(kept);
+            return (both.asDiagonal() * a).colPivHouseholderQr().solve(both.cwiseProduct(wanted));
+        };
+        const auto left = [&](const VectorXd& free) -> VectorXd {
+            return (kept.array() == 1.0).select(wanted - a * free, 0.0);
+        };
+        const VectorXd free = in_norm(shape.norm, a.rows(), solve_kept, left);
+        const double cost = size(residuals(problem, free), shape.norm);
+        if (cost < least) {
+            least = cost;
+            best = free;
+        }
+    }
+    return best;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    if (values.size() % 2) return *middle;
+    return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+/// Variance of one value. Absolute residuals: from the median of those that the law does not pass through, for normal
+/// noise, times pi / 2, what the median costs against the mean.
+double variance(const VectorXd& residual, Index terms, int freedom, Norm norm) {
+    if (norm == Norm::squares) return residual.squaredNorm() / freedom;
+    std::vector<double> size(residual.data(), residual.data() + residual.size());
+    for (double& r : size) r = std::abs(r);
+    std::sort(size.begin(), size.end());
+    size.erase(size.begin(), size.begin() + terms);
+    const double s = 1.482602218505602 * median(size);
+    return 0.5 * M_PI * s * s;
+}
+
+void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::vector<double>& value,
+                                  const LawShape& shape) {
+    if (depth.size() != value.size())
+        throw Error("there are " + std::to_string(depth.size()) + " depths and " + std::to_string(value.size()) +
+                    " values; each value needs its depth");
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        if (!std::isfinite(depth[i]) || !std::isfinite(value[i]))
+            throw Error("value " + std::to_string(i + 1) + " or its depth is not a finite number");
+    if (shape.degree < 0 || shape.degree > kMaxLawDegree)
+        throw Error("a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
+    if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
+        throw Error("a law with a floor cannot be held to a shape as well");
+    if (shape.smoothing > 0.0) return;  // which decides where the data leave it open
+    const std::size_t terms = std::size_t(shape.degree) + (shape.through_zero ? 0 : 1);
+    std::set<double> different(depth.begin(), depth.end());
+    if (shape.through_zero) different.erase(0.0);
+    if (different.size() < terms)
+        throw Error("a law of degree " + std::to_string(shape.degree) + " needs values at " + std::to_string(terms) +
+                        " different depths" + (shape.through_zero ? " other than 0" : "") + ", there are " +
+                        std::to_string(different.size()) + ": measure at more depths, or ask for a lower degree",
+                    "", double(different.size()));
+}
+
+}  // namespace
+
+LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& value_mm, const LawShape& shape) {
+    refuse_what_cannot_be_fitted(depth_mm, value_mm, shape);
+    const Index count = Index(depth_mm.size());
+    const Problem problem{Eigen::Map<const VectorXd>(depth_mm.data(), count),
+                          Eigen::Map<const VectorXd>(value_mm.data(), count), shape};
+    LawFit out;
+    const auto solved = [&](bool held) {
+        return in_norm(
+            shape.norm, count, [&](const VectorXd& weight) { return solve(problem, weight, held); },
+            [&](const VectorXd& free) { return residuals(problem, free); });
+    };
+    VectorXd free = std::isfinite(shape.floor) ? solve_floored(problem) : solved(false);
+    if (!keeps(coefficients_of(free, shape.through_zero), shape)) {
+        out.held = true;
+        free = solved(true);
+    }
+    out.law.coefficients = coefficients_of(free, shape.through_zero);
+    out.law.floor = shape.floor;
+    const auto [least, greatest] = std::minmax_element(depth_mm.begin(), depth_mm.end());
+    if (*least < *greatest) out.law.calibrated_mm = {*least, *greatest};
+    const VectorXd residual = residuals(problem, free);
+    out.residual_mm.assign(residual.data(), residual.data() + count);
+    const double spread = (problem.value.array() - problem.value.mean()).matrix().squaredNorm();
+    out.r_squared = spread > 0.0 ? 1.0 - residual.squaredNorm() / spread : 1.0;
+    out.degrees_of_freedom = int(count - problem.terms());
+    if (out.degrees_of_freedom < 1) return out;
+    out.law.rmse_mm = std::sqrt(residual.squaredNorm() / out.degrees_of_freedom);
+    out.law.degrees_of_freedom = out.degrees_of_freedom;
+
+    MatrixXd slope = powers(problem.depth, shape);
+    const VectorXd polynomial = slope * free;
+    for (Index i = 0; i < count; ++i)
+        if (polynomial[i] < shape.floor) slope.row(i).setZero();
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(slope);
+    if (qr.rank() < slope.cols()) return out;  // all but a few values lie on the floor
+    const MatrixXd inverse = (slope.transpose() * slope).ldlt().solve(MatrixXd::Identity(slope.cols(), slope.cols()));
+    const MatrixXd covariance = variance(residual, problem.terms(), out.degrees_of_freedom, shape.norm) * inverse;
+    const double t = deviations_of_95(out.law.degrees_of_freedom);
+    const Index first = shape.through_zero ? 1 : 0, size = covariance.rows() + first;
+    out.covariance.assign(std::size_t(size), std::vector<double>(std::size_t(size), 0.0));
+    out.law.half_interval_95.assign(std::size_t(size), 0.0);
+    for (Index i = 0; i < covariance.rows(); ++i) {
+        for (Index j = 0; j < covariance.rows(); ++j) out.covariance[i + first][j + first] = covariance(i, j);
+        out.law.half_interval_95[i + first] = t * std::sqrt(covariance(i, i));
+    }
+    return out;
+}
+
+}  // namespace brushsvg::fit

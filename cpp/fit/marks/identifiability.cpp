@@ -1,0 +1,102 @@
+#include "identifiability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brushsvg::fit {
+namespace {
+
+constexpr double kOpen = 0.25;  // of a law's size: more is not a measurement
+
+struct Group {
+    std::string name;
+    int begin, count;
+};
+
+/// Directions that stay open, as the share each group has in them; information over the shared unknowns in units of
+/// their sizes.
+struct Open {
+    double sd;
+    VectorXd direction;
+};
+std::vector<Open> open_directions(const MatrixXd& information) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(information);
+    std::vector<Open> out;
+    for (Index i = 0; i < information.rows(); ++i) {
+        const double sd = 1.0 / std::sqrt(std::max(1e-30, eigen.eigenvalues()[i]));
+        if (sd > kOpen) out.push_back({sd, eigen.eigenvectors().col(i)});
+    }
+    return out;
+}
+
+double along(const MatrixXd& information, const VectorXd& direction) {
+    return 1.0 / std::sqrt(std::max(1e-30, direction.dot(information * direction)));
+}
+
+}  // namespace
+
+std::vector<std::string> doubts(const MarkProblem& fit) {
+    const MarkModel& model = fit.model;
+    const VectorXd& shared = fit.shared;
+    const Layout& at = model.layout();
+    const double noise_mm = fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats);  // of one independent sample
+    const Index n = at.shift();  // where the sheet lies cannot be told from displacements, and need not be
+    MatrixXd still = MatrixXd::Zero(n, n), moving = still;  // marks that stay, marks that may lie anywhere
+    for (Index i = 0; i < model.marks(); ++i) {
+        RowMajor by(model.points(i), at.size()), own(model.points(i), 2);
+        VectorXd distance;
+        if (!model.distances(i, shared.data(), fit.own[std::size_t(i)].data(), distance, &by, &own)) continue;
+        const VectorXd weight = fit.says[std::size_t(i)] / noise_mm;
+        const MatrixXd laws = weight.asDiagonal() * by.leftCols(n), place = weight.asDiagonal() * own;
+        const MatrixXd between = place.transpose() * laws;
+        still += laws.transpose() * laws;
+        moving += laws.transpose() * laws -
+                  between.transpose() * (place.transpose() * place).completeOrthogonalDecomposition().solve(between);
+    }
+    // sizes: of the laws where they are greatest; of the height what moves the widest mark by a quarter
+    VectorXd size(n);
+    const double lag = std::max(0.5, shared.head(at.lag).maxCoeff());
+    const double half = std::max(0.1, shared.segment(at.half_at(), at.half).sum());
+    size.head(at.lag).setConstant(lag);
+    size.segment(at.gap_at(), at.gap).setConstant(std::max(half, std::abs(shared.segment(at.gap_at(), at.gap).sum())));
+    size.segment(at.half_at(), at.half).setConstant(half);
+    size[at.widest()] = std::max(1.0, shared[at.widest()]);
+    size[at.front()] = std::max(1.0, shared[at.front()]);
+    size[at.height()] = 1.0;
+    still = size.asDiagonal() * still * size.asDiagonal();
+    moving = size.asDiagonal() * moving * size.asDiagonal();
+
+    const std::vector<Group> groups{{"lag", 0, at.lag},
+                                    {"tip_gap", at.gap_at(), at.gap},
+                                    {"half_width", at.half_at(), at.half},
+                                    {"the footprint's shape", at.widest(), 2},
+                                    {"the height of the paper", at.height(), 1}};
+    std::vector<std::string> out;
+    const auto say = [&](const std::string& sentence) {
+        if (std::find(out.begin(), out.end(), sentence) == out.end()) out.push_back(sentence);
+    };
+    for (const Open& open : open_directions(moving)) {
+        std::vector<std::pair<double, std::string>> shares;
+        for (const Group& group : groups)
+            shares.emplace_back(open.direction.segment(group.begin, group.count).squaredNorm(), group.name);
+        std::sort(shares.rbegin(), shares.rend());
+        std::string who = shares[0].second;
+        const bool two = shares[1].first > 0.15;
+        if (along(still, open.direction) < 0.5 * kOpen)
+            say(who +
+                " and the displacement of each mark cannot be told apart by these strokes: add curved ones, corners "
+                "or reversals");
+        else if (two)
+            say(who + " and " + shares[1].second +
+                " cannot be told apart by these strokes: paint at more depths, with corners and reversals at each");
+        else if (who == "lag" && at.lag > 1)
+            say("how the lag changes with depth is left open: paint curved strokes at more depths");
+        else
+            say(who +
+                " is left open by these strokes: add corners, reversals and ends that are lifted on the spot, at "
+                "more depths");
+    }
+    return out;
+}
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,199 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/checkpoint.hpp"
+#include "mark_model.hpp"
+#include "swept_footprints.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+constexpr double kNearMm = 0.5;     // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
+constexpr int kStraighter = 3;      // times that a way out is made square to the edge
+constexpr double kSquare = 0.9999;  // cosine above which it is
+constexpr double kGrazing = 0.3;    // cosine below which an edge that is met aslant says nothing more exact
+
+/// The predicted edge beside one point of a painted one.
+struct Beside {
+    NearestEdge edge;
+    std::size_t row;
+    double distance_mm;
+    Eigen::Vector2d normal;  ///< of what the footprints sweep
+    double aslant;           ///< cosine between the painted edge's normal and the predicted one's
+};
+
+/// Instants stay where the TCP is while the laws change, and what a footprint's edge sweeps shifts along itself: of an
+/// edge that passes by, only what moves across its way moves the swept edge.
+Eigen::Vector2d across_the_way(const Footprints& footprints, std::size_t row, const SweptEdge& swept) {
+    const Eigen::Vector2d along = footprints.passing(row, swept.edge);
+    const Eigen::Vector2d across = swept.normal - swept.normal.dot(along) * along;
+    return across.squaredNorm() > kGrazing * kGrazing ? across.normalized() : swept.normal;
+}
+
+/// The edge through which the way from x along `out` leaves footprint `row`, `far` off, and its neighbours.
+Beside left_at(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& out, double far,
+               std::size_t row) {
+    const Eigen::Vector2d end = x + far * out, at = footprints[row].in_frame(end);
+    const NearestEdge own = nearest_edge(footprints[row].drop, at.x(), at.y());
+    const SweptEdge swept = footprints.swept(end, row, own);
+    const Eigen::Vector2d across = across_the_way(footprints, row, swept);
+    const double aslant = std::max(kGrazing, across.dot(out));
+    return {swept.edge, row, -far + std::min(0.0, swept.distance) / aslant, across, aslant};
+}
+
+/// From x, inside a footprint, along the painted edge's normal, or another way where that is far: outside it is the
+/// shortest way that counts, too.
+Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal, std::size_t row) {
+    Eigen::Vector2d out = normal;
+    double far = footprints.way_out(x, out, row);
+    if (far > kNearMm) {
+        const Eigen::Vector2d across(-normal.y(), normal.x());
+        for (const auto& way : {Eigen::Vector2d(-normal), Eigen::Vector2d(0.5 * normal + 0.866 * across),
+                                Eigen::Vector2d(0.5 * normal - 0.866 * across)}) {
+            std::size_t other = row;
+            const double length = footprints.way_out(x, way.normalized(), other);
+            if (length >= far) continue;
+            far = length;
+            out = way.normalized();
+            row = other;
+        }
+    }
+    Beside found = left_at(footprints, x, out, far, row);
+    // a painted normal errs as its edge does; square to the edge that it led to the way is shorter
+    for (int round = 0; round < kStraighter && far < kNearMm && found.aslant < kSquare; ++round) {
+        const Eigen::Vector2d square = found.normal;
+        far = footprints.way_out(x, square, row);
+        const Beside other = left_at(footprints, x, square, far, row);
+        if (!(other.distance_mm > found.distance_mm) || !(other.normal.dot(square) > kGrazing)) break;
+        found = other;
+    }
+    return found;
+}
+
+/// From x, outside all footprints.
+Beside way_in(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal, std::size_t row,
+              const NearestEdge& nearest) {
+    const Instant& here = footprints[row];
+    if (nearest.distance > kNearMm) {
+        const SweptEdge alone{nearest.distance, here.on_paper(nearest), nearest};
+        return {nearest, row, nearest.distance, across_the_way(footprints, row, alone), 1.0};
+    }
+    const bool tip = nearest.by_widest == 0.0 && !here.drop.round_tail;
+    const Eigen::Vector2d at = here.in_frame(x);
+    // off a tip as off its flanks, as on the inside: else edges that err both ways would draw it out
+    SweptEdge swept = footprints.swept(x, row, tip ? flank_beyond_tip(here.drop, at.x(), at.y()) : nearest);
+    if (swept.normal.dot(normal) < -kGrazing) {
+        // what errs inwards by more than a hairline is wide has come out on its other side
+        const SweptEdge across = footprints.swept(x, row, here.farthest(-swept.normal));
+        if (std::abs(across.distance) < kNearMm) swept = across;
+    }
+    return {swept.edge, row, swept.distance, across_the_way(footprints, row, swept), 1.0};
+}
+
+/// normal: the painted edge's, outwards. The search begins at `row`.
+Beside beside_of(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal,
+                 std::size_t row) {
+    const NearestEdge nearest = footprints.nearest(x, row);
+    return nearest.distance < 0.0 ? way_out(footprints, x, normal, row) : way_in(footprints, x, normal, row, nearest);
+}
+
+}  // namespace
+
+bool MarkModel::distances(Index mark, const double* shared_data, const double* displacement, VectorXd& distance_mm,
+                          RowMajor* by_shared, RowMajor* by_displacement) const {
+    const Painted& painted = painted_[std::size_t(mark)];
+    const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
+    thread_local Footprints footprints;
+    if (!footprints.follow(painted.poses_mm, painted.at, laws(shared), by_shared ? &lag_powers_ : nullptr,
+                           shared[layout_.height()], deepest_))
+        return false;
+    const Ring points = placed(mark, shared_data, displacement);
+    const double turn = shared[layout_.turn()], ct = std::cos(turn), st = std::sin(turn);
+    Eigen::Matrix2d back, back_by_turn;
+    back << ct, st, -st, ct;
+    back_by_turn << -st, ct, -ct, -st;
+    distance_mm.resize(points.rows());
+    std::size_t row = 0;
+    for (Index k = 0; k < points.rows(); ++k) {
+        checkpoint(5);
+        const Eigen::Vector2d x = points.row(k).transpose();
+        const Beside beside = beside_of(footprints, x, back * painted.outward.row(k).transpose(), row);
+        row = beside.row;
+        distance_mm[k] = beside.distance_mm;
+        if (!by_shared) continue;
+        const Eigen::RowVector2d normal = beside.normal.transpose();
+        by_laws(footprints[row], beside.edge, beside.normal, shared, by_shared->row(k));
+        by_shared->row(k).segment<2>(layout_.shift()) = -normal * back;
+        const Eigen::Vector2d seen = painted.point_mm.row(k).transpose() - shared.segment<2>(layout_.shift()) - centre_;
+        (*by_shared)(k, layout_.turn()) = normal * back_by_turn * seen;
+        by_shared->row(k) /= beside.aslant;
+        if (by_displacement) by_displacement->row(k) = -normal / beside.aslant;
+    }
+    return true;
+}
+
+VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* displacement) const {
+    constexpr double kWithinMm = 1e-3;
+    const Painted& painted = painted_[std::size_t(mark)];
+    const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
+    VectorXd out = VectorXd::Zero(painted.point_mm.rows());
+    thread_local Footprints footprints;
+    if (!footprints.follow(painted.poses_mm, painted.at, laws(shared), nullptr, shared[layout_.height()], deepest_))
+        return out;
+    const Ring points = placed(mark, shared_data, displacement);
+    const Eigen::Rotation2Dd back(-shared[layout_.turn()]);
+    std::size_t row = 0;
+    for (Index k = 0; k < points.rows(); ++k) {
+        const Beside beside =
+            beside_of(footprints, points.row(k).transpose(), back * painted.outward.row(k).transpose(), row);
+        row = beside.row;
+        const Eigen::Vector2d edge = footprints[row].place_of(beside.edge);
+        std::size_t last = row;
+        out[k] = footprints.way_out(edge - kWithinMm * beside.normal, -beside.normal, last);
+    }
+    return out;
+}
+
+void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,
+                        const VectorXd& shared, Eigen::Ref<Eigen::RowVectorXd> out) const {
+    const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
+    const double nu = normal.dot(u), nl = normal.dot(left);
+    ByLag left_by;
+    left_by << -now.heading_by.row(1), now.heading_by.row(0);
+    // the edge moves outwards by normal dy: the distance falls by it
+    const Eigen::Matrix<double, 1, kMostTerms + 1> moved =
+        normal.transpose() * (now.contact_by + (edge.x - now.gap) * now.heading_by + edge.y * left_by);
+    out.head(layout_.lag) = -moved.head(layout_.lag);
+    // x and y of the edge per half width
+    const double along = edge.by_widest * shared[layout_.widest()] + edge.by_front * shared[layout_.front()];
+    const double per_half = along * nu + edge.by_half * nl;
+    double power = 1.0;
+    for (int j = 0; j < layout_.gap; ++j) {
+        power *= now.depth / deepest_;
+        out[layout_.gap_at() + j] = power * nu;
+    }
+    for (int j = 0; j < layout_.half; ++j) {
+        double step = 0.0;
+        for (Index i = half_powers_.rows(); i-- > 0;) step = step * now.depth + half_powers_(i, j);
+        out[layout_.half_at() + j] = -step * per_half;
+    }
+    out[layout_.widest()] = -edge.by_widest * now.drop.half * nu;
+    out[layout_.front()] = -edge.by_front * now.drop.half * nu;
+    out[layout_.height()] = -moved[kMostTerms] - now.depth_by * (now.half_slope * per_half - now.gap_slope * nu);
+}
+
+Ring MarkModel::placed(Index mark, const double* shared, const double* displacement) const {
+    const Eigen::Vector2d shift(shared[layout_.shift()], shared[layout_.shift() + 1]);
+    const double turn = shared[layout_.turn()];
+    Eigen::Matrix2d back;
+    back << std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn);
+    Ring out = painted_[std::size_t(mark)].point_mm;
+    for (Index k = 0; k < out.rows(); ++k) {
+        const Eigen::Vector2d seen = out.row(k).transpose() - shift - centre_;
+        out.row(k) = (centre_ + back * seen - Eigen::Vector2d(displacement[0], displacement[1])).transpose();
+    }
+    return out;
+}
+
+}  // namespace brushsvg::fit

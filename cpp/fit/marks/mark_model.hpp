@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "mark_fit.hpp"
+#include "swept_footprints.hpp"
+
+// Distances of painted edges from predicted ones, with their derivatives. Inside fit_marks.
+namespace brushsvg::fit {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Where each unknown stands that all marks share. The lag stands as control values on [0, deepest] [mm], the tip gap
+/// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm].
+struct Layout {
+    int lag, gap, half;
+    int gap_at() const { return lag; }
+    int half_at() const { return lag + gap; }
+    int widest() const { return half_at() + half; }
+    int front() const { return widest() + 1; }
+    int height() const { return widest() + 2; }
+    int shift() const { return widest() + 3; }
+    int turn() const { return widest() + 5; }
+    int size() const { return widest() + 6; }
+};
+
+class MarkModel {
+ public:
+    MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options);
+
+    const Layout& layout() const { return layout_; }
+    Index marks() const { return Index(painted_.size()); }
+    Index points(Index mark) const { return painted_[std::size_t(mark)].point_mm.rows(); }
+    Index ring_begin(Index mark, std::size_t ring) const { return painted_[std::size_t(mark)].rings[ring]; }
+    std::size_t rings(Index mark) const { return painted_[std::size_t(mark)].rings.size() - 1; }
+    std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
+
+    /// The shared unknowns of laws, and back.
+    VectorXd unknowns(const MarkLaws& laws) const;
+    MarkLaws laws(const VectorXd& shared) const;
+    /// d(what MarkFit::covariance is about) / d(shared unknowns).
+    MatrixXd to_coefficients() const;
+    /// Least value of each shared unknown; the lag stays above 0, the half width rises.
+    VectorXd least() const;
+
+    /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
+    /// mark's displacement where asked for. Outside it is that from the nearest footprint and what it sweeps to its
+    /// neighbours. Inside it is negative: how far it is out of all footprints, square to the edge that the painted
+    /// edge's normal leads to, and not how deep it lies in one of them, of which slim footprints would make little.
+    /// False where there is no prediction.
+    bool distances(Index mark, const double* shared, const double* displacement, VectorXd& distance_mm,
+                   RowMajor* by_shared, RowMajor* by_displacement) const;
+    /// How far it is [mm] from the predicted edge beside every point of a mark across to the other one; 0 beyond a tip.
+    VectorXd widths(Index mark, const double* shared, const double* displacement) const;
+    /// The points of a mark in the frame of the plan.
+    Ring placed(Index mark, const double* shared, const double* displacement) const;
+
+ private:
+    struct Painted {
+        Poses poses_mm;  ///< from above the paper and back there
+        std::vector<double> at;
+        Ring point_mm, outward;    ///< of the paint, unit vectors
+        std::vector<Index> rings;  ///< where each begins, and the end
+    };
+    /// Derivatives of a distance by the laws' unknowns and the height.
+    void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal, const VectorXd& shared,
+                 Eigen::Ref<Eigen::RowVectorXd> out) const;
+
+    std::vector<Painted> painted_;
+    Layout layout_;
+    double deepest_;
+    bool round_tail_;
+    MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
+    Eigen::Vector2d centre_;
+};
+
+}  // namespace brushsvg::fit

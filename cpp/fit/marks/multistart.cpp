@@ -1,0 +1,82 @@
+#include "multistart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/error.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+constexpr std::size_t kFollowed = 4;
+constexpr double kSparse = 3.0;      // points that starts are compared on lie so many times as far apart
+constexpr double kTolerance = 1e-4;  // the noise is not known yet
+
+/// Half width per depth from the marks' areas: what is painted, over how far it was painted.
+double width_rate(const std::vector<PaintedMark>& marks) {
+    double over = 0.0, under = 0.0;
+    for (const PaintedMark& mark : marks) {
+        double swept = 0.0, painted = 0.0;
+        for (const Ring& ring : mark.outline_mm) painted += signed_area(ring);
+        for (Index i = 0; i + 1 < mark.poses_mm.rows(); ++i)
+            swept += (mark.poses_mm.row(i + 1) - mark.poses_mm.row(i)).head<2>().norm() *
+                     std::max(0.0, -0.5 * (mark.poses_mm(i, 2) + mark.poses_mm(i + 1, 2)));
+        over += painted * swept;
+        under += swept * swept;
+    }
+    return under > 0.0 ? 0.5 * over / under : 0.0;
+}
+
+std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    const double rate = std::clamp(width_rate(marks), 0.02, 50.0), deepest = options.deepest_mm;
+    std::vector<MarkLaws> out;
+    for (double lag : {0.3, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0, 14.0, 20.0, 30.0})
+        for (double share : {1.0, 0.3}) {  // of it at depth 0
+            MarkLaws laws;
+            laws.lag = {lag * share, lag * (1.0 - share) / deepest};
+            laws.tip_gap = {0.0, 1.2 * rate};
+            laws.half_width = {0.0, rate};
+            if (options.lag_terms == 1) {
+                if (share < 1.0) continue;
+                laws.lag.pop_back();
+            }
+            out.push_back(std::move(laws));
+        }
+    return out;
+}
+
+}  // namespace
+
+void start(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    MarkOptions sparse = options;
+    sparse.spacing_mm *= kSparse;
+    MarkProblem tried(marks, sparse);
+    tried.hold_shape(true);
+    std::vector<std::pair<double, MarkLaws>> from;
+    for (const MarkLaws& laws : starts(marks, options)) {
+        tried.begin(laws);
+        const double loss = tried.loss();
+        if (std::isfinite(loss)) from.emplace_back(loss, laws);
+    }
+    std::stable_sort(from.begin(), from.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    double best = INFINITY;
+    for (std::size_t i = 0; i < std::min(kFollowed, from.size()); ++i) {
+        tried.begin(from[i].second);
+        tried.solve(8, kTolerance);
+        const double now = tried.loss();
+        if (!(now < best)) continue;
+        best = now;
+        at.shared = tried.shared;
+        at.own = tried.own;
+    }
+    if (!std::isfinite(best))
+        throw Error(
+            "no lag that was tried predicts these marks: are plan and marks those of one sheet, and is there no pose "
+            "above the paper as it was taught?");
+    at.iterations += tried.iterations;
+    at.hold_shape(true);
+    at.solve(options.most_iterations, kTolerance);
+    at.hold_shape(false);
+}
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,201 @@
+#include "noise_covariance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace brushsvg::fit {
+namespace {
+
+// No picture of paint is surer, and what the laws cannot follow of a very clean one must not count as wild.
+constexpr double kLeastNoiseMm = 0.05;
+constexpr int kScaleRounds = 5;
+constexpr Index kFarthest = 60;  // points along an outline that may err together
+
+/// A mark's distances and their derivatives by all that moves them: the shared unknowns and its displacement.
+struct Seen {
+    VectorXd distance_mm;
+    MatrixXd by;
+    VectorXd says;
+};
+std::vector<Seen> look(const MarkProblem& at) {
+    std::vector<Seen> out;
+    const Index g = at.shared.size();
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        RowMajor by(at.model.points(i), g), own(at.model.points(i), 2);
+        Seen seen;
+        at.model.distances(i, at.shared.data(), at.own[std::size_t(i)].data(), seen.distance_mm, &by, &own);
+        seen.by.resize(by.rows(), g + 2);
+        seen.by << by, own;
+        seen.says = at.says[std::size_t(i)];
+        seen.by = seen.says.asDiagonal() * seen.by;
+        out.push_back(std::move(seen));
+    }
+    return out;
+}
+
+/// What is wild has no say.
+void leave_out_wild(std::vector<Seen>& marks, const Weighing& weighing) {
+    if (weighing.loss != Loss::tukey) return;
+    for (Seen& mark : marks)
+        for (Index k = 0; k < mark.by.rows(); ++k)
+            if (std::abs(mark.distance_mm[k]) >= kTukey * weighing.noise_mm) {
+                mark.by.row(k).setZero();
+                mark.says[k] = 0.0;
+            }
+}
+
+/// A mark's square over its unknowns into one over all.
+void add(MatrixXd& to, const MatrixXd& square, Index mark, Index shared) {
+    const Index own = shared + 2 * mark;
+    to.topLeftCorner(shared, shared) += square.topLeftCorner(shared, shared);
+    to.block(0, own, shared, 2) += square.topRightCorner(shared, 2);
+    to.block(own, 0, 2, shared) += square.bottomLeftCorner(2, shared);
+    to.block(own, own, 2, 2) += square.bottomRightCorner(2, 2);
+}
+
+/// Inverse of the loss's second derivatives, priors included.
+MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
+    const Index g = at.shared.size(), all = g + 2 * at.model.marks();
+    MatrixXd slope = MatrixXd::Zero(all, all);
+    const double weight = weighing.slope / (weighing.noise_mm * weighing.noise_mm * weighing.repeats);
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        const MatrixXd& by = marks[std::size_t(i)].by;
+        add(slope, weight * (by.transpose() * by), i, g);
+    }
+    slope.diagonal() += at.known();
+    // in units of the unknowns' own sizes, or a polynomial's powers would drown each other
+    const VectorXd unit = slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const MatrixXd scaled = unit.asDiagonal() * slope * unit.asDiagonal();
+    return unit.asDiagonal() * scaled.ldlt().solve(MatrixXd::Identity(all, all)) * unit.asDiagonal();
+}
+
+/// The part of an inverse over all unknowns that one mark's distances depend on.
+MatrixXd part_of(const MatrixXd& inverse, Index mark, Index shared) {
+    const Index own = shared + 2 * mark;
+    MatrixXd out(shared + 2, shared + 2);
+    out << inverse.topLeftCorner(shared, shared), inverse.block(0, own, shared, 2), inverse.block(own, 0, 2, shared),
+        inverse.block(own, own, 2, 2);
+    return out;
+}
+
+/// Sum over points of one closed outline, per number of points in between; and how many pairs with a say that are.
+struct Along {
+    std::vector<double> sum, pairs;
+    template <class Says, class Product>
+    void add(Index begin, Index end, Says&& says, Product&& product) {
+        const Index n = end - begin, farthest = std::min(kFarthest, (n + 1) / 2);
+        if (Index(sum.size()) < farthest) {
+            sum.resize(std::size_t(farthest), 0.0);
+            pairs.resize(std::size_t(farthest), 0.0);
+        }
+        for (Index lag = 0; lag < farthest; ++lag) {
+            for (Index k = 0; k < n; ++k) {
+                const Index a = begin + k, b = begin + (k + lag) % n;
+                if (!says(a) || !says(b)) continue;
+                sum[std::size_t(lag)] += product(a, b);
+                pairs[std::size_t(lag)] += 1.0;
+            }
+        }
+    }
+    double mean(std::size_t lag) const { return sum[lag] / std::max(1.0, pairs[lag]); }
+};
+
+}  // namespace
+
+Weighing weighed(const MarkProblem& at) {
+    Weighing out = at.weighing;
+    std::vector<Seen> marks = look(at);
+    std::vector<double> size;
+    for (const Seen& mark : marks)
+        for (Index k = 0; k < mark.distance_mm.size(); ++k)
+            if (mark.says[k] > 0.0) size.push_back(std::abs(mark.distance_mm[k]));
+    std::sort(size.begin(), size.end());
+    auto end = size.end();
+    for (int round = 0; round < kScaleRounds; ++round) {  // over what has a say: a page's border would make all unsure
+        out.noise_mm = std::max(kLeastNoiseMm, 1.482602218505602 * size[std::size_t(end - size.begin()) / 2]);
+        if (out.loss != Loss::tukey) break;
+        end = std::lower_bound(size.begin(), size.end(), kTukey * out.noise_mm);
+    }
+    leave_out_wild(marks, out);
+
+    double slope = 0.0, counted = 0.0;
+    for (const Seen& mark : marks)
+        for (Index k = 0; k < mark.distance_mm.size(); ++k) {
+            slope += mark.says[k] * cost(out.loss, mark.distance_mm[k] / out.noise_mm).slope;
+            counted += mark.says[k];
+        }
+    out.slope = std::max(0.1, slope / std::max(1.0, counted));
+
+    Weighing plain = out;  // the hat matrix hardly depends on the noise, but where priors weigh
+    plain.repeats = std::max(1.0, at.weighing.repeats);
+    const MatrixXd inverse = inverse_slope(at, marks, plain);
+    const double weight = plain.slope / (plain.noise_mm * plain.noise_mm * plain.repeats);
+    Along left, followed;
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        const Seen& mark = marks[std::size_t(i)];
+        const VectorXd psi =
+            (mark.distance_mm / out.noise_mm).unaryExpr([&](double z) { return cost(out.loss, z).psi; });
+        const MatrixXd made = weight * mark.by * part_of(inverse, i, at.shared.size());
+        // a page's border has no say: if it counted, the noise of the marks would be spread over it
+        const auto says = [&](Index k) { return mark.says[k] > 0.0; };
+        for (std::size_t r = 0; r < at.model.rings(i); ++r) {
+            const Index begin = at.model.ring_begin(i, r), end = at.model.ring_begin(i, r + 1);
+            left.add(begin, end, says, [&](Index a, Index b) { return psi[a] * psi[b]; });
+            followed.add(begin, end, says, [&](Index a, Index b) { return made.row(a).dot(mark.by.row(b)); });
+        }
+    }
+    // the sum ends where a pair of neighbours is lost in noise
+    double whole = left.mean(0);
+    for (int round = 0; round < 6; ++round) {
+        std::vector<double> together;
+        double sum = 0.0, hat = 0.0;
+        for (std::size_t k = 0; k < left.sum.size(); ++k) {
+            const auto with = [&](std::size_t j) { return left.mean(j) + whole * followed.mean(j); };
+            if (k % 2 == 1 && (k + 1 == left.sum.size() || !(with(k) + with(k + 1) > 0.0))) break;
+            together.push_back(with(k));
+            sum += (k ? 2.0 : 1.0) * left.mean(k);
+            hat += (k ? 2.0 : 1.0) * followed.mean(k);
+        }
+        out.together = together;
+        whole = sum / std::max(0.3, 1.0 - hat);
+    }
+    // of noise below the least, points would count as more than there are
+    const double least = out.slope * out.slope;
+    if (!(whole > least)) {
+        if (whole > 0.1 * least)
+            for (double& c : out.together) c *= least / whole;
+        else
+            out.together = {least};
+        whole = least;
+    }
+    out.repeats = whole / out.slope;
+    return out;
+}
+
+MatrixXd covariance(const MarkProblem& at) {
+    const Weighing& weighing = at.weighing;
+    std::vector<Seen> marks = look(at);
+    leave_out_wild(marks, weighing);
+    const Index g = at.shared.size(), all = g + 2 * at.model.marks(), farthest = Index(weighing.together.size());
+    MatrixXd spread = MatrixXd::Zero(all, all);
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        const MatrixXd& by = marks[std::size_t(i)].by;
+        MatrixXd erring = MatrixXd::Zero(by.rows(), by.cols());
+        for (std::size_t r = 0; r < at.model.rings(i); ++r) {
+            const Index begin = at.model.ring_begin(i, r), n = at.model.ring_begin(i, r + 1) - begin;
+            for (Index k = 0; k < n; ++k)
+                for (Index lag = 0; lag < std::min(farthest, (n + 1) / 2); ++lag) {
+                    const double c = weighing.together[std::size_t(lag)];
+                    erring.row(begin + k) += c * by.row(begin + (k + lag) % n);
+                    if (lag) erring.row(begin + k) += c * by.row(begin + (k + n - lag) % n);
+                }
+        }
+        add(spread, by.transpose() * erring, i, g);
+    }
+    spread /= std::pow(weighing.noise_mm * weighing.repeats, 2);
+    spread.diagonal() += at.known();
+    const MatrixXd inverse = inverse_slope(at, marks, weighing);
+    return (inverse * spread * inverse).topLeftCorner(g, g);
+}
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,248 @@
+#include "swept_footprints.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "trace.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+// Where a loose brush is passed by its TCP the footprint turns round within tenths of a mm of the way: between instants
+// farther apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
+constexpr double kApartMm = 0.25;
+constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
+constexpr double kLeastCosine = 0.05;  // between a footprint's own normal and that of a line that touches it
+
+using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
+
+double at_depth(const std::vector<double>& c, double d) {
+    double y = 0.0;
+    for (std::size_t i = c.size(); i-- > 0;) y = y * d + c[i];
+    return y;
+}
+double slope_at_depth(const std::vector<double>& c, double d) {
+    double y = 0.0;
+    for (std::size_t i = c.size(); i-- > 1;) y = y * d + double(i) * c[i];
+    return y;
+}
+
+void put(const Vec2<Jet>& from, Eigen::Vector2d& value, ByLag& by) {
+    for (int i = 0; i < 2; ++i) {
+        value[i] = from[i].a;
+        by.row(i) = from[i].v.transpose();
+    }
+}
+void put(const Vec2<double>& from, Eigen::Vector2d& value, ByLag& by) {
+    value = from;
+    by.setZero();
+}
+double by_height(const Jet& depth) { return depth.v[kMostTerms]; }
+double by_height(double) { return 0.0; }
+
+}  // namespace
+
+bool Footprints::follow(const Poses& poses, const std::vector<double>& at, const MarkLaws& laws,
+                        const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm) {
+    const double reach = deepest_mm + std::max(0.0, height_mm);
+    if (height_mm > poses(0, 2) || !(laws.lag[0] > 0.0) || !real_roots(laws.lag, 0.0, reach).empty()) return false;
+    std::vector<Jet> lag;
+    for (std::size_t i = 0; lag_by && i < laws.lag.size(); ++i) {
+        lag.emplace_back(laws.lag[i]);
+        lag[i].v.head(lag_by->cols()) = lag_by->row(Eigen::Index(i)).transpose();
+    }
+    std::vector<double> close = at;
+    for (int round = 0; round < kRounds; ++round) {
+        if (lag_by)
+            walk(lag, Jet(height_mm, kMostTerms), poses, close, laws, reach);
+        else
+            walk(laws.lag, height_mm, poses, close, laws, reach);
+        enclose();
+        const std::vector<double> closer = this->closer(close);
+        if (closer.size() == close.size()) break;
+        close = closer;
+    }
+    return !rows_.empty();
+}
+
+std::vector<double> Footprints::closer(const std::vector<double>& at) const {
+    std::vector<double> out;
+    std::size_t row = 0;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        out.push_back(at[k]);
+        while (row + 1 < rows_.size() && rows_[row].place < at[k]) ++row;
+        if (row + 1 >= rows_.size() || k + 1 >= at.size() || rows_[row].place != at[k] ||
+            rows_[row + 1].place != at[k + 1])
+            continue;
+        const int parts = std::min(kMostParts, int(std::ceil((gone_[row + 1] - gone_[row]) / kApartMm)));
+        for (int i = 1; i < parts; ++i) out.push_back(at[k] + (at[k + 1] - at[k]) * i / parts);
+    }
+    return out;
+}
+
+template <class T>
+void Footprints::walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<double>& at,
+                      const MarkLaws& laws, double reach) {
+    const LagLaw<T> law = law_of(lag, 0.0, reach);
+    rows_.clear();
+    trace<T>(law, poses, height, at, nullptr, [&](std::size_t k, const Trace<T>& row) {
+        if (!row.down) return;
+        Instant& now = rows_.emplace_back();
+        const double d = std::max(0.0, value_of(row.depth));
+        put(row.state.contact, now.contact, now.contact_by);
+        put(row.state.heading, now.heading, now.heading_by);
+        now.heading_known = row.state.heading_known || row.state.taut;
+        now.place = at[k];
+        now.depth = d;
+        now.depth_by = by_height(row.depth);
+        now.gap = at_depth(laws.tip_gap, d);
+        now.gap_slope = slope_at_depth(laws.tip_gap, d);
+        const double half = at_depth(laws.half_width, d) + kLeastHalfMm;
+        now.half_slope = slope_at_depth(laws.half_width, d);
+        now.drop = {laws.widest_per_half * half, half, laws.front_per_half * half, laws.round_tail};
+    });
+    // before the first motion there is no heading: the first one that follows
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (!rows_[i].heading_known) continue;
+        for (; open < i; ++open)
+            if (!rows_[open].heading_known) {
+                rows_[open].heading = rows_[i].heading;
+                rows_[open].heading_by = rows_[i].heading_by;
+            }
+        open = i + 1;
+    }
+}
+
+void Footprints::enclose() {
+    middle_.resize(rows_.size());
+    radius_.resize(rows_.size());
+    gone_.resize(rows_.size());
+    Eigen::Matrix<double, 2, 6> before;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Instant& now = rows_[i];
+        // every point of the drop is a mean of these corners, with the same weights at all instants
+        const Eigen::Vector2d tip = now.contact - now.gap * now.heading;
+        const Eigen::Vector2d widest = tip + now.drop.widest * now.heading;
+        const Eigen::Vector2d front = widest + now.drop.front * now.heading;
+        const Eigen::Vector2d side = now.drop.half * Eigen::Vector2d(-now.heading.y(), now.heading.x());
+        Eigen::Matrix<double, 2, 6> corners;
+        corners << tip + side, tip - side, widest + side, widest - side, front + side, front - side;
+        gone_[i] = i ? gone_[i - 1] + std::sqrt((corners - before).colwise().squaredNorm().maxCoeff()) : 0.0;
+        before = corners;
+        const double to_middle = 0.5 * (now.drop.widest + now.drop.front);
+        middle_[i] = tip + to_middle * now.heading;
+        radius_[i] = std::sqrt(to_middle * to_middle + now.drop.half * now.drop.half);
+    }
+}
+
+NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) const {
+    // Between instants a distance changes by no more than the footprint moves: where it is so much too long, so many
+    // instants are passed over.
+    const std::size_t begin = row;
+    const Eigen::Vector2d first = rows_[begin].in_frame(x);
+    NearestEdge best = nearest_edge(rows_[begin].drop, first.x(), first.y());
+    const auto look = [&](std::size_t i) {
+        const Eigen::Vector2d here = rows_[i].in_frame(x);
+        const double least = least_distance(rows_[i].drop, here.x(), here.y());
+        if (least < best.distance) {
+            const NearestEdge edge = nearest_edge(rows_[i].drop, here.x(), here.y());
+            if (edge.distance < best.distance) {
+                best = edge;
+                row = i;
+            }
+        }
+        return least - best.distance;
+    };
+    double clear = -INFINITY;
+    for (std::size_t i = begin + 1; i < rows_.size() && best.distance >= 0.0; ++i)
+        if (gone_[i] >= clear) clear = gone_[i] + look(i);
+    clear = INFINITY;
+    for (std::size_t i = begin; i-- > 0 && best.distance >= 0.0;)
+        if (gone_[i] <= clear) clear = gone_[i] - look(i);
+    return best;
+}
+
+SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const {
+    const Instant& here = rows_[row];
+    const Eigen::Vector2d normal = here.on_paper(own), from = here.place_of(own);
+    SweptEdge best{normal.dot(x - from), normal, own};
+    for (const std::size_t other : {row - 1, row + 1}) {
+        if (other >= rows_.size()) continue;
+        // farther apart only where the brush was in the air in between
+        const double moved = std::abs(gone_[other] - gone_[row]);
+        if (!(moved > 1e-9) || moved > 4.0 * kApartMm) continue;
+        const Instant& there = rows_[other];
+        NearestEdge touched = own, beyond = there.farthest(normal);
+        Eigen::Vector2d n = normal, a = from, b = there.place_of(beyond);
+        if (n.dot(b - a) <= 1e-12) continue;  // the neighbour stays behind the footprint's own tangent
+        // From what both sweep x is as far as from the farthest of the lines that leave both behind.
+        SweptEdge pair{n.dot(x - b), n, own};
+        // the line that touches both: through the farthest places, square to it the farthest ones anew
+        for (int round = 0; round < kTangentRounds; ++round) {
+            const Eigen::Vector2d along = b - a;
+            Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+            if (across.dot(n) < 0.0) across = -across;
+            const bool still = (across - n).squaredNorm() < 1e-10;
+            n = across;
+            if (still) break;
+            touched = here.farthest(n);
+            a = here.place_of(touched);
+            beyond = there.farthest(n);
+            b = there.place_of(beyond);
+        }
+        const double distance = n.dot(x) - std::max(n.dot(a), n.dot(b));
+        if (distance > pair.distance && n.dot(normal) > kLeastCosine) {
+            const double t = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+            pair = {distance, n, between(here.drop, touched, beyond, t)};
+        }
+        if (pair.distance < best.distance) best = pair;
+    }
+    return best;
+}
+
+Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) const {
+    if (row == 0 || row + 1 >= rows_.size()) return Eigen::Vector2d::Zero();
+    const Eigen::Vector2d here = rows_[row].place_of(edge), come = here - rows_[row - 1].place_of(edge),
+                          go = rows_[row + 1].place_of(edge) - here, both = come + go;
+    const double as_far = std::sqrt(come.squaredNorm() * go.squaredNorm());
+    if (!(as_far > 1e-12) || come.dot(go) < 0.8 * as_far) return Eigen::Vector2d::Zero();
+    return both.normalized();
+}
+
+double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
+    // Where footprints lie this near one after the other they count as side by side: more than instants are apart.
+    constexpr double kGapMm = 0.5;
+    struct Part {
+        Span span;
+        std::size_t row;
+    };
+    thread_local std::vector<Part> parts;
+    parts.clear();
+    double clear = -INFINITY;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (gone_[i] < clear) continue;
+        const Eigen::Vector2d to = middle_[i] - x;
+        const double beside = std::abs(out.x() * to.y() - out.y() * to.x()), off = std::max(beside, -out.dot(to));
+        if (off >= radius_[i]) {
+            clear = gone_[i] + off - radius_[i];
+            continue;
+        }
+        const Eigen::Vector2d at = rows_[i].in_frame(x), u = rows_[i].heading;
+        const Span span = span_inside(rows_[i].drop, at.x(), at.y(), out.dot(u), u.x() * out.y() - u.y() * out.x());
+        if (span.to >= span.from && span.to >= 0.0) parts.push_back({span, i});
+    }
+    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.span.from < b.span.from; });
+    double far = 0.0;
+    for (const Part& part : parts) {
+        if (part.span.from > far + kGapMm) break;
+        if (part.span.to <= far) continue;
+        far = part.span.to;
+        last = part.row;
+    }
+    return far;
+}
+
+}  // namespace brushsvg::fit

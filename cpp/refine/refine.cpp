@@ -1,0 +1,129 @@
+#include "refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/mark_overlap.hpp"
+#include "brushsvg/simulate.hpp"
+#include "brushsvg/target_mark.hpp"
+#include "brushsvg/thin_out.hpp"
+#include "outline_fit.hpp"
+#include "patch_path.hpp"
+
+namespace brushsvg::fit {
+namespace {
+
+using Eigen::Index;
+
+// Samples of the patch's way, in half widths of the mark: farther apart the footprints leave waists between them.
+constexpr double kStep = 0.3, kWidestStep = 0.6;
+constexpr std::size_t kMostSamples = 1000;
+// Controls of the splines along the way, in half widths: twice as far apart ends and corners keep what they miss (0.002
+// of overlap), closer nothing is won. At most so many, since the effort grows with their cube.
+constexpr double kControl = 1.5;
+constexpr int kMostControls = 60;
+// Less paints nothing that would not dry on the way.
+constexpr double kLeastDepthMm = 0.2;
+// Reach of the TCP beyond the sheet, that of a machine which says nothing else.
+constexpr double kBeyondSheetMm = 30.0;
+// A blunt beginning needs a patch that comes in from the side, which no small step finds: where the overlap stays below
+// what is good, the way is turned at its beginning by so much [rad] and tried again.
+constexpr std::array<double, 3> kFirstTurns{0.0, 1.2, -1.2};
+constexpr double kGood = 0.93;
+// Shares of the tolerance: of the tool's chords, and of what fewer poses may change of the mark. At twice as much of
+// the latter a tenth of them is saved, and the overlap loses as much again (0.0025 on characters) as it did (0.0006).
+constexpr double kChords = 0.2, kThinned = 0.5;
+constexpr double kRingTolerance = 0.01;  // as in the report
+
+double mean_half_width(const Stroke& stroke, const Brush& brush) {
+    if (!brush.width_follows_depth()) return brush.half_width(brush.paint_depth_mm);
+    double sum = 0.0;
+    for (int i = 0; i <= 100; ++i) sum += half_width_at(stroke, i / 100.0);
+    return sum / 101.0;
+}
+
+/// Depths that the brush was measured at, and those that the stroke needs anyway: no warning comes on top.
+std::array<double, 2> depths_for(const PatchSamples& samples, const Brush& brush) {
+    double least = samples[0].depth_mm, greatest = least;
+    for (const PatchSample& sample : samples) {
+        least = std::min(least, sample.depth_mm);
+        greatest = std::max(greatest, sample.depth_mm);
+    }
+    if (!brush.width_follows_depth()) return {least, least};
+    double lo = std::max(kLeastDepthMm, brush.depth_range_mm[0]), hi = brush.depth_range_mm[1];
+    for (const Profile* profile : {&brush.lag, &brush.tip_gap, &brush.tip_to_widest, &brush.half_width}) {
+        if (!profile->calibrated_mm) continue;
+        lo = std::max(lo, (*profile->calibrated_mm)[0]);
+        hi = std::min(hi, (*profile->calibrated_mm)[1]);
+    }
+    return {std::min(lo, least), std::max(hi, greatest)};
+}
+
+/// How far a box reaches beyond the sheet [mm].
+double beyond(const std::array<double, 4>& box, const std::array<double, 2>& sheet) {
+    return std::max({-box[0], -box[1], box[2] - sheet[0], box[3] - sheet[1]});
+}
+std::array<double, 4> box_of(const Poses& poses) {
+    return {poses.col(0).minCoeff(), poses.col(1).minCoeff(), poses.col(0).maxCoeff(), poses.col(1).maxCoeff()};
+}
+
+/// A pass and how well it paints its stroke: what the report says, pixel by pixel, so that no plan is kept that the
+/// report finds worse.
+struct Tried {
+    std::array<double, 4> painted_bounds, tool_bounds;
+    double overlap;
+    Tried(const Pass& pass, const Stroke& stroke, const Brush& brush) {
+        const PassMarks marks = simulate(pass, brush);
+        painted_bounds = brushsvg::painted_bounds(marks, brush);
+        tool_bounds = box_of(pass.poses_mm);
+        overlap = common_area(mark_overlap({marks}, {stroke}, brush)).overlap();
+    }
+};
+
+}  // namespace
+
+RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options) {
+    RefinedPass closed;
+    CompensateOptions how{Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s};
+    closed.plan = compensate(stroke, brush, how);
+    how.few_poses = false;  // poses that lie beside the path would be taken for its bends
+    const Pass dense = compensate(stroke, brush, how).pass;
+    const double half_width = mean_half_width(stroke, brush);
+    const PatchSamples base = patch_path(dense, brush, kStep * half_width, kMostSamples);
+    const Rings wanted = wanted_outline(stroke, kRingTolerance);
+    if (base.size() < 2 || brush.is_rigid() || wanted.empty()) return closed;
+    const double way = way_of(base);
+    if (way > kWidestStep * half_width * double(base.size())) return closed;  // a thread: no footprint shows in it
+
+    const int controls = std::clamp(int(std::lround(way / (kControl * half_width))) + 3, 5, kMostControls);
+    const PatchPath path(base, controls, depths_for(base, brush));
+    const auto stays = [&](const std::array<double, 4>& box, const std::array<double, 4>& before, double reach) {
+        return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
+    };
+    const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
+    const Tried before(closed.plan.pass, stroke, brush);
+    closed.overlap = closed.overlap_closed = before.overlap;
+    RefinedPass best = closed;
+    for (double turn : kFirstTurns) {
+        Eigen::VectorXd start = Eigen::VectorXd::Zero(path.unknowns());
+        start[2] = turn;
+        start[3] = 0.3 * turn;
+        RefinedPass moved = closed;
+        moved.bettered = true;
+        moved.plan.pass.arcs.clear();
+        moved.plan.pass.poses_mm =
+            poses_along(path.at(fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations, start)), brush,
+                        kChords * options.tolerance_mm);
+        moved.plan.pass = thin_out(moved.plan.pass, brush, kThinned * options.tolerance_mm);
+        const Tried after(moved.plan.pass, stroke, brush);
+        moved.overlap = after.overlap;
+        const bool in_bounds = anywhere || (stays(after.painted_bounds, before.painted_bounds, 0.0) &&
+                                            stays(after.tool_bounds, before.tool_bounds, kBeyondSheetMm));
+        if (in_bounds && moved.overlap > best.overlap) best = moved;
+        if (best.overlap >= kGood) break;
+    }
+    if (best.bettered) best.plan.miss = tracking_error_of(best.plan.pass, stroke, brush, options.tolerance_mm);
+    return best;
+}
+
+}  // namespace brushsvg::fit

@@ -1,0 +1,170 @@
+#include "brushsvg/stroke_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+constexpr double kLineMm = 0.01;
+constexpr double kLeastSquareMm = 0.5;   // in which paint and drawing differ most
+constexpr int kBlocks = 5;               // the worst place is looked for in steps of a fifth of its size
+constexpr double kEveryMm = 0.5;         // where widths are measured
+constexpr double kMostWidths = 20000.0;  // of a line of many metres
+constexpr double kMostReach = 1e5;       // pixels; no picture has more across
+
+/// Sums of values over all squares of so many blocks, from sums over blocks.
+class Squares {
+ public:
+    Squares(Index rows, Index columns) : up_(Eigen::MatrixXd::Zero(rows + 1, columns + 1)) {}
+    double& block(Index row, Index column) { return up_(row + 1, column + 1); }
+    void sum_up() {
+        for (Index c = 1; c < up_.cols(); ++c)
+            for (Index r = 1; r < up_.rows(); ++r) up_(r, c) += up_(r - 1, c) + up_(r, c - 1) - up_(r - 1, c - 1);
+    }
+    /// The largest, and where its first block is.
+    double largest(Index size, Index& row, Index& column) const {
+        double most = -1.0;
+        for (Index r = 0; r + size < up_.rows(); ++r)
+            for (Index c = 0; c + size < up_.cols(); ++c) {
+                const double here = up_(r + size, c + size) - up_(r, c + size) - up_(r + size, c) + up_(r, c);
+                if (here <= most) continue;
+                most = here;
+                row = r;
+                column = c;
+            }
+        return most;
+    }
+
+ private:
+    Eigen::MatrixXd up_;
+};
+
+/// Share at a place between the middles of pixels, linear in both directions; 0 outside.
+double share_at(const Coverage& shares, const MarkOverlap& seen, const Vector2d& at_mm) {
+    const double x = (at_mm.x() - seen.window.x_mm) * seen.px_per_mm - 0.5;
+    const double y = (seen.window.y_mm + seen.window.height_mm - at_mm.y()) * seen.px_per_mm - 0.5;
+    if (!(x >= 0.0 && x < double(shares.cols() - 1) && y >= 0.0 && y < double(shares.rows() - 1))) return 0.0;
+    const Index c = Index(x), r = Index(y);
+    const double fx = x - double(c), fy = y - double(r);
+    return (1.0 - fy) * ((1.0 - fx) * shares(r, c) + fx * shares(r, c + 1)) +
+           fy * ((1.0 - fx) * shares(r + 1, c) + fx * shares(r + 1, c + 1));
+}
+
+double median_half_width(const MiddlePolyline& line) {
+    std::vector<double> halves(line.rows());
+    for (Index i = 0; i < line.rows(); ++i) halves[std::size_t(i)] = line(i, 3);
+    const auto middle = halves.begin() + std::ptrdiff_t(halves.size() / 2);
+    std::nth_element(halves.begin(), middle, halves.end());
+    return *middle;
+}
+
+}  // namespace
+
+WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
+    const Index height = seen.wanted.rows(), width = seen.wanted.cols();
+    if (height == 0 || width == 0 || seen.painted.rows() != height || seen.painted.cols() != width)
+        throw Error("paint and drawing are pictures of different sizes, or empty");
+    if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= 1e15))
+        throw Error("the square in which the worst place is looked for has no size", "", size_mm);
+    const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocks)), Index(1),
+                                   std::min(height, width));  // what is left over at the edges is paper
+    const Index rows = height / block, columns = width / block;
+    const Index size =
+        std::clamp(Index(std::lround(size_mm * seen.px_per_mm / double(block))), Index(1), std::min(rows, columns));
+    Squares missing(rows, columns), spilt(rows, columns);
+    for (Index y = 0; y < rows * block; ++y)
+        for (Index c = 0; c < columns; ++c) {
+            float less = 0.0f, more = 0.0f;
+            for (Index x = c * block; x < (c + 1) * block; ++x) {
+                const float difference = seen.wanted(y, x) - seen.painted(y, x);
+                less += std::max(difference, 0.0f);
+                more += std::max(-difference, 0.0f);
+            }
+            missing.block(y / block, c) += less;
+            spilt.block(y / block, c) += more;
+        }
+    missing.sum_up();
+    spilt.sum_up();
+    Index row = 0, column = 0, spilt_row = 0, spilt_column = 0;
+    double most = missing.largest(size, row, column);
+    const double most_spilt = spilt.largest(size, spilt_row, spilt_column);
+    const bool is_missing = most >= most_spilt;
+    if (!is_missing) {
+        most = most_spilt;
+        row = spilt_row;
+        column = spilt_column;
+    }
+    const auto middle_mm = [&](Index first) {
+        return (double(first) + 0.5 * double(size)) * double(block) / seen.px_per_mm;
+    };
+    return {{seen.window.x_mm + middle_mm(column), seen.window.y_mm + seen.window.height_mm - middle_mm(row)},
+            is_missing,
+            most / (seen.px_per_mm * seen.px_per_mm)};
+}
+
+double width_across(const Coverage& shares, const MarkOverlap& seen, const Vector2d& at_mm, const Vector2d& direction,
+                    double reach_mm) {
+    if (!at_mm.allFinite() || !direction.allFinite() || std::isnan(reach_mm) || !(seen.px_per_mm > 0.0))
+        throw Error("the place of a width or the picture's scale is not finite");
+    const double step_mm = 1.0 / seen.px_per_mm;
+    const Vector2d across = step_mm * Vector2d(-direction.y(), direction.x());
+    const auto share = [&](int k) { return share_at(shares, seen, at_mm + double(k) * across); };
+    const int most = int(std::clamp(std::ceil(reach_mm * seen.px_per_mm), 0.0, kMostReach));
+    int inside = 0;  // the nearest place that is painted: 0, -1, 1, -2, 2 ...
+    while (inside <= most && !(share(inside) > 0.5)) inside = inside < 0 ? -inside : -inside - 1;
+    if (inside > most) return 0.0;
+    const auto edge = [&](int towards) {  // how far from the point the share passes one half
+        int last = inside;
+        double within = share(last), beyond = within;
+        while (std::abs(last) <= most && (beyond = share(last + towards)) > 0.5) {
+            last += towards;
+            within = beyond;
+        }
+        if (beyond > 0.5) return double(last);
+        return last + towards * (within - 0.5) / std::max(within - beyond, 1e-9);
+    };
+    return step_mm * (edge(1) - edge(-1));
+}
+
+std::optional<double> width_error_mm(const MarkOverlap& seen, const MiddlePolyline& line) {
+    if (line.rows() == 0) return {};
+    const double length = line(line.rows() - 1, 2);
+    if (!(length > 0.0)) return {};
+    const double reach = 2.0 * line.col(3).maxCoeff() + 4.0 / seen.px_per_mm;
+    double sum = 0.0;
+    int count = 0;
+    Index segment = 0;
+    const double every_mm = std::max(kEveryMm, length / kMostWidths);
+    for (double at = 0.5 * every_mm; at < length; at += every_mm) {
+        checkpoint(5);
+        while (segment + 2 < line.rows() && line(segment + 1, 2) <= at) ++segment;
+        const Vector2d from = line.row(segment).head<2>().transpose(), to = line.row(segment + 1).head<2>().transpose();
+        const double t = (at - line(segment, 2)) / (line(segment + 1, 2) - line(segment, 2));
+        const double half = line(segment, 3) + t * (line(segment + 1, 3) - line(segment, 3));
+        if (!((to - from).norm() > 0.0) || !(half > 0.0)) continue;
+        const Vector2d place = from + t * (to - from), direction = (to - from).normalized();
+        const double wanted = width_across(seen.wanted, seen, place, direction, reach);
+        if (!(std::abs(wanted - 2.0 * half) < 0.1 * half + 0.05)) continue;
+        sum += std::abs(width_across(seen.painted, seen, place, direction, reach) - wanted);
+        ++count;
+    }
+    if (count == 0) return {};
+    return sum / count;
+}
+
+StrokeScore stroke_score(const PassMarks& painted, const Stroke& wanted, const Brush& brush) {
+    const MarkOverlap seen = mark_overlap({painted}, {wanted}, brush);
+    const MiddlePolyline line = flatten(wanted, kLineMm);
+    return {common_area(seen).overlap(), width_error_mm(seen, line),
+            worst_place(seen, std::max(kLeastSquareMm, median_half_width(line)))};
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,30 @@
+#include "brushsvg/student_t.hpp"
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+namespace brushsvg {
+namespace {
+
+constexpr double kUpperEnd = 0.975;  // of an interval that leaves 2.5 % on either side
+
+}  // namespace
+
+double deviations_of_95(std::optional<double> degrees_of_freedom) {
+    if (!degrees_of_freedom) return boost::math::quantile(boost::math::normal(), kUpperEnd);
+    return boost::math::quantile(boost::math::students_t(*degrees_of_freedom), kUpperEnd);
+}
+
+double as_normal(double t, double degrees_of_freedom) {
+    if (std::isnan(t)) return t;
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    if (std::isinf(t)) return inf;
+    const boost::math::students_t student(degrees_of_freedom);
+    const double beyond = boost::math::cdf(boost::math::complement(student, std::abs(t)));
+    if (!(beyond > std::numeric_limits<double>::min())) return inf;
+    return boost::math::quantile(boost::math::complement(boost::math::normal(), beyond));
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,1 @@
+"""The tool: brush files, their laws and footprints, how sure they are."""

@@ -1,0 +1,41 @@
+"""How sure a law is at a depth: the 95 % band of its polynomial, from the covariance of a brush."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from .. import _core
+
+LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
+
+
+def places(brush) -> dict[str, slice]:
+    """Where each law's coefficients lie among the rows of the covariance."""
+    ends = np.cumsum([0, *(len(getattr(brush, law).coefficients) for law in LAWS)]).tolist()
+    return {law: slice(*pair) for law, pair in zip(LAWS, itertools.pairwise(ends), strict=True)}
+
+
+def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float | None) -> np.ndarray:
+    """t sqrt(x^T C x), x the powers of depth, C (n, n) the covariance of a law's coefficients, found from so many
+    values to spare, t what 95 % of Student's t lie within; None: nobody knows from how many, t as for a normal value.
+    """
+    powers = np.vander(depths, len(covariance), increasing=True)
+    squared = np.einsum("ij,jk,ik->i", powers, covariance, powers)
+    return _core.deviations_of_95(freedom) * np.sqrt(np.maximum(squared, 0.0))
+
+
+def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
+    """Half height [mm] of a law's band at depths, and what it is; None where nothing is known.
+
+    From the covariance; else the RMSE. The intervals of single coefficients make no band: these depend on each other.
+    """
+    law, place = getattr(brush, name), places(brush)[name]
+    if len(brush.covariance):
+        block = np.array(brush.covariance)[place, place]
+        if np.any(block):
+            return half_interval_mm(block, depths, law.degrees_of_freedom), "95 % of the law"
+    if law.rmse_mm is not None:
+        return np.full_like(depths, law.rmse_mm), "RMSE of the data, not of the law"
+    return None

@@ -1,0 +1,113 @@
+"""A brush as a picture: its laws against depth with how sure they are, and its footprints. Needs the extra plot."""
+
+from __future__ import annotations
+
+import io
+import math
+
+import numpy as np
+
+from .. import _core
+from ..errors import lacking
+from .confidence import law_band
+from .describe import LAWS
+
+INK, QUIET, BAND = "#2b3a67", "#767a82", "#3f8fd9"
+SHADES = ("#b9c3de", "#2b3a67")  # of footprints, shallow to deep
+
+
+def brush_picture(brush, suffix: str, data: dict | None = None) -> bytes:
+    """.svg or .png. data: law -> (n, 2) depths and values [mm] that it was fitted to.
+
+    Error with the command to run where matplotlib is not installed.
+    """
+    figure = new_figure((11, 7.2))
+    brush_picture_on(figure, brush, data)
+    return encoded(figure, suffix)
+
+
+def brush_picture_on(figure, brush, data: dict | None = None) -> None:
+    """The same on a figure, or a part of one."""
+    grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 1.1))
+    depths = np.linspace(*brush.depth_range_mm, 201)
+    for number, (name, meaning) in enumerate(LAWS):
+        axes = figure.add_subplot(grid[number // 2, number % 2])
+        _law(axes, depths, name, meaning, getattr(brush, name), law_band(brush, name, depths))
+        if data and name in data:
+            axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6)
+    _footprints(figure.add_subplot(grid[:, 2]), brush)
+    figure.suptitle(_plain(brush.name))
+
+
+def fill_rings(axes, rings: list, colour: str) -> None:
+    """Rings (n, 2) as one shape, holes clockwise."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    closed = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
+    axes.add_patch(PathPatch(Path.make_compound_path(*closed), color=colour, linewidth=0))
+
+
+def _law(axes, depths, name, meaning, law, band) -> None:
+    values = np.array([law(depth) for depth in depths])
+    if band:
+        half, what = band
+        axes.fill_between(
+            depths, values - half, values + half, color=BAND, alpha=0.25, linewidth=0, label=what
+        )
+    measured = law.calibrated_mm or ((math.inf, -math.inf) if law.assumed else (-math.inf, math.inf))
+    inside = (depths >= measured[0]) & (depths <= measured[1])
+    axes.plot(
+        depths, values, color=INK, linestyle=":", label=None if inside.all() else "assumed or beyond the data"
+    )
+    if inside.any():
+        axes.plot(depths, np.where(inside, values, np.nan), color=INK, label="law")
+    axes.set_title(f"{name}{' (assumed)' if law.assumed else ''}\n{meaning}", fontsize=9)
+    axes.set_xlabel("depth, mm", fontsize=8)
+    axes.set_ylabel("mm", fontsize=8)
+    axes.set_ylim(bottom=min(0.0, values.min()))
+    axes.grid(color="#e4e2dc", linewidth=0.6)
+    axes.legend(fontsize=7, frameon=False)
+
+
+def _footprints(axes, brush) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    shades = LinearSegmentedColormap.from_list("depth", SHADES)
+    least, greatest = brush.depth_range_mm
+    for shape in reversed(brush.footprints.dragged):
+        depth = min(shape.depth_mm, greatest)
+        outline = _core.footprint_at(brush.footprints, shape.depth_mm, 1.0)
+        axes.fill(
+            *outline.T,
+            facecolor=shades((depth - least) / (greatest - least)),
+            edgecolor="white",
+            linewidth=0.5,
+        )
+    axes.set_aspect("equal")
+    axes.set_title("footprints, dragged\nthe tool is on the right", fontsize=9)
+    axes.set_xlabel("mm from the tip", fontsize=8)
+
+
+def new_figure(size_in: tuple[float, float]):
+    """A figure without a window or global state. Error where matplotlib is missing."""
+    try:
+        import matplotlib
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise lacking("pictures of laws need", "matplotlib") from None
+    matplotlib.rcParams["svg.hashsalt"] = "brushsvg"  # same input, same bytes
+    matplotlib.rcParams["svg.fonttype"] = "none"
+    return Figure(figsize=size_in, layout="constrained", facecolor="white")
+
+
+def encoded(figure, suffix: str) -> bytes:
+    out = io.BytesIO()
+    without = {"Date": None} if suffix == ".svg" else {"Software": None}
+    figure.savefig(out, format=suffix[1:], dpi=140, metadata=without)
+    return out.getvalue()
+
+
+def _plain(text: str) -> str:
+    """A name is no formula: matplotlib reads $...$."""
+    return text.replace("$", r"\$")

@@ -1,0 +1,1 @@
+"""Measurements and painted marks to a brush."""

@@ -1,0 +1,1 @@
+"""Strokes to calibrate a brush from: layout, file, page to print."""

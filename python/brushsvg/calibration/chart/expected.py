@@ -1,0 +1,39 @@
+"""What a chart will tell of a brush, before anyone paints it; in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ... import _core
+from ...brush.confidence import law_band
+from ...brush.describe import LAWS
+from ..from_marks import expected_brush
+
+ROWS = 4
+
+
+def chart_report(chart, brush, noise_mm: float) -> str:
+    """Strokes, depths, and the 95 % intervals to expect of marks whose edges are seen to noise_mm."""
+    depths = sorted({stroke.depth_mm for stroke in chart.strokes if stroke.kind == "angular"})
+    width, height = chart.plan.sheet_mm
+    lines = [
+        f"{len(chart.strokes)} strokes on {width:g} x {height:g} mm, depths "
+        + ", ".join(f"{depth:g}" for depth in depths)
+        + " mm"
+    ]
+    if not hasattr(_core, "fit_marks"):
+        return "\n".join(
+            [*lines, "how sure it will be is not known: this brushsvg was built without fits", ""]
+        )
+    expected, remarks = expected_brush(chart.plan, brush, noise_mm)
+    at = np.linspace(depths[0], depths[-1], ROWS)
+    bands = {name: law_band(expected, name, at)[0] for name, _ in LAWS}
+    lines += [
+        "",
+        f"To expect of a brush like {brush.name}, edges seen to {noise_mm:g} mm, sheet and marks displaced:",
+        "  depth" + "".join(name.rjust(18) for name, _ in LAWS),
+    ]
+    for i, depth in enumerate(at):
+        cells = [f"{getattr(expected, name)(depth):.2f} +- {bands[name][i]:.2f}" for name, _ in LAWS]
+        lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
+    return "\n".join([*lines, "  +-: 95 % of the law", *remarks, ""])

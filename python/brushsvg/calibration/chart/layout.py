@@ -1,0 +1,358 @@
+"""The calibration chart: strokes from which a brush can be measured, laid out on a sheet as a plan.
+
+Each set of strokes is painted at one depth: a straight one with a slow landing (b), an angular one with an auxiliary
+stroke parallel to its second line (r), an arc and a reversal (r where it turns; when the bristles go loose). Reference
+strokes, painted there and back on parallel lines, tell a sheet that was moved from a lag: the one moves both of a pair
+the same way, the other apart. The TCP's path is known and not compensated.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ... import _core
+from ...brush.perturbed import with_lag
+from ...errors import Error
+
+SETS = {"few": 4, "normal": 6, "many": 9}  # depths
+MOST_SETS = 12  # depths; beyond, a larger sheet repeats them
+MOST_REPEATS = 4
+SHALLOWEST = 0.1  # of the greatest depth: shallower, the paper's height rules the mark
+RAMP = 0.25  # of straight strokes: (17) holds for landings that are not steeper than 0.3
+LIFT_STEP = 1.0  # mm down, or up, per mm along at the other landings and at all ends
+# What is painted is not known yet: room is left for a brush that trails and spreads by so much more or less.
+LAG_SHARES, WIDER = (0.7, 1.0, 1.3), 1.2
+EDGE_MM, GAP_MM, LABEL_MM, TITLE_MM = 5.0, 2.0, 3.5, 6.0
+ATTEMPTS = 80  # of packing: fewer, and sheets are refused that have room; more, and little is won
+CODES = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "reference": "R"}
+LETTER_MM = 1.4  # of a label, on average
+QUIET = 1 / 6  # of a marker's side, white around it: a module
+MARKERS = (8.0, 20.0)  # mm, the least and the greatest side
+PAINT_MM_S = 20.0
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One stroke of a chart. box_mm: left, bottom, right, top of the room that its mark is given."""
+
+    id: str
+    kind: str
+    depth_mm: float
+    box_mm: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Marker:
+    """An ArUco marker; corners in mm on the sheet, upper left first, clockwise as one looks at it."""
+
+    id: int
+    corners_mm: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Label:
+    """Text that starts at x, y (its baseline) and is no wider than width_mm."""
+
+    text: str
+    at_mm: tuple[float, float]
+    width_mm: float
+
+
+@dataclass(frozen=True)
+class Chart:
+    plan: object
+    strokes: tuple[Stroke, ...]
+    markers: tuple[Marker, ...]
+    labels: tuple[Label, ...]
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A stroke before it has its place."""
+
+    kind: str
+    depth_mm: float
+    poses_mm: np.ndarray
+    arcs: tuple = ()
+
+
+@dataclass(frozen=True)
+class _Unit:
+    """Strokes that keep together, boxes as they were drawn."""
+
+    strokes: tuple[_Drawn, ...]
+    boxes_mm: tuple[tuple[float, float, float, float], ...]
+
+    @property
+    def box_mm(self) -> tuple[float, float, float, float]:
+        boxes = np.array(self.boxes_mm)
+        return (*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        x0, y0, x1, y1 = self.box_mm
+        return max(x1 - x0, 3 * LETTER_MM) + GAP_MM, y1 - y0 + GAP_MM + LABEL_MM
+
+
+def chart(
+    brush, sheet_mm: tuple[float, float], strokes: str | None = None, deepest_mm: float = math.inf
+) -> Chart:
+    """The chart of a brush that is known roughly: its depth range, its lag, its width.
+
+    strokes: few, normal, many; None for as many as the sheet has room for; deepest_mm: what the machine can reach, if
+    less than the brush. Error for a pen, and where the sheet is too small, with the size that would do.
+    """
+    if brush.is_rigid():
+        raise Error(f"brush {brush.name} is a pen: it has no lag that could be calibrated", "brush")
+    side = min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
+    below = side + QUIET * side + 2 * EDGE_MM  # edges and the lower markers
+    room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - below
+    if min(room) <= 2 * (side + QUIET * side):
+        raise Error(
+            f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners",
+            "sheet",
+        )
+    best = None
+    for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
+        units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
+        placed, used = _packed(units, room[0], side, room[1])
+        if used > room[1]:
+            break
+        best = placed
+    if best is None:
+        widest = max(math.ceil(max(unit.size_mm[0] for unit in units)), room[0])
+        _, used = _packed(units, widest, side)
+        raise Error(
+            f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for a chart of brush {brush.name} at "
+            f"{depths} depths, which needs {math.ceil(widest + 2 * EDGE_MM)} x {math.ceil(used + below)} mm"
+            + ("; --strokes few needs less" if strokes in ("normal", "many") else ""),
+            "sheet",
+        )
+    return _laid_out(brush, sheet_mm, best, side)
+
+
+def _choices() -> Iterator[tuple[int, int]]:
+    """Depths and repeats, the fewest first: those that the four numbers of a law need."""
+    yield from ((depths, 1) for depths in range(SETS["few"], MOST_SETS + 1))
+    yield from ((MOST_SETS, repeats) for repeats in range(2, MOST_REPEATS + 1))
+
+
+def _depths(brush, count: int, deepest_mm: float) -> list[float]:
+    least, deepest = brush.depth_range_mm[0], min(brush.depth_range_mm[1], deepest_mm)
+    depths = np.linspace(max(least, SHALLOWEST * deepest), deepest, count).round(2)
+    return np.clip(depths, least, deepest).tolist()
+
+
+def _units(brush, depths: list[float], repeats: int) -> list[_Unit]:
+    least, deepest = depths[0], depths[-1]
+    shallow = least + 0.3 * (deepest - least)
+    groups: list[tuple[_Drawn, ...]] = list(_references(brush, least + 0.4 * (deepest - least)))
+    for _ in range(repeats):
+        for number, depth in enumerate(depths):
+            groups.append((_straight(brush, depth),))
+            groups.append((_angular(brush, depth), _auxiliary(brush, depth, shallow)))
+            groups.append((_arc(brush, depth, 1 if number % 2 else -1),))
+            groups.append((_reversal(brush, depth),))
+    boxes = _boxes(brush, [stroke for group in groups for stroke in group])
+    return [_Unit(group, tuple(next(boxes) for _ in group)) for group in groups]
+
+
+def _path(depth: float, points, ramp: float = LIFT_STEP) -> np.ndarray:
+    """Poses along points (n, 2) at one depth, landing along the first line and lifting along the last."""
+    points = np.array(points, float)
+    first, last = _unit(points[1] - points[0]), _unit(points[-1] - points[-2])
+    down, up = points[0] + depth / ramp * first, points[-1] - depth / LIFT_STEP * last
+    flat = np.vstack([points[:1], down[None], points[1:-1], up[None], points[-1:]])
+    z = np.array([0.0, *[-depth] * (len(flat) - 2), 0.0])
+    return np.column_stack([flat, z])
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.hypot(*vector)
+
+
+def _straight(brush, depth: float) -> _Drawn:
+    length = depth / RAMP + brush.lag(depth) + 15.0 + depth / LIFT_STEP
+    return _Drawn("straight", depth, _path(depth, [(0, 0), (length, 0)], RAMP))
+
+
+def _before_corner(brush, depth: float) -> float:
+    """From touch-down: taut, though the lag is longer than thought, and some of its mark straight."""
+    return depth / LIFT_STEP + 1.5 * brush.lag(depth) + 5.0
+
+
+def _angular(brush, depth: float) -> _Drawn:
+    first = _before_corner(brush, depth)
+    second = 2.0 * brush.lag(depth) + 3.0 + depth / LIFT_STEP
+    return _Drawn("angular", depth, _path(depth, [(0, 0), (first, 0), (first, -second)]))
+
+
+def _auxiliary(brush, depth: float, shallow: float) -> _Drawn:
+    """Beyond the second line, parallel to it: where it lies on the paper says where that line is."""
+    x = _before_corner(brush, depth) + WIDER * (brush.half_width(depth) + brush.half_width(shallow)) + GAP_MM
+    length = 2 * shallow / LIFT_STEP + brush.lag(shallow) + 5.0
+    return _Drawn("auxiliary", shallow, _path(shallow, [(x, 0), (x, -length)]))
+
+
+def _arc(brush, depth: float, direction: int) -> _Drawn:
+    """A third of a circle whose radius leaves the brush taut, entered straight."""
+    radius = 1.6 * max(brush.lag(depth), 2.0)
+    start = depth / LIFT_STEP + 0.7 * brush.lag(depth) + 2.0
+    count = 49  # chords stay within 0.01 mm of the arc: who ignores it loses nothing
+    turn = np.linspace(0, 2 * math.pi / 3, count)
+    xy = np.column_stack([start + radius * np.sin(turn), direction * radius * (1 - np.cos(turn))])
+    along = np.array([math.cos(turn[-1]), direction * math.sin(turn[-1])])
+    end = xy[-1] + (depth / LIFT_STEP + 2.0) * along
+    poses = _path(depth, [(0, 0), *xy.tolist(), end])
+    return _Drawn("arc", depth, poses, (_core.Arc(2, 1 + count, (start, direction * radius), direction),))
+
+
+def _reversal(brush, depth: float) -> _Drawn:
+    """Nearly back: the patch rests for almost two lags, then turns."""
+    back = math.radians(155.0)
+    first = _before_corner(brush, depth)
+    second = 3.5 * brush.lag(depth) + 3.0 + depth / LIFT_STEP
+    end = (first + second * math.cos(back), second * math.sin(back))
+    return _Drawn("reversal", depth, _path(depth, [(0, 0), (first, 0), end]))
+
+
+def _references(brush, depth: float) -> Iterator[tuple[_Drawn, ...]]:
+    """Two pairs there and back, along x and along y."""
+    length = 2 * depth / LIFT_STEP + brush.lag(depth) + 8.0
+    apart = 2 * WIDER * brush.half_width(depth) + GAP_MM
+    for turn in (lambda x, y: (x, y), lambda x, y: (y, x)):
+        there, back = [turn(0, 0), turn(length, 0)], [turn(length, apart), turn(0, apart)]
+        yield tuple(_Drawn("reference", depth, _path(depth, points)) for points in (there, back))
+
+
+def _boxes(brush, strokes: list[_Drawn]) -> Iterator[tuple[float, float, float, float]]:
+    """Of what brushes that trail a little less and more than this one paint, and a little wider."""
+    plan = _plan(brush, (1e4, 1e4), [(f"{k}", stroke, (0.0, 0.0)) for k, stroke in enumerate(strokes)])
+    law = np.array(brush.lag.coefficients)
+    bounds = []
+    for share in LAG_SHARES:
+        other = with_lag(brush, (share - 1) * law)
+        marks = _core.simulate(plan, other, for_outlines=False)
+        bounds.append([_core.painted_bounds(trace, other) for trace in marks.passes])
+    bounds = np.array(bounds)
+    low, high = bounds[..., :2].min(axis=0), bounds[..., 2:].max(axis=0)
+    wider = np.array([(WIDER - 1) * brush.half_width(stroke.depth_mm) for stroke in strokes])[:, None]
+    yield from (tuple(box) for box in np.hstack([low - wider, high + wider]).tolist())
+
+
+def _packed(
+    units: list[_Unit], width: float, side: float, enough: float = 0.0
+) -> tuple[list[tuple[_Unit, float, float]], float]:
+    """Units one after the other, each as near to the top as it finds room: (unit, left, down from the sheet's inner
+    edge), and how tall all are; infinite where one unit is wider. The best of some orders, the large ones early, and
+    of upright and turned units, or the first that is no taller than enough; in steps of 1 mm."""
+    random = np.random.default_rng(0)  # the same chart each time
+    size = np.array([max(unit.size_mm) for unit in units])
+    turned = [_turned(unit) for unit in units]
+    best = ([], math.inf)
+    for attempt in range(ATTEMPTS):
+        order = np.argsort(-size * random.uniform(1.0, 1.0 + attempt / ATTEMPTS, len(units)))
+        turn = random.random(len(units)) < (attempt % 4) / 4
+        now = [turned[k] if turn[k] else units[k] for k in order]
+        best = min(best, _packed_so(now, width, side), key=lambda each: each[1])
+        if best[1] <= enough:
+            break
+    return best
+
+
+def _packed_so(units: list[_Unit], width: float, side: float):
+    taken = np.full(int(width), TITLE_MM)
+    corner = side + QUIET * side
+    taken[: math.ceil(corner)] = taken[-math.ceil(corner) :] = corner  # the upper markers
+    placed = []
+    for unit in units:
+        wide, tall = math.ceil(unit.size_mm[0]), unit.size_mm[1]
+        if wide > len(taken):
+            return [], math.inf
+        tops = np.lib.stride_tricks.sliding_window_view(taken, wide).max(axis=1)
+        left = int(tops.argmin())
+        placed.append((unit, float(left), float(tops[left])))
+        taken[left : left + wide] = tops[left] + tall
+    return placed, float(taken.max())
+
+
+def _turned(unit: _Unit) -> _Unit:
+    """By a quarter, counter-clockwise; reference strokes stay as they are."""
+    if unit.strokes[0].kind == "reference":
+        return unit
+    strokes = []
+    for stroke in unit.strokes:
+        x, y, z = stroke.poses_mm.T
+        arcs = tuple(
+            _core.Arc(arc.first, arc.last, (-arc.centre_mm[1], arc.centre_mm[0]), arc.direction)
+            for arc in stroke.arcs
+        )
+        strokes.append(replace(stroke, poses_mm=np.column_stack([-y, x, z]), arcs=arcs))
+    return _Unit(tuple(strokes), tuple((-y1, x0, -y0, x1) for x0, y0, x1, y1 in unit.boxes_mm))
+
+
+def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
+    width, height = sheet_mm
+    named, strokes, numbers, labels = [], [], [], []
+    counts: dict[str, int] = {}
+    for unit, left, down in sorted(placed, key=lambda each: _order(each[0])):
+        x0, _, _, y1 = unit.box_mm
+        shift = EDGE_MM + left + GAP_MM / 2 - x0, height - EDGE_MM - down - GAP_MM / 2 - y1
+        for stroke, box in zip(unit.strokes, unit.boxes_mm, strict=True):
+            number = counts[stroke.kind] = counts.get(stroke.kind, 0) + 1
+            name = f"{stroke.kind}-{number}"
+            numbers.append(number)
+            named.append((name, stroke, shift))
+            moved = tuple(float(v + shift[k % 2]) for k, v in enumerate(box))
+            strokes.append(Stroke(name, stroke.kind, stroke.depth_mm, moved))
+        x, bottom = unit.box_mm[0] + shift[0], unit.box_mm[1] + shift[1]
+        first, at_mm = -len(unit.strokes), (x, bottom - 0.8 * LABEL_MM)
+        labels.append(_label(strokes[first], numbers[first], at_mm, unit.size_mm[0] - GAP_MM))
+    title = f"brushsvg chart, brush {brush.name}, {width:g} x {height:g} mm: print at 100 %"
+    labels.append(
+        Label(title, (EDGE_MM + side + 3, height - EDGE_MM - LABEL_MM), width - 2 * (EDGE_MM + side + 3))
+    )
+    corners = (
+        (EDGE_MM, height - EDGE_MM),
+        (width - EDGE_MM - side, height - EDGE_MM),
+        (width - EDGE_MM - side, EDGE_MM + side),
+        (EDGE_MM, EDGE_MM + side),
+    )
+    markers = tuple(
+        Marker(k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
+        for k, (x, y) in enumerate(corners)
+    )
+    return Chart(_plan(brush, sheet_mm, named), tuple(strokes), markers, tuple(labels))
+
+
+def _label(stroke: Stroke, number: int, at_mm: tuple[float, float], width_mm: float) -> Label:
+    """Its id and depth where there is room, else a letter and its number."""
+    texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, f"{CODES[stroke.kind]}{number}")
+    fitting = (text for text in texts if len(text) * LETTER_MM <= width_mm)
+    return Label(next(fitting, texts[-1]), at_mm, width_mm)
+
+
+def _order(unit: _Unit) -> tuple[bool, float]:
+    """References first, then from shallow to deep: paint that runs out does so where most of it is used."""
+    return unit.strokes[0].kind != "reference", unit.strokes[0].depth_mm
+
+
+def _plan(brush, sheet_mm, named):
+    plan = _core.Plan(brush=brush.name, brush_sha256=brush.sha256, sheet_mm=sheet_mm)
+    passes = []
+    for name, stroke, (dx, dy) in named:
+        arcs = [
+            _core.Arc(arc.first, arc.last, (arc.centre_mm[0] + dx, arc.centre_mm[1] + dy), arc.direction)
+            for arc in stroke.arcs
+        ]
+        poses = stroke.poses_mm + np.array([dx, dy, 0.0])
+        speed = min(PAINT_MM_S, brush.max_speed_mm_s)
+        settings = json.dumps({"kind": stroke.kind})
+        passes.append(_core.Pass(name, poses, speed, settings=settings, arcs=arcs))
+    plan.passes = passes
+    return plan

@@ -1,0 +1,275 @@
+"""Painted marks to a brush with its covariance; and what a sheet yet to be painted will say of a brush."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from ..brush import footprint_shapes
+from ..brush.confidence import half_interval_mm, places
+from ..errors import Error
+from .from_widths import need_fits, outlines_assumed
+from .mark_input import Painted, depths_painted, middle
+from .plausibility import BEYOND
+from .sheet_scale import SheetScale, refuse_scale, sheet_scale
+
+LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
+OUTLINES = 10
+ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
+WILD = 4.7  # standard deviations beyond which a point has no say
+FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
+TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
+# A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
+UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
+
+
+@dataclass(frozen=True)
+class MarkCalibration:
+    """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
+
+    round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
+    """
+
+    brush: _core.Brush
+    fit: object
+    painted: Painted
+    expected: _core.MarkOptions
+    scale: SheetScale | None = None
+    round_tail_gain: float = 0.0
+
+
+def calibrate_marks(
+    painted: Painted,
+    name: str,
+    depth_range_mm: tuple[float, float] | None = None,
+    max_speed_mm_s: float = 25.0,
+    options: _core.MarkOptions | None = None,
+) -> MarkCalibration:
+    """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
+
+    Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
+    displacement and height; depths, numbers per law and the tail are set here.
+    """
+    need_fits()
+    least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
+    if painted.deepest_mm > deepest:
+        raise Error(
+            f"the plan goes {painted.deepest_mm:g} mm deep, beyond the depth range [{least:g}, {deepest:g}] mm",
+            "depth_range_mm",
+        )
+    if deepest > BEYOND * painted.deepest_mm:
+        raise Error(
+            f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
+            f'mm: paint deeper ones, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',
+            "depth_range_mm",
+        )
+    options = options or _core.MarkOptions()
+    options.deepest_mm = deepest
+    options.lag_terms = min(LAG_TERMS, painted.depths)
+    options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
+    fit, gain = _likelier_tail(painted.marks, options)
+    scale = _scale(fit, painted)
+    refuse_scale(scale)
+    _refuse_unlike(fit, painted)
+    brush = brush_of(fit.laws, name, (least, deepest), np.array(fit.covariance))
+    brush.max_speed_mm_s = max_speed_mm_s
+    count = f"{len(painted.marks)} painted marks"
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        found = getattr(brush, law)
+        known = _core.Profile(
+            found.coefficients,
+            calibrated_mm=(0.0, painted.deepest_mm),
+            source=f"Fitted to {count}.",
+            half_interval_95=found.half_interval_95,
+        )
+        setattr(brush, law, known)
+    _refuse_unsure(brush, fit)
+    _core.check(brush)
+    return MarkCalibration(brush, fit, painted, options, scale, gain)
+
+
+def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, float]:
+    """The fit with the tail that fits better, and by how much the round one does."""
+    usual = options.widest_per_half
+    options.round_tail = False
+    pointed = _core.fit_marks(marks, None, options)
+    options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
+    rounded = _core.fit_marks(marks, pointed.laws, options)
+    options.round_tail, options.widest_per_half = False, usual
+    noise = min(pointed.noise_mm, rounded.noise_mm)
+    # points that count as one
+    alike = max(fit.samples / max(fit.effective_samples, 1.0) for fit in (pointed, rounded))
+    gain = 0.0
+    for one, other in zip(pointed.marks, rounded.marks, strict=True):
+        off = np.abs([one.distance_mm, other.distance_mm]) / noise
+        if np.mean(off > WILD) < FOREIGN:
+            squares = np.minimum(off, WILD) ** 2
+            gain += float(squares[0].sum() - squares[1].sum()) / alike
+    return (rounded if gain > TELLS else pointed), gain
+
+
+def options_for(expected: dict) -> _core.MarkOptions:
+    """What a measurement file says of how far sheet and marks may be off, for the fit."""
+    need_fits()
+    options = _core.MarkOptions()
+    if "height_mm" in expected:
+        options.height_mm = _core.Prior(0.0, expected["height_mm"])
+    if "turn_deg" in expected:
+        options.turn_rad = math.radians(expected["turn_deg"])
+    options.placement_mm = expected.get("placement_mm", options.placement_mm)
+    options.displacement_mm = expected.get("displacement_mm", options.displacement_mm)
+    return options
+
+
+def expected_brush(
+    plan: _core.Plan,
+    brush: _core.Brush,
+    noise_mm: float = 0.1,
+    noise_length_mm: float = 1.0,
+    options: _core.MarkOptions | None = None,
+) -> tuple[_core.Brush, list[str]]:
+    """What marks of this plan will say of such a brush, before anyone paints: the brush as the fit sees it, with
+    the covariance and intervals to expect, and in words what the strokes cannot tell apart.
+
+    noise_mm: standard deviation of a painted edge, which forgets itself over noise_length_mm along the outline.
+    options: sigmas of sheet, displacement and height, as for calibrate_marks.
+    """
+    need_fits()
+    least, deepest = brush.depth_range_mm
+    laws = laws_of(brush)
+    seen = brush_of(laws, brush.name, (least, deepest))
+    marks = _core.simulate(plan, seen)
+    _core.trace_outlines(marks, seen)
+    painted = [
+        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm)
+        for one, mark in zip(plan.passes, marks.passes, strict=True)
+        if mark.outline_mm
+    ]
+    if not painted:
+        raise Error("the plan paints nothing", "plan")
+    options = options or _core.MarkOptions()
+    options.deepest_mm = deepest
+    depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
+    options.lag_terms = min(LAG_TERMS, depths)
+    options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)
+    options.noise_mm, options.noise_length_mm = noise_mm, noise_length_mm
+    fit = _core.fit_marks(painted, laws_of(brush, options.lag_terms, options.half_width_terms), options)
+    return brush_of(fit.laws, brush.name, (least, deepest), np.array(fit.covariance)), fit.remarks
+
+
+def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HALF_TERMS) -> _core.MarkLaws:
+    """The laws of a brush with as many numbers as marks give, nearest over its depths."""
+    depths = np.linspace(*brush.depth_range_mm, 41)[1:]
+
+    def nearest(law, powers):
+        values = np.array([law(d) for d in depths])
+        columns = np.vander(depths, powers[-1] + 1, increasing=True)[:, powers]
+        out = np.zeros(powers[-1] + 1)
+        out[powers] = np.linalg.lstsq(columns, values, rcond=None)[0]
+        return out.tolist()
+
+    half = np.array([brush.half_width(d) for d in depths])
+    widest = np.array([brush.tip_to_widest(d) for d in depths])
+    ends = [(s.outline_mm[:, 0].max(), s.depth_mm) for s in brush.footprints.dragged]
+    front = [(end - brush.tip_to_widest(d)) / max(brush.half_width(d), 1e-6) for end, d in ends]
+    return _core.MarkLaws(
+        nearest(brush.lag, list(range(lag_terms))),
+        nearest(brush.tip_gap, list(range(1, GAP_TERMS + 1))),
+        nearest(brush.half_width, list(range(1, half_terms + 1))),
+        float(widest @ half / (half @ half)),
+        float(np.clip(np.median(front), 0.2, 3.0)),
+    )
+
+
+def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = None) -> _core.Brush:
+    """A brush with these laws, drops for footprints, and intervals where the covariance of a fit is given."""
+    brush = _core.Brush()
+    brush.name, brush.kind, brush.depth_range_mm = name, "round", tuple(depth_range_mm)
+    half = np.array(laws.half_width)
+    lag, gap, widest = laws.lag, laws.tip_gap, (laws.widest_per_half * half).tolist()
+    for law, coefficients in (
+        ("lag", lag),
+        ("tip_gap", gap),
+        ("tip_to_widest", widest),
+        ("half_width", half.tolist()),
+    ):
+        setattr(brush, law, _core.Profile(coefficients))
+    least, deepest = depth_range_mm
+    brush.paint_depth_mm = (least + deepest) / 2
+    depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
+    brush.footprints = _core.FootprintTable([_outline(brush, depth, laws) for depth in depths])
+    shape = "eggs" if laws.round_tail else "drops"
+    brush.extra = outlines_assumed(
+        f"{shape} whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long "
+        "in front of it."
+    )
+    if covariance is not None:
+        whole = _over_brush(laws, covariance)
+        brush.covariance = whole.tolist()
+        sure = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        for law, place in places(brush).items():
+            coefficients = getattr(brush, law).coefficients
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=sure[place]))
+    return brush
+
+
+def _over_brush(laws, covariance: np.ndarray) -> np.ndarray:
+    """From the fit's unknowns to a brush's coefficients; x_w = ratio h."""
+    lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
+    rows = lag + gap + 1 + 2 * (half + 1)
+    to = np.zeros((rows, len(covariance)))
+    to[:lag, :lag] = np.eye(lag)
+    to[lag + 1 : lag + 1 + gap, lag : lag + gap] = np.eye(gap)
+    widest, width, source = lag + gap + 2, lag + gap + 2 + half + 1, slice(lag + gap, lag + gap + half)
+    to[widest : widest + half, source] = laws.widest_per_half * np.eye(half)
+    to[widest : widest + half, lag + gap + half] = laws.half_width[1:]
+    to[width : width + half, source] = np.eye(half)
+    return to @ covariance @ to.T
+
+
+def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
+    half = brush.half_width(depth)
+    shape = footprint_shapes.egg if laws.round_tail else footprint_shapes.drop
+    return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), laws.front_per_half * half))
+
+
+def _scale(fit, painted: Painted) -> SheetScale | None:
+    """Of the sheet, by the displacements of the marks that are any of this brush."""
+    like = [
+        (middle(np.array(mark.poses_mm)[:, :2]), miss.displacement_mm)
+        for mark, miss in zip(painted.marks, fit.marks, strict=True)
+        if not miss.outlier
+    ]
+    return sheet_scale(*map(np.array, zip(*like, strict=True))) if like else None
+
+
+def _refuse_unlike(fit, painted: Painted) -> None:
+    wild = [mark.stroke for mark, miss in zip(painted.marks, fit.marks, strict=True) if miss.outlier]
+    if 2 * len(wild) > len(painted.marks):
+        raise Error(
+            f"{len(wild)} of {len(painted.marks)} marks are not what any brush paints along their strokes: are the "
+            "marks in mm, y up, each with the id of its stroke?",
+            "marks",
+        )
+
+
+def _refuse_unsure(brush: _core.Brush, fit) -> None:
+    depths = np.linspace(*brush.depth_range_mm, 21)[1:]
+    covariance, at = np.array(brush.covariance), places(brush)
+    for law in ("lag", "half_width"):  # the others are not what a plan is led by
+        half = half_interval_mm(covariance[at[law], at[law]], depths, None)
+        values = np.array([getattr(brush, law)(d) for d in depths])
+        unsure = (half > UNSURE * values) & (half > UNSURE_MM)
+        if unsure.mean() > UNSURE_PART:
+            worst = int(np.argmax(np.where(unsure, half / np.maximum(values, 1e-9), 0.0)))
+            todo = (
+                fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
+            )
+            raise Error(
+                f"these marks leave the {law.replace('_', ' ')} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at "
+                f"depth {depths[worst]:g} mm: {todo}",
+                law,
+            )

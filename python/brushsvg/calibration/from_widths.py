@@ -1,0 +1,155 @@
+"""A brush from a few numbers: what was typed in becomes laws, what nobody measured is assumed and says so."""
+
+from __future__ import annotations
+
+import json
+import math
+
+from .. import _core
+from ..brush import footprint_shapes
+from ..errors import Error
+from . import plausibility
+
+# The shape of a round brush's footprint in half widths, near what the article's brush has at depths 4 to 10 mm.
+WIDEST_PER_HALF = 1.8  # from the tip to the widest section
+GAP_PER_HALF = 1.2  # from the tip to the centre of friction
+# How far a law may stay from the numbers that were typed in before a law that bends more is tried, and before it is
+# given up: a ruler is read to a tenth; beyond half a millimetre the file's own check would complain.
+CLOSE_MM, FAR_MM = 0.05, 0.5
+BENDS = 1e-3  # weight of a law's bends against the data: small, it only decides where the data leave it open
+DEPTHS = 10  # outlines, evenly spaced
+LONGEST_MM = 1000.0
+
+
+def new_brush(
+    name: str,
+    lag_mm: float,
+    widths_mm: list[tuple[float, float]],
+    depth_max_mm: float | None = None,
+    speed_mm_s: float = 25.0,
+) -> _core.Brush:
+    """A brush of constant lag whose marks have the given widths.
+
+    widths_mm: (depth, width) pairs, in any order; depth_max_mm: how deep it may be pressed, the deepest width by
+    default. A lag of 0 makes a pen with a round nib. Raises Error for numbers that no brush can have.
+    """
+    need_fits()
+    widths = _sound(widths_mm)
+    if lag_mm > 0:
+        plausibility.refuse_width(*widths[-1])
+    deepest = widths[-1][0] if depth_max_mm is None else depth_max_mm
+    if not widths[-1][0] <= deepest <= LONGEST_MM:
+        sentence = (
+            f"the greatest depth {deepest:g} mm is outside the range [{widths[-1][0]:g}, {LONGEST_MM:g}] mm"
+        )
+        raise Error(f"{sentence} from the deepest width to the longest brush", "depth", deepest)
+    brush = _core.Brush()
+    brush.name, brush.kind = name, "round" if lag_mm > 0 else "pen"
+    brush.depth_range_mm = (0.0, deepest)
+    brush.max_speed_mm_s = speed_mm_s
+    brush.paint_depth_mm = deepest / 2
+    brush.half_width = _nib(widths[0]) if lag_mm == 0 and len(widths) == 1 else _half_width(widths, deepest)
+    brush.lag = _core.Profile(
+        [lag_mm],
+        source=f"{lag_mm:g} mm as typed in; that it is the same at every depth is assumed.",
+        assumed=True,
+    )
+    if lag_mm > 0:
+        brush.tip_gap = _share(brush.half_width, GAP_PER_HALF, "The centre of friction")
+        brush.tip_to_widest = _share(brush.half_width, WIDEST_PER_HALF, "The widest section")
+    else:
+        brush.tip_gap = brush.tip_to_widest = _share(brush.half_width, 1.0, "The middle of a round nib")
+    brush.footprints = _core.FootprintTable(
+        [_outline(brush, deepest * k / DEPTHS) for k in range(1, DEPTHS + 1)]
+    )
+    what = "Drops" if lag_mm > 0 else "Discs"
+    brush.extra = outlines_assumed(f"{what} as wide as half_width says; the same when pressed straight down.")
+    _core.check(brush)
+    return brush
+
+
+def outlines_assumed(source: str) -> str:
+    """What a brush file says beside its laws when nobody measured its outlines, as JSON."""
+    return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})
+
+
+def need_fits() -> None:
+    """Error where the library was built without Ceres."""
+    if not hasattr(_core, "fit_law"):
+        raise Error("this brushsvg was built without fits; build it with Ceres (libceres-dev)")
+
+
+def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    if not widths_mm:
+        raise Error("there is no width: at least one is needed, for example 5 mm at depth 4 mm", "width")
+    for depth, width in widths_mm:
+        if not (math.isfinite(depth) and 0 < depth <= LONGEST_MM):
+            raise Error(
+                f"the depth {depth:g} mm of a width is outside the range (0, {LONGEST_MM:g}] mm",
+                "width",
+                depth,
+            )
+        if not (math.isfinite(width) and 0 < width <= LONGEST_MM):
+            raise Error(f"the width {width:g} mm is outside the range (0, {LONGEST_MM:g}] mm", "width", width)
+    return sorted(widths_mm)
+
+
+def _nib(width: tuple[float, float]) -> _core.Profile:
+    source = (
+        f"Width as typed in: {width[1]:g} mm at depth {width[0]:g} mm; that it is the same at all is assumed."
+    )
+    return _core.Profile([width[1] / 2], source=source, assumed=True)
+
+
+def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Profile:
+    """Nothing at depth 0, never falling, through the widths: the simplest law that comes close enough."""
+    depths, halves = [depth for depth, _ in widths], [width / 2 for _, width in widths]
+    places = len(set(depths))
+    for degree in (2, 3, 8) if places > 1 else (1,):
+        if degree <= 3 and degree > places:
+            continue
+        shape = _core.LawShape(
+            (0.0, deepest), degree, through_zero=True, rising=True, smoothing=BENDS if degree > 3 else 0.0
+        )
+        fit = _core.fit_law(depths, halves, shape)
+        worst = max(range(len(depths)), key=lambda i: abs(fit.residual_mm[i]))
+        miss = abs(fit.residual_mm[worst])
+        if miss <= CLOSE_MM:
+            break
+    if miss > FAR_MM:
+        sentence = (
+            f"no brush fits these widths: a law that never falls misses {2 * halves[worst]:g} mm at depth "
+        )
+        raise Error(
+            f"{sentence}{depths[worst]:g} mm by {2 * miss:.2f} mm; widths must not fall with depth, are they in "
+            "the right order?",
+            "width",
+            2 * halves[worst],
+        )
+    told = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
+    more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""
+    return _core.Profile(
+        fit.law.coefficients,
+        calibrated_mm=fit.law.calibrated_mm,
+        source=f"Widths as typed in: {told}{more}; met to {2 * miss:.2f} mm. That the brush touches with no width at "
+        "depth 0 is assumed.",
+        assumed=places == 1,
+        half_interval_95=fit.law.half_interval_95,
+        rmse_mm=fit.law.rmse_mm,
+        degrees_of_freedom=fit.law.degrees_of_freedom,
+    )
+
+
+def _share(half_width: _core.Profile, share: float, what: str) -> _core.Profile:
+    return _core.Profile(
+        [share * c for c in half_width.coefficients],
+        source=f"{what} is taken to lie {share:g} half widths from the tip.",
+        assumed=True,
+    )
+
+
+def _outline(brush: _core.Brush, depth: float) -> _core.Footprint:
+    half = brush.half_width(depth)
+    if brush.is_rigid():
+        return _core.Footprint(depth, footprint_shapes.disc(half))
+    return _core.Footprint(depth, footprint_shapes.drop(half, brush.tip_to_widest(depth), half))

@@ -1,0 +1,232 @@
+"""What painted marks told of a brush: laws and how sure they are, what moved, what stays; in words and as a picture."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .. import _core
+from ..brush.confidence import law_band
+from ..brush.describe import LAWS, polynomial
+from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
+from .from_marks import LAG_TERMS, TELLS
+
+TABLE_ROWS = 6
+FOREIGN = 0.1  # of all points, without a say: more than blots and gaps
+ALIKE = 0.5  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
+UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
+PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
+
+
+def report(made) -> str:
+    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration."""
+    brush, fit, painted = made.brush, made.fit, made.painted
+    lines = [
+        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
+        f"{len(painted.marks)} painted marks",
+        "",
+    ]
+    for name, _ in LAWS:
+        law = getattr(brush, name)
+        lines.append(f"{name} = {polynomial(law.coefficients)}")
+        halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
+        lines.append(f"  95 % +- {halves} (ascending powers)")
+    overlap = overlaps(made)
+    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
+    remarks = [
+        f"note: {sentence}"
+        for sentence in [*_few_depths(made), *_unexpected(made), *_unlike(fit, overlap[1]), *fit.remarks]
+    ]
+    if not fit.converged:
+        remarks.append("note: the fit was still moving when it was stopped: look at the picture")
+    return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+
+
+def _tail(made) -> str:
+    gain = made.round_tail_gain
+    if abs(gain) < TELLS:
+        return "these marks do not tell whether the footprint's tail is pointed or round; it is taken to be pointed"
+    kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
+    return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
+        *kinds, abs(gain)
+    )
+
+
+def _few_depths(made) -> list[str]:
+    terms = len(made.brush.lag.coefficients)
+    if terms >= LAG_TERMS:
+        return []
+    return [
+        f"the lag is of degree {terms - 1} instead of {LAG_TERMS - 1}, for {made.painted.depths} depths were painted: "
+        "between them it may be off by more than its interval says"
+    ]
+
+
+def _unexpected(made) -> list[str]:
+    """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
+    fit, expected, out = made.fit, made.expected, []
+    aside = np.array([miss.displacement_mm for miss in fit.marks])
+    far = int(np.argmax(np.hypot(*aside.T)))
+    others, limit = np.delete(aside, far, axis=0), UNLIKELY_RMS * expected.displacement_mm
+    if limit > 0 and len(others) > 2 and _rms(aside) > limit > _rms(others):
+        stroke = made.painted.marks[far].stroke
+        out.append(
+            f"{stroke} lies {np.hypot(*aside[far]):.1f} mm aside, alone: is that the mark of this stroke?"
+        )
+        aside = others
+    found = (
+        ("displacement_mm", "in x and in y (rms)", _rms(aside), expected.displacement_mm, UNLIKELY_RMS),
+        ("placement_mm", "", max(map(abs, fit.shift_mm)), expected.placement_mm, UNLIKELY),
+        ("height_mm", "", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
+        ("turn_deg", "", math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad), UNLIKELY),
+    )
+    return out + [
+        f"{key} is {size:.2g}{which and ' ' + which} where {sigma:.2g} was expected, which pulls at the laws: give "
+        f'"expected": {{"{key}": {_rounded_up(size):g}}} if the sheet was painted and read so roughly'
+        for key, which, size, sigma, times in found
+        if size > times * sigma > 0
+    ]
+
+
+def _unlike(fit, moved: float) -> list[str]:
+    """moved: overlap without the displacements."""
+    out = []
+    if fit.left_aside > FOREIGN:
+        out.append(
+            f"{100 * fit.left_aside:.0f} % of the edges are not what this brush paints: the choice of the tail "
+            "and the intervals may be wrong, clean the outlines of blots, borders and slits"
+        )
+    if moved <= ALIKE:
+        out.append(
+            f"marks that overlap by {moved:.2f} do not look like their predictions: look at the picture before use"
+        )
+    return out
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _rounded_up(size: float) -> float:
+    """To one digit."""
+    unit = 10.0 ** math.floor(math.log10(size))
+    return unit * math.ceil(size / unit)
+
+
+def _table(brush) -> list[str]:
+    lines = ["  depth" + "".join(name.rjust(18) for name, _ in LAWS)]
+    depths = np.linspace(*brush.depth_range_mm, TABLE_ROWS)
+    bands = {name: law_band(brush, name, depths) for name, _ in LAWS}
+    for i, depth in enumerate(depths):
+        cells = []
+        for name, _ in LAWS:
+            band = bands[name]
+            half = f" +- {band[0][i]:.2f}" if band else ""
+            cells.append(f"{getattr(brush, name)(depth):.2f}{half}".rjust(18))
+        lines.append(f"{depth:7.2f}" + "".join(cells))
+    return [*lines, "  +-: 95 % of the law"]
+
+
+def _moved(made) -> list[str]:
+    """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
+    fit = made.fit
+    sure = _core.deviations_of_95() * np.sqrt(np.diag(np.array(fit.covariance)))
+    height, shift, turn = sure[-4], sure[-3:-1], sure[-1]
+    way = "higher" if fit.height_mm >= 0 else "lower"
+    sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
+    far = int(np.argmax(sizes))
+    lines = [
+        f"the paper lies {abs(fit.height_mm):.2f} +- {height:.2f} mm {way} than the plan took it to be",
+        f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
+        f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
+        f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
+        f"most, by {sizes[far]:.2f} mm",
+    ]
+    if made.scale:
+        lines.append(f"by where its marks lie the sheet is {made.scale.told(made.scale.both)} than the plan")
+    return lines
+
+
+def _stays(made, lying: float, moved: float) -> list[str]:
+    """lying, moved: overlap with and without the displacements."""
+    fit = made.fit
+    worst = int(np.argmax([miss.rms_mm for miss in fit.marks]))
+    lines = [
+        f"painted edges lie {fit.noise_mm:.2f} mm off the predicted ones (standard deviation); {fit.samples:.0f} "
+        f"points compared, as good as {fit.effective_samples:.0f} independent ones",
+        f"worst: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
+        f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
+        "taken away (mean of intersection over union)",
+    ]
+    if fit.left_aside > 0.01:
+        lines.append(f"{100 * fit.left_aside:.0f} % of the points lie so far off that they have no say")
+    if fit.slim > 0.01:
+        lines.append(
+            f"{100 * fit.slim:.0f} % of the points, beside ends hardly wider than that, have no say either"
+            if fit.left_aside > 0.01
+            else f"{100 * fit.slim:.0f} % of the points lie beside ends hardly wider than that and have no say"
+        )
+    wild = [mark.stroke for mark, miss in zip(made.painted.marks, fit.marks, strict=True) if miss.outlier]
+    if wild:
+        lines.append(
+            f"not what this brush paints, left aside: {', '.join(wild)}: look at them, and paint them again"
+        )
+    return lines
+
+
+def overlaps(made) -> tuple[float, float]:
+    """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
+    the brush says where paint will be, which is more than how sure its laws are."""
+    marks, lying, moved = made.painted.marks, [], []
+    predicted = _predicted(made, list(range(len(marks))))
+    for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
+        lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
+        moved.append(_core.overlap(_home(made, mark.outline_mm, miss.displacement_mm), rings))
+    return float(np.mean(lying)), float(np.mean(moved))
+
+
+def report_picture(made, suffix: str) -> bytes:
+    """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
+    figure = new_figure((11, 11))
+    laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
+    brush_picture_on(laws, made.brush)
+    order = np.argsort([miss.rms_mm for miss in made.fit.marks])
+    chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
+    predicted = _predicted(made, [int(k) for _, k in chosen])
+    for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
+        mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
+        fill_rings(axes, _home(made, mark.outline_mm, miss.displacement_mm), PAINT)
+        for ring in rings:
+            axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
+        axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
+        axes.set_aspect("equal")
+        title = f"{what}: {mark.stroke}, {miss.rms_mm:.2f} mm (rms)".replace("$", r"\$")
+        axes.set_title(title, fontsize=9, color=INK)
+        axes.tick_params(labelsize=7)
+    marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)
+    return encoded(figure, suffix)
+
+
+def _home(made, rings, displacement) -> list[np.ndarray]:
+    """Rings of the sheet in the frame of the plan, as the fit found the one to lie on the other."""
+    fit = made.fit
+    c, s = math.cos(fit.turn_rad), math.sin(fit.turn_rad)
+    centre = np.array(fit.centre_mm)
+    back = np.array([[c, -s], [s, c]])
+    return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
+
+
+def _predicted(made, chosen: list[int]) -> list:
+    brush = made.brush
+    reach = max(brush.depth_range_mm[1], made.painted.deepest_mm + made.fit.height_mm)
+    brush = _core.read_brush(_core.write_brush(brush))
+    brush.depth_range_mm = (brush.depth_range_mm[0], reach)
+    passes = []
+    for k in chosen:
+        poses = np.array(made.painted.marks[k].poses_mm)
+        poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
+        passes.append(_core.Pass(made.painted.marks[k].stroke, poses))
+    marks = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
+    _core.trace_outlines(marks, brush)
+    return [one.outline_mm for one in marks.passes]

@@ -1,0 +1,277 @@
+"""Measurements of a brush, from JSON or a table: see docs/calibration.md. Lengths in mm, angles in degrees."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from ..errors import Error
+
+FORMAT = "brushsvg/measurements"
+LONGEST_MM = 1000.0
+SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
+# Kind -> the numbers of one row, beside depth_mm. Those in _READINGS can stand in a table as value_mm.
+KINDS = {
+    "lag": ("value_mm",),
+    "tip_gap": ("value_mm",),
+    "tip_to_widest": ("value_mm",),
+    "half_width": ("value_mm",),
+    "width": ("value_mm",),
+    "angular": ("value_mm",),
+    "side_view": ("value_mm",),
+    "straight": ("path_mm", "distance_mm"),
+    "angles": ("alpha0_deg",),
+}
+_SERIES = ("s_mm", "alpha_deg", "beta_deg")
+_TABLE = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
+_ABOUT = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
+_PAINTED = ("plan", "marks", "expected")  # whole marks: see painted
+# How far off a sheet and its marks may be, as standard deviations a person can say.
+EXPECTED = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measurement at a depth: its numbers by name, series as tuples; where it stands in the file."""
+
+    kind: str
+    where: str
+    depth_mm: float
+    numbers: dict
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """What was measured, by kind; name, depth range and speed where the file says them."""
+
+    rows: dict[str, list[Row]]
+    name: str = ""
+    about: str = ""
+    depth_range_mm: tuple[float, float] | None = None
+    max_speed_mm_s: float = 25.0
+    depths_mm: list[float] = field(default_factory=list)
+    plan: str | dict | None = None  # of the marks: a path, or what stands in a plan.json
+    marks: str | list | None = None
+    expected: dict = field(default_factory=dict)
+
+
+def read_measurements(data: bytes, suffix: str) -> Measurements:
+    """Error names the row or key. suffix: .json or .csv."""
+    text = data.decode("utf-8-sig", "replace")
+    found = _read_table(text) if suffix == ".csv" else _read_json(text)
+    if found.marks is not None:
+        return found
+    depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
+    if not depths:
+        raise Error("there is no measurement in it")
+    if depths[-1] <= SHALLOWEST_MM:
+        raise Error(
+            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres", "depth_mm"
+        )
+    found.depths_mm.extend(depths)
+    return found
+
+
+def read_widths(text: str) -> list[tuple[float, float]]:
+    """(depth, width) pairs in mm of a table with the columns depth_mm and width_mm. Error names the line."""
+    pairs = []
+    for where, row in _table_rows(text, ("depth_mm", "width_mm"), numbers=("depth_mm", "width_mm")):
+        for name, value in row.items():
+            if not 0 < value <= LONGEST_MM:
+                raise Error(
+                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm", f"{where}, {name}", value
+                )
+        pairs.append((row["depth_mm"], row["width_mm"]))
+    return pairs
+
+
+def _read_table(text: str) -> Measurements:
+    rows: dict[str, list[Row]] = {}
+    for where, row in _table_rows(text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")):
+        kind = row.pop("kind")
+        if kind not in _TABLE:
+            raise Error(
+                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}", where
+            )
+        rows.setdefault(kind, []).append(_row(kind, row, where))
+    return Measurements(rows)
+
+
+def _table_rows(
+    text: str, columns: tuple[str, ...], numbers: tuple[str, ...]
+) -> list[tuple[str, dict[str, str | float]]]:
+    """(line, cells of these columns) of a table, some of them numbers, whose first line names its columns. Between
+    cells stand commas, semicolons or tabs, in numbers points or commas. Error for whatever could be read in two ways.
+    """
+    try:
+        table = _table(text.removeprefix("\ufeff"), columns)
+        rows = []
+        for line in table:
+            where = f"line {table.line_num}"
+            _refuse_surplus(line, where, table.reader.dialect.delimiter)
+            if any((line[name] or "").strip() for name in table.fieldnames):
+                rows.append((where, {name: (line[name] or "").strip() for name in columns}))
+    except csv.Error as problem:
+        raise Error(f"this is not a table: {problem}") from None
+    told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
+    for where, cell in told:
+        if not _NUMBER.fullmatch(cell):
+            raise Error(f"{cell!r} is not a number", where)
+    points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
+    if points and commas:
+        raise Error(
+            f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
+            "numbers with a point",
+            commas[0][0],
+        )
+    return [
+        (where, row | {name: float(row[name].replace(",", ".")) for name in numbers}) for where, row in rows
+    ]
+
+
+# No thousands: the range of lengths ends there, so 1,234 and 1.234 can only mean little more than 1.
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:nan|[+-]?inf)")
+_SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+
+
+def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
+    """The table, read with the separator that finds these columns in the first line."""
+    tables = [csv.DictReader(io.StringIO(text), delimiter=separator) for separator in _SEPARATORS]
+    for table in tables:
+        table.fieldnames = [name.strip() for name in table.fieldnames or ()]
+    missing = [[name for name in columns if name not in table.fieldnames] for table in tables]
+    least = min(missing, key=len)
+    if least:
+        raise Error(
+            f"the table needs a first line with {','.join(columns)}, or with semicolons or tabs for the commas; "
+            f"it lacks {' and '.join(least)}"
+        )
+    found = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
+    if len(found) > 1:
+        both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in found)
+        raise Error(f"its columns could be separated by {both}: write one of them", "line 1")
+    names = found[0].fieldnames
+    if twice := [name for name in names if name and names.count(name) > 1]:
+        raise Error(f"the column {twice[0]} stands twice", "line 1")
+    return found[0]
+
+
+def _refuse_surplus(line: dict, where: str, separator: str) -> None:
+    """Error for a row with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
+    if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
+        advice = "numbers are written with a point, as in 4.6, or semicolons stand between columns"
+        raise Error(
+            f"{surplus[0]!r} stands beyond the columns of the first line"
+            + (f": {advice}" if separator == "," else ""),
+            where,
+        )
+
+
+def _read_json(text: str) -> Measurements:
+    try:
+        content = json.loads(text, object_pairs_hook=_once)
+    except Error:
+        raise
+    except (ValueError, RecursionError) as problem:
+        raise Error(f"this is not valid JSON: {problem}") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise Error(f'the file does not say "format": "{FORMAT}"', "format")
+    if content.get("version") != 1:
+        raise Error(f"version {content.get('version')} of {FORMAT} is not known; known is 1", "version")
+    if unknown := [key for key in content if key not in (*_ABOUT, *_PAINTED)]:
+        raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0])
+    rows = {}
+    for kind in KINDS:
+        listed = content.get(kind, [])
+        if not isinstance(listed, list) or not all(isinstance(row, dict) for row in listed):
+            raise Error("this must be a list of objects", kind)
+        if listed:
+            rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
+    name, about = content.get("name", ""), content.get("about", "")
+    if not isinstance(name, str) or not isinstance(about, str):
+        raise Error("name and about must be text", "name")
+    span = content.get("depth_range_mm")
+    if span is not None:
+        if not isinstance(span, list) or len(span) != 2:
+            raise Error("this must be two numbers, the least and the greatest depth", "depth_range_mm")
+        span = tuple(_number(value, "depth_range_mm") for value in span)
+        if not 0 <= span[0] < span[1] <= LONGEST_MM:
+            raise Error(
+                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
+            )
+    speed = _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    if "marks" not in content:
+        if lost := [key for key in _PAINTED if key in content]:
+            raise Error("this says something of marks, and there are none", lost[0])
+        return Measurements(rows, name, about, span, speed)
+    if rows:
+        raise Error(
+            "marks tell what the other kinds tell, and are fitted alone: leave these out, or make two files",
+            next(iter(rows)),
+        )
+    plan, marks = content.get("plan"), content["marks"]
+    return Measurements(
+        rows, name, about, span, speed, [], plan, marks, _expected(content.get("expected", {}))
+    )
+
+
+def _expected(given) -> dict:
+    if not isinstance(given, dict):
+        raise Error("this must be an object", "expected")
+    if unknown := [key for key in given if key not in EXPECTED]:
+        raise Error(f"this is not known; known are {', '.join(EXPECTED)}", f"expected.{unknown[0]}")
+    out = {key: _number(value, f"expected.{key}") for key, value in given.items()}
+    for key, value in out.items():
+        if not 0 <= value <= 30:
+            raise Error(f"{value:g} is outside the range [0, 30]", f"expected.{key}", value)
+    return out
+
+
+def _row(kind: str, row: dict, where: str) -> Row:
+    names = ("depth_mm", *KINDS[kind])
+    series = _SERIES if kind == "angles" else ()
+    if unknown := [key for key in row if key not in (*names, *series, "note")]:
+        raise Error(
+            f"this is not known here; known are {', '.join((*names, *series, 'note'))}",
+            f"{where}.{unknown[0]}",
+        )
+    numbers = {}
+    for name in names:
+        if name not in row:
+            raise Error(f"the key {name} is missing", where)
+        numbers[name] = _number(row[name], f"{where}.{name}")
+    for name in series:
+        values = row.get(name, [] if name == "beta_deg" else None)
+        if not isinstance(values, list):
+            raise Error("this must be a list of numbers", f"{where}.{name}")
+        numbers[name] = tuple(_number(value, f"{where}.{name}[{i}]") for i, value in enumerate(values))
+    depth = numbers.pop("depth_mm")
+    if not 0 < depth <= LONGEST_MM:
+        raise Error(f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, depth)
+    for name, value in numbers.items():
+        if name.endswith("_mm") and not isinstance(value, tuple) and abs(value) > LONGEST_MM:
+            raise Error(
+                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
+            )
+    return Row(kind, where, depth, numbers)
+
+
+def _number(value, where: str) -> float:
+    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
+        with suppress(OverflowError):  # an integer beyond all floats
+            return float(value)
+    raise Error(f"{value!r:.24} is not a finite number", where)
+
+
+def _once(pairs: list[tuple[str, object]]) -> dict:
+    """An object; Error for a key that stands twice, of which one would be lost."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise Error("the key stands twice", next(name for name in names if names.count(name) > 1))
+    return found

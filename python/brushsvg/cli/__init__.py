@@ -1,0 +1,100 @@
+"""The command: runs what was typed; whatever happens becomes lines on stderr and an exit status.
+
+Nothing is imported before main runs, so that from its first moment on Ctrl-C leaves no traceback.
+"""
+
+from __future__ import annotations
+
+import sys
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run one command; the exit status: 0 done, 1 refused, 2 wrong usage, 130 interrupted."""
+    interrupts = _Interrupts()
+    try:
+        interrupts.count()
+        return _with_streams(argv, interrupts)
+    except KeyboardInterrupt:
+        pass
+    except Exception:
+        if not interrupts.seen:
+            raise
+    finally:
+        interrupts.count_no_more()
+    from .console import say
+
+    say("interrupted")
+    return 130
+
+
+class _Interrupts:
+    """Ctrl-C while a module is being imported can come out as another error: seen says that there was one."""
+
+    seen = 0
+    before = None
+
+    def count(self) -> None:
+        import signal
+        from contextlib import suppress
+
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            with suppress(ValueError):  # only the main thread may, and only it is interrupted
+                self.before = signal.signal(signal.SIGINT, self._raise)
+
+    def count_no_more(self) -> None:
+        if self.before is not None:
+            import signal
+
+            signal.signal(signal.SIGINT, self.before)
+
+    def _raise(self, *_) -> None:
+        self.seen += 1
+        raise KeyboardInterrupt
+
+
+def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    """Whatever letters a terminal knows, and whether or not anybody takes what is printed."""
+    from .console import let_go, say
+
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        status = _run(argv, interrupts)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        return status
+    except OSError as problem:
+        if sys.stdout is not None:
+            let_go(sys.stdout)
+        if isinstance(problem, BrokenPipeError):
+            return 0  # whoever reads has seen enough
+        say(problem.filename or "standard output", (problem.strerror or str(problem)).lower())
+        return 1
+
+
+def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    from .arguments import parse
+    from .console import RefusedError, say
+
+    file = ""
+    try:
+        args = parse(argv)
+        file = getattr(args, "input", "")
+        from . import commands
+
+        getattr(commands, args.run)(args)
+    except SystemExit as leaving:
+        return leaving.code
+    except RefusedError as refused:
+        for line in refused.lines:
+            say(*line)
+        return 1
+    except OSError:
+        raise
+    except Exception as mistake:
+        if interrupts.seen:
+            raise
+        say(file, f"this should not happen, please report it: {type(mistake).__name__} {mistake}")
+        return 1
+    return 0

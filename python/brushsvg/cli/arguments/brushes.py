@@ -1,0 +1,102 @@
+"""The commands about brushes: chart, calibrate, brush."""
+
+from __future__ import annotations
+
+from ...drawing import READERS
+from . import values
+from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
+from .operands import PICTURES, PROGRAMS, check_files
+
+
+def add_chart(commands) -> None:
+    chart = commands.add_parser("chart", help="make the strokes that a brush is calibrated from")
+    chart.add_argument("output", metavar="OUT", help=plans_and_programs())
+    chart.add_argument("--brush", metavar="NAME|FILE", help="the nearest that is known; default: round-6")
+    chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
+    chart.add_argument("--drawing", metavar="FILE", help="whose brush and cell are meant where none is typed")
+    chart.add_argument(
+        "--sheet",
+        metavar="WxH",
+        type=values.sheet,
+        default=values.SHEETS_MM["a4"],
+        help=f"or {', '.join(values.SHEETS_MM)}; default: a4",
+    )
+    chart.add_argument(
+        "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
+    )
+    chart.add_argument(
+        "--page", metavar="FILE", help="also write the page to print, markers and labels (.svg)"
+    )
+    chart.add_argument("--chart", metavar="FILE", help="also write what the painted chart is read by (.json)")
+    chart.add_argument(
+        "--noise",
+        metavar="MM",
+        type=values.noise,
+        default=0.1,
+        help="how exactly an edge will be seen, for the intervals to expect; default: 0.1",
+    )
+    add_z_offset(chart)
+    add_quiet(chart)
+    chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
+
+
+def _check_chart(args) -> None:
+    written = [(args.output, (".json", *PROGRAMS)), (args.page, (".svg",)), (args.chart, (".json",))]
+    check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
+
+
+def add_calibrate(commands) -> None:
+    fit = commands.add_parser("calibrate", help="make a brush of what was measured")
+    fit.add_argument("input", metavar="MEASUREMENTS", help="what was measured (.json .csv)")
+    fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
+    fit.add_argument(
+        "--norm", choices=("squares", "absolute"), default="squares", help="what is least; default: squares"
+    )
+    fit.add_argument(
+        "--total", action="store_true", help="total least squares for series of angles; else plain ones"
+    )
+    fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
+    add_quiet(fit)
+    fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
+
+
+def _check_calibrate(args) -> None:
+    check_files(args, [(args.input, (".json", ".csv"))], [(args.output, (".json",)), (args.plot, PICTURES)])
+
+
+def add_brush(commands) -> None:
+    whats = add_looks(commands, "brush", "look at brushes", "laws and ranges", "brush.json")
+    new = whats.add_parser("new", help="write a brush file from a few numbers")
+    new.add_argument("name", metavar="NAME", help="of the brush; writes NAME.json, or the path given")
+    new.add_argument(
+        "--lag", metavar="MM", type=values.lag, required=True, help="how far it trails the tool; 0 for a pen"
+    )
+    new.add_argument(
+        "--width-at",
+        metavar="DEPTH=WIDTH",
+        action="append",
+        type=values.width_at,
+        default=[],
+        help="how wide it paints when pressed so deep, in mm; as often as measured",
+    )
+    new.add_argument("--widths", metavar="FILE", help="the same as a table, depth_mm,width_mm (.csv)")
+    new.add_argument(
+        "--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width"
+    )
+    new.add_argument("--speed", metavar="MM/S", type=values.speed, default=25.0, help="at most; default: 25")
+    add_quiet(new)
+    new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
+    plot = whats.add_parser("plot", help="draw the laws, how sure they are, and the footprints")
+    plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
+    plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
+    add_quiet(plot)
+    plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
+
+
+def _check_brush_new(args) -> None:
+    if not (args.width_at or args.widths):
+        args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
+
+
+def _check_brush_plot(args) -> None:
+    check_files(args, [(args.input, None)], [(args.output, PICTURES)])

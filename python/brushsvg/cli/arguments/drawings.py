@@ -1,0 +1,143 @@
+"""The commands that start from a drawing: convert, predict, report, animate, import, text."""
+
+from __future__ import annotations
+
+from ...drawing import READERS
+from . import values
+from .flags import add_choices, add_input, add_job, add_layout, add_quiet, plans_and_programs
+from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files, suffix_of
+
+
+def add_convert(commands) -> None:
+    convert = commands.add_parser("convert", help="make a plan or robot program of a drawing or plan")
+    add_input(convert)
+    convert.add_argument("output", metavar="OUT", help=plans_and_programs())
+    add_choices(convert)
+    add_job(convert)
+    convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
+    convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
+    add_quiet(convert)
+    convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
+
+
+def _check_convert(args) -> None:
+    check_drawing(args)
+    written = [
+        (args.output, (".json", *PROGRAMS)),
+        (args.preview, PICTURES),
+        (args.report, (".txt", ".json")),
+    ]
+    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], written)
+
+
+def add_predict(commands) -> None:
+    predict = commands.add_parser("predict", help="show what the brush will paint")
+    add_input(predict)
+    predict.add_argument("output", metavar="OUT", help="a picture (.png .svg) or marks (.json)")
+    add_choices(predict)
+    predict.add_argument(
+        "--band",
+        action="store_true",
+        help="also where the edges lie with 95 %%, as far as the brush is known",
+    )
+    add_quiet(predict)
+    predict.set_defaults(run="predict_file", parser=predict, check=_check_predict)
+
+
+def _check_predict(args) -> None:
+    check_drawing(args)
+    if args.band and suffix_of(args.output) == ".json":
+        args.parser.error("--band is for pictures (.svg .png)")
+    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], [(args.output, (*PICTURES, ".json"))])
+
+
+def add_report(commands) -> None:
+    report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
+    add_input(report)
+    add_choices(report, several_brushes=True)
+    report.add_argument("--all-brushes", action="store_true", help="one line for each brush, the best first")
+    report.add_argument(
+        "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"
+    )
+    report.add_argument("--json", action="store_true", help="as JSON")
+    add_quiet(report)
+    report.set_defaults(run="report_file", parser=report, check=_check_report)
+
+
+def _check_report(args) -> None:
+    check_drawing(args)
+    if len(args.brush or ()) > 1 and not args.all_brushes:
+        args.parser.error("--brush is given more than once, which needs --all-brushes")
+    if args.all_brushes and args.preview:
+        args.parser.error("--preview shows one brush, not --all-brushes")
+    if args.all_brushes and suffix_of(args.input) == ".json":
+        args.parser.error("--all-brushes needs a drawing: a plan is made for one brush")
+    if args.preview and suffix_of(args.input) == ".json":
+        args.parser.error("--preview needs a drawing: a plan does not say what was wanted")
+    brushes = [(brush, None) for brush in args.brush or ()]
+    check_files(args, [(args.input, DRAWINGS), *brushes], [(args.preview, PICTURES)])
+
+
+def add_animate(commands) -> None:
+    animate = commands.add_parser("animate", help="make a page that plays tool and paint over time")
+    add_input(animate)
+    animate.add_argument("output", metavar="OUT", help="a page for any browser, without network (.html)")
+    add_choices(animate)
+    animate.add_argument(
+        "--speed",
+        metavar="FACTOR",
+        type=values.speed,
+        default=1.0,
+        help="how much faster than the robot; default: 1",
+    )
+    add_quiet(animate)
+    animate.set_defaults(run="animate_file", parser=animate, check=_check_animate)
+
+
+def _check_animate(args) -> None:
+    check_drawing(args)
+    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], [(args.output, (".html",))])
+
+
+def add_import(commands) -> None:
+    look = commands.add_parser("import", help="show what was understood of a drawing")
+    look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
+    look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
+    add_layout(look)
+    look.add_argument(
+        "--editable",
+        action="store_true",
+        help="the strokes as lines with a width, to go on drawing with (.svg)",
+    )
+    add_quiet(look)
+    look.set_defaults(run="import_file", parser=look, check=_check_import, brush=None, lag=None)
+
+
+def _check_import(args) -> None:
+    check_drawing(args)
+    if args.editable and suffix_of(args.output) != ".svg":
+        args.parser.error("--editable writes an SVG")
+    check_files(args, [(args.input, tuple(READERS))], [(args.output, PICTURES)])
+
+
+def add_text(commands) -> None:
+    text = commands.add_parser("text", help="set a text in a font, as a drawing")
+    text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
+    text.add_argument("output", metavar="OUT", help="a drawing (.svg)")
+    text.add_argument(
+        "--font", metavar="FILE", required=True, help="an SVG font of single lines, or TrueType, OpenType"
+    )
+    text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="of the em; default: 20")
+    text.add_argument(
+        "--width", metavar="MM", type=values.width, help="of the lines of an SVG font; default: 1"
+    )
+    text.add_argument(
+        "--sheet", metavar="WxH", type=values.size, help="the sheet; default: the text and 20 mm around it"
+    )
+    add_quiet(text)
+    text.set_defaults(run="text_file", parser=text, check=_check_text)
+
+
+def _check_text(args) -> None:
+    check_extension(args, args.output, (".svg",))
+    check_files(args, [(args.font, None)], [(args.output, (".svg",))])

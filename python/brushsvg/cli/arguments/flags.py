@@ -1,0 +1,130 @@
+"""Operands and flags that several commands have."""
+
+from __future__ import annotations
+
+import argparse
+
+from ...drawing import READERS
+from ...machine.posts import POSTS
+from . import values
+
+
+def programs() -> str:
+    """The extensions of programs, each with the language it stands for."""
+    titles: dict[str, str] = {}
+    for post in POSTS.values():  # the shortest title of those that share an extension
+        name = " ".join(post.extensions)
+        titles[name] = min(titles.get(name, post.title), post.title, key=len)
+    return " or ".join(f"{title} ({name})" for name, title in titles.items())
+
+
+def plans_and_programs() -> str:
+    return f"a plan (.json) or {programs()}"
+
+
+def add_looks(commands, kind: str, about: str, told: str, file: str):
+    """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
+    whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
+    whats.add_parser("list", help="name those that come along").set_defaults(run=f"{kind}_list")
+    show = whats.add_parser("show", help=f"{told} of one")
+    show.add_argument("input", metavar="NAME", help=f"a {kind} that comes along, or a {file}")
+    show.set_defaults(run=f"{kind}_show")
+    check = whats.add_parser("check", help=f"say whether a {kind} file can be used")
+    check.add_argument("input", metavar="FILE", help=f"a {file}")
+    check.set_defaults(run=f"{kind}_check")
+    return whats
+
+
+def add_job(command: argparse.ArgumentParser) -> None:
+    add = command.add_argument
+    add_z_offset(command)
+    add(
+        "--from-stroke", metavar="N", type=values.count, default=1, help="go on from this stroke of a program"
+    )
+    add(
+        "--order", choices=("drawn", "nearest"), default="drawn", help="of strokes in a layer; default: drawn"
+    )
+
+
+def add_z_offset(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--z-offset",
+        metavar="MM",
+        type=values.height,
+        default=0.0,
+        help="the paper lies so much higher than thought",
+    )
+
+
+def add_quiet(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--quiet", action="store_true", help="do not say what was written; warnings stay")
+
+
+def add_input(command: argparse.ArgumentParser) -> None:
+    command.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)}) or plan (.json)")
+
+
+def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False) -> None:
+    add = command.add_argument
+    default = "default: round-6; for a plan, the brush it names"
+    if several_brushes:
+        add("--brush", metavar="NAME|FILE", action="append", help=f"{default}; with --all-brushes any number")
+    else:
+        add("--brush", metavar="NAME|FILE", help=default)
+    add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
+    add_layout(command)
+    add_wide(command)
+    add("--compensation", choices=("none", "constant", "closed", "refined"), help="default: closed")
+    add(
+        "--lag",
+        metavar="MM",
+        type=values.lag,
+        help="for constant; default: that at the stroke's median depth",
+    )
+    add("--tolerance", metavar="MM", type=values.tolerance, help="of the painted middle line; default: 0.05")
+    add("--lenient", action="store_true", help="take what is sound of damaged geometry")
+
+
+def add_wide(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--wide",
+        choices=("clamp", "passes", "refuse"),
+        help="filled outlines wider than the brush: its greatest width, several passes, or no; default: clamp",
+    )
+
+
+def add_layout(command: argparse.ArgumentParser) -> None:
+    add = command.add_argument
+    add(
+        "--sheet",
+        metavar="WxH",
+        type=values.size,
+        help="the sheet in mm or with units; default: the drawing's",
+    )
+    add("--units", choices=("mm", "in"), help="of a drawing that does not say them (DXF)")
+    add(
+        "--layer",
+        metavar="NAME",
+        action="append",
+        type=values.words,
+        help="paint this layer; several: more than once",
+    )
+    add(
+        "--select",
+        metavar="CSS",
+        type=values.words,
+        help="paint what this selector names and what lies in it (SVG)",
+    )
+    add("--width", metavar="MM", type=values.width, help="of all strokes, whatever the drawing says")
+    add(
+        "--as",
+        dest="paths_as",
+        choices=("stroke", "outline"),
+        help="paths are lines, fills count as none; or outlines of shapes, strokes count as none; default: as drawn",
+    )
+    size = command.add_mutually_exclusive_group()
+    size.add_argument(
+        "--fit", metavar="WxH", type=values.size, help="scale the marks to this size, centred on the sheet"
+    )
+    size.add_argument("--scale", metavar="FACTOR", type=values.scale, help="scale the drawing, widths too")
+    add("--origin", metavar="X,Y", type=values.point, help="where the lower left corner of the marks lies")

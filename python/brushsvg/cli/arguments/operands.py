@@ -1,0 +1,43 @@
+"""Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
+
+from __future__ import annotations
+
+import os
+
+from ...drawing import READERS
+from ...machine.posts import POSTS
+
+DRAWINGS = (*READERS, ".json")
+PROGRAMS = tuple(dict.fromkeys(extension for post in POSTS.values() for extension in post.extensions))
+PICTURES = (".png", ".svg")
+
+
+def suffix_of(path: str) -> str:
+    return os.path.splitext(path)[1].lower()
+
+
+def check_drawing(args) -> None:
+    """Flags that need a drawing of another kind, or another flag."""
+    if args.units and suffix_of(args.input) in (".svg", ".svgz"):
+        args.parser.error("--units is for drawings that do not say them; an SVG does")
+    if args.select and suffix_of(args.input) == ".dxf":
+        args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
+    if args.lag is not None and args.compensation != "constant":
+        args.parser.error("--lag needs --compensation constant")
+
+
+def check_files(args, read, written) -> None:
+    """read, written: (path or None, the extensions it may have or None for any). No file is written that is another."""
+    for path, suffixes in (*read, *written):
+        if path is not None and suffixes:
+            check_extension(args, path, suffixes)
+    taken = {os.path.realpath(path) for path, _ in read if path is not None}
+    for path in (path for path, _ in written if path is not None):
+        if os.path.realpath(path) in taken:
+            args.parser.error(f"{path} cannot be two files at once")
+        taken.add(os.path.realpath(path))
+
+
+def check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
+    if suffix_of(path) not in suffixes:
+        args.parser.error(f"{path} does not end in {' or '.join(suffixes)}")

@@ -1,0 +1,128 @@
+"""What may be typed behind a flag, as a value within its range: types for argparse."""
+
+from __future__ import annotations
+
+import argparse
+
+from ...errors import Error
+
+SHEETS_MM = {"a3": (297.0, 420.0), "a4": (210.0, 297.0), "a5": (148.0, 210.0), "letter": (215.9, 279.4)}
+
+
+def size(text: str) -> tuple[float, float]:
+    from ...units import size_mm
+
+    return _read(size_mm, text)
+
+
+def noise(text: str) -> float:
+    return _length(text, 0.001, 10.0)
+
+
+def sheet(text: str) -> tuple[float, float]:
+    return SHEETS_MM.get(text.lower()) or size(text)
+
+
+def lag(text: str) -> float:
+    return _length(text, 0.0, 1000.0)
+
+
+def tolerance(text: str) -> float:
+    return _length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
+
+
+def words(text: str) -> str:
+    if not text.strip():
+        raise argparse.ArgumentTypeError("it is empty")
+    return text
+
+
+def height(text: str) -> float:
+    return _length(text, -20.0, 20.0)
+
+
+def step(text: str) -> float:
+    return _length(text, 0.01, 5.0)
+
+
+def count(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) < 10**8):
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a number from 1 on")
+    return int(text)
+
+
+def width_at(text: str) -> tuple[float, float]:
+    depth, equals, at_depth = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(
+            f"{text[:24]!r} is not a depth and its width; write for example 3=2.5"
+        )
+    return width(depth), width(at_depth)
+
+
+def width(text: str) -> float:
+    return _length(text, 0.001, 1000.0)
+
+
+def scale(text: str) -> float:
+    from ...units import number
+
+    try:
+        value = number(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    except Error:
+        raise argparse.ArgumentTypeError(
+            f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
+        ) from None
+    if not 1e-4 <= value <= 1e4:
+        raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.0001, 10000]")
+    return value
+
+
+def speed(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a factor; write for example 5") from None
+    if not 0.1 <= value <= 1000:
+        raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.1, 1000]")
+    return value
+
+
+def point(text: str) -> tuple[float, float]:
+    from ...units import length_mm
+
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 20,15 or 2cm,1in")
+    x, y = (_read(length_mm, part) for part in parts)
+    if not max(abs(x), abs(y)) <= 1e6:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e6 mm")
+    return x, y
+
+
+def point3(text: str) -> tuple[float, float, float]:
+    from ...units import length_mm
+
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 120.5,-300,42")
+    x, y, z = (_read(length_mm, part) for part in parts)
+    if not max(abs(x), abs(y), abs(z)) <= 1e5:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e5 mm")
+    return x, y, z
+
+
+def _length(text: str, least: float, greatest: float) -> float:
+    from ...units import length_mm
+
+    value = _read(length_mm, text)
+    if not least <= value <= greatest:
+        raise argparse.ArgumentTypeError(f"{value:g} mm is outside the range [{least:g}, {greatest:g}] mm")
+    return value
+
+
+def _read(reader, text: str):
+    try:
+        return reader(text)
+    except Error as problem:
+        raise argparse.ArgumentTypeError(str(problem)) from None

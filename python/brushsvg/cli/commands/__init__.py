@@ -1,0 +1,40 @@
+"""What the commands do, a file for each: call the steps in order, warn, refuse, write everything or nothing.
+
+An import inside a function is of what only that command needs: the others start without it.
+"""
+
+from .brush import brush_check, brush_list, brush_new, brush_plot, brush_show
+from .calibrate import calibrate_file
+from .cell import cell_check, cell_list, cell_new, cell_show
+from .chart import chart_file
+from .check import check_file
+from .convert import convert_file
+from .plugin import install_plugin
+from .report import report_file
+from .setup import border_file, height_file
+from .show import animate_file, import_file, predict_file
+from .text import text_file
+
+__all__ = [
+    "animate_file",
+    "border_file",
+    "brush_check",
+    "brush_list",
+    "brush_new",
+    "brush_plot",
+    "brush_show",
+    "calibrate_file",
+    "cell_check",
+    "cell_list",
+    "cell_new",
+    "cell_show",
+    "chart_file",
+    "check_file",
+    "convert_file",
+    "height_file",
+    "import_file",
+    "install_plugin",
+    "predict_file",
+    "report_file",
+    "text_file",
+]

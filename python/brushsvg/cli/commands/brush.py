@@ -1,0 +1,70 @@
+"""brushsvg brush: list, show, check, new, plot."""
+
+from __future__ import annotations
+
+import os
+
+from ..._core import remarks, write_brush
+from ...brush.describe import LAWS, one_line, page, reach
+from ...brush.library import brush_names, find_brush
+from ...errors import Error
+from ...files import read_bytes
+from ..console import RefusedError, about, tell, warn
+from .outputs import check_places, suffix_of, tell_list, write
+
+
+def brush_list(_args) -> None:
+    tell_list(brush_names(), lambda name: one_line(find_brush(name)))
+
+
+def brush_show(args) -> None:
+    with about(args.input):
+        tell(page(find_brush(args.input)) + "\n")
+
+
+def brush_check(args) -> None:
+    with about(args.input):
+        brush = find_brush(args.input)
+        odd = remarks(brush)
+    warn(args.input, odd)
+    tell(f"{args.input}: brush {brush.name} can be used\n")
+
+
+def brush_new(args) -> None:
+    from ...calibration.from_widths import new_brush
+    from ...calibration.measurements import read_widths
+
+    path = args.name if suffix_of(args.name) == ".json" else f"{args.name}.json"
+    name = os.path.splitext(os.path.basename(path))[0]
+    if not os.path.basename(args.name).strip(". "):
+        raise RefusedError([(args.name, "", "a brush needs a name, as in brushsvg brush new mine")])
+    check_places(path)
+    if os.path.exists(path):
+        raise RefusedError([(path, "", "the file is there already: it might be somebody's brush")])
+    widths = list(args.width_at)
+    if args.widths:
+        with about(args.widths):
+            widths += read_widths(read_bytes(args.widths).decode("utf-8", "replace"))
+    with about(path):
+        if name in brush_names():
+            raise Error(f"a brush named {name} comes along: give yours another name", "name")
+        brush = new_brush(name, args.lag, widths, args.depth_max, args.speed)
+        text = write_brush(brush)
+    write(args, {path: text})
+    tell(f"{path}: {reach(brush)}\n")
+    assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
+    deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
+    if deepest > measured and "half_width" not in assumed:
+        assumed.append(
+            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest):.1f} mm at {deepest:g} mm)"
+        )
+    tell(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
+
+
+def brush_plot(args) -> None:
+    from ...brush.plot import brush_picture
+
+    check_places(args.output)
+    with about(args.input):
+        picture = brush_picture(find_brush(args.input), suffix_of(args.output))
+    write(args, {args.output: picture})

@@ -1,0 +1,44 @@
+"""brushsvg calibrate: a brush of what was measured."""
+
+from __future__ import annotations
+
+import os
+
+from ..._core import remarks, write_brush
+from ...files import read_bytes
+from ..console import about, tell, warn
+from .outputs import check_places, suffix_of, write
+
+
+def calibrate_file(args) -> None:
+    from ...calibration.from_measurements import calibrate
+    from ...calibration.law_report import report, report_picture
+    from ...calibration.measurements import read_measurements
+
+    check_places(args.output, args.plot)
+    with about(args.input):
+        measured = read_measurements(read_bytes(args.input), suffix_of(args.input))
+        name = measured.name or os.path.splitext(os.path.basename(args.output))[0]
+        if measured.marks is not None:
+            made, report, report_picture = _from_marks(args, measured, name)
+        else:
+            made = calibrate(measured, name, args.norm == "absolute", args.total)
+        files = {args.output: write_brush(made.brush)}
+        if args.plot:
+            files[args.plot] = report_picture(made, suffix_of(args.plot))
+    warn(args.output, remarks(made.brush))
+    write(args, files)
+    tell(report(made))
+
+
+def _from_marks(args, measured, name: str):
+    """A brush from painted marks, and what tells of it in words and as a picture."""
+    from ...calibration.from_marks import calibrate_marks, options_for
+    from ...calibration.mark_input import read_painted
+    from ...calibration.mark_report import report, report_picture
+
+    folder = os.path.dirname(args.input)
+    painted = read_painted(measured.plan, measured.marks, lambda path: read_bytes(os.path.join(folder, path)))
+    options = options_for(measured.expected)
+    made = calibrate_marks(painted, name, measured.depth_range_mm, measured.max_speed_mm_s, options)
+    return made, report, report_picture

@@ -1,0 +1,163 @@
+"""brushsvg check: a program read back, simulated, and held against what it should paint."""
+
+from __future__ import annotations
+
+import json
+
+from ...brush.library import brush_names, find_brush
+from ...drawing import settings_in
+from ...errors import Error
+from ...evaluation import report
+from ...files import read_bytes
+from ...machine import preflight
+from ...machine.cell import Cell
+from ...machine.cell_file import cell_names, find_cell
+from ...machine.motion import duration_s
+from ...pipeline import outputs, prediction, preparation
+from ...text_summary import folded
+from ...units import clock
+from ..console import RefusedError, about, stage, tell
+from .options import brush_of
+from .outputs import check_places, suffix_of, write
+from .prepare import prepare
+
+
+def check_file(args) -> None:
+    from ...verification import against_plan, against_regenerated, simulate_program
+    from ...verification.readback import read_program
+    from ...verification.readback.header import made as made_of
+
+    check_places(args.preview)
+    with about(args.program):
+        text = read_bytes(args.program).decode("latin-1")
+        made = made_of(text)
+        for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
+            if getattr(args, kind) is None and name not in names:
+                raise Error(
+                    f"the program names {kind} {name!r}, which does not come along: give --{kind} FILE"
+                )
+        cell = find_cell(args.cell if args.cell is not None else made.cell)
+        brush = brush_of(args) or find_brush(made.brush)
+        z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
+        read = read_program(text, suffix_of(args.program), cell)
+    if made.border_mm or made.heights_mm:
+        return _check_job(args, text, made, read, cell, brush, z_offset_mm)
+    work = _as_made(args, made, cell, brush) if args.input else None
+    cell = preflight.as_exact_as(cell, made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM)
+    with about(args.program):
+        sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
+        if sheet_mm is None:
+            raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
+        ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
+        problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
+        strokes, drawn, speeds = None, None, None
+        if work:
+            loads = preparation.in_loads(work, cell).plan
+            which, unlike = against_plan.with_plan(ran, loads, cell, made.first_stroke)
+            problems = problems + unlike
+            speeds = None if None in which else [loads.passes[k].speed_mm_s for k in which]
+            if work.strokes is not None:
+                whole = preparation.whole_strokes(work, loads)
+                strokes = None if None in which else [whole[k] for k in which]
+                drawn = work.strokes if made.first_stroke == 1 else None
+        told = against_regenerated.Told(*_told_by(made, work))
+        again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
+        changed = again and against_regenerated.differing_line(text, read, again, cell, speeds is not None)
+        problems = problems + ([("", changed)] if changed else [])
+        shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
+        if args.preview:
+            outlined = prediction.outlined(ran.marks, brush, stage)
+            picture = outputs.picture(suffix_of(args.preview), shown, outlined)
+        seconds = duration_s(again) if again else 0.0
+        figures = outputs.reported(shown, ran.marks, cell, drawn=drawn, seconds=seconds)
+        if args.preview:
+            write(args, {args.preview: picture}, len(shown.plan.passes), seconds, figures.total.overlap)
+        tell(report.as_text(".json" if args.json else ".txt", figures))
+    _refuse_or_allow(args, problems, work is None)
+
+
+def _told_by(made, work: preparation.Work | None) -> tuple[str, tuple[str, ...]]:
+    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as of a
+    program that was made of a plan."""
+    if (
+        work is None
+        or work.strokes is None
+        or not made.notes[:1]
+        or not made.notes[0].startswith("compensation")
+    ):
+        return made.title, made.notes
+    order = [note for note in made.notes if note.startswith("order")]
+    return work.title or "untitled", (*outputs.notes(work), *order)
+
+
+def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: float) -> None:
+    """A program before the first stroke: it paints no drawing, and says in its header all that it does."""
+    from ...verification import setup_programs
+
+    with about(args.program):
+        if args.preview:
+            raise Error("it paints no drawing: there is no picture of it")
+        if made.heights_mm and args.input:
+            raise Error("it finds the paper's height and paints no drawing: check it alone")
+        if made.sheet_mm is None:
+            raise Error("its header does not say how large the sheet is")
+    work = _as_made(args, made, cell, brush) if args.input else None
+    cell = preflight.as_exact_as(cell, made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM)
+    with about(args.program):
+        if made.border_mm:
+            left, bottom, right, top = made.border_mm
+            looked = setup_programs.look_at_border(
+                text, read, made, brush, cell, work.plan.sheet_mm if work else made.sheet_mm, z_offset_mm
+            )
+            problems = looked.problems + (_beside(made, work) if work else [])
+            does = f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
+        else:
+            looked = setup_programs.look_at_heights(text, read, made, brush, cell)
+            problems = looked.problems
+            highest, lowest, step = made.heights_mm
+            does = f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
+    if args.json:
+        told = {"job": "border" if made.border_mm else "height", "time_s": round(looked.time_s, 3)}
+        told |= {"border_mm": made.border_mm} if made.border_mm else {"heights_mm": made.heights_mm}
+        tell(json.dumps(told) + "\n")
+    else:
+        tell(f"{args.program}: {does}; takes about {clock(looked.time_s)}\n")
+    _refuse_or_allow(args, problems, work is None and made.border_mm)
+
+
+def _beside(made, work: preparation.Work) -> list[tuple[str, str]]:
+    """A sentence where an air run does not go round what a drawing's paint needs."""
+    from ...machine.setup_programs import around
+
+    marks = prediction.predict(work, outlines=False, stage=stage)
+    needed, found = around(preflight.bounds_mm(marks, work.brush)), made.border_mm
+    if max(abs(ours - theirs) for ours, theirs in zip(found, needed, strict=True)) <= STRAY_MM:
+        return []
+    place = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
+    sentence = (
+        f"the program goes round {place.format(*found)}, the drawing is painted within {place.format(*needed)}: it was "
+        "changed, or made with other flags or of another drawing"
+    )
+    return [("", sentence)]
+
+
+STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
+
+
+def _refuse_or_allow(args, problems: list[tuple[str, str]], is_alone: bool) -> None:
+    if problems:
+        raise RefusedError([(args.program, *problem) for problem in folded(problems)])
+    if not args.json:
+        known = "; without its drawing nobody can say whether it is the right one" if is_alone else ""
+        tell(f"{args.program}: nothing forbids to run it{known}\n")
+
+
+def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
+    """The drawing or plan that a program should paint, prepared as its header says."""
+    if suffix_of(args.input) != ".json":
+        args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
+        args.z_offset = made.z_offset_mm
+        with about(args.input):
+            args.wide = args.wide or settings_in(args.input).get("wide")
+    work = prepare(args, cell, brush)
+    return preparation.nearest_first(work) if made.nearest_first else work

@@ -1,0 +1,49 @@
+"""Where a command writes: places asked for before any work, all files or none."""
+
+from __future__ import annotations
+
+import os
+
+from ...files import write_files
+from ...units import clock
+from ..console import RefusedError, about, clear_stage, say, stage, tell
+
+
+def suffix_of(path: str | None) -> str:
+    return os.path.splitext(path or "")[1].lower()
+
+
+def check_places(*paths: str | None) -> None:
+    """Whether the outputs can be written, as far as that can be said before any work is done."""
+    for path in filter(None, paths):
+        folder = os.path.dirname(os.path.realpath(path))
+        reason = None
+        if os.path.isdir(path):
+            reason = "it is a directory"
+        elif not os.path.isdir(folder):
+            reason = "its directory does not exist"
+        elif not os.access(folder, os.W_OK | os.X_OK):
+            reason = "its directory is not writable"
+        if reason:
+            raise RefusedError([(path, "", f"the file cannot be written: {reason}")])
+
+
+def write(args, files, strokes: int | None = None, seconds: float | None = None, overlap=None) -> None:
+    """Write all files, and say so with what is known of them, unless --quiet."""
+    stage("writing")
+    with about(""):  # the error names the file
+        write_files(files)
+    clear_stage()
+    if args.quiet:
+        return
+    known = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
+    known += [] if seconds is None else [f"takes about {clock(seconds)}"]
+    known += [] if overlap is None else [f"overlap {overlap:.3f}"]
+    say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(known)])]))
+
+
+def tell_list(names: list[str], describe) -> None:
+    width = max(map(len, names))
+    for name in names:
+        with about(name):
+            tell(f"{name.ljust(width)}  {describe(name)}\n")

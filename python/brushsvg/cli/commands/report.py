@@ -1,0 +1,56 @@
+"""brushsvg report: how near the paint comes to the drawing, with one brush or with all."""
+
+from __future__ import annotations
+
+from ...brush.library import brush_names, find_brush
+from ...drawing import read_drawing
+from ...drawing.layout import arrange
+from ...evaluation import report
+from ...pipeline import comparison, outputs, preparation
+from ...text_summary import folded
+from ..console import RefusedError, about, stage, tell
+from .options import cell_of, layout_of, options_of, reading_of, settle
+from .outputs import check_places, suffix_of, write
+from .prepare import look
+
+
+def report_file(args) -> None:
+    check_places(args.preview)
+    if args.all_brushes:
+        return _all_brushes(args)
+    args.brush = args.brush[0] if args.brush else None
+    settle(args, args.input)
+    cell = cell_of(args)
+    work, marks, warnings, forbidden = look(
+        args, cell, outlines=suffix_of(args.preview) == ".svg", partly=True
+    )
+    with about(args.input):
+        stage("trying other sizes")
+        advice = comparison.advice(work)
+        figures = outputs.reported(work, marks, cell, warnings, advice=advice, forbidden=forbidden)
+        text = report.as_text(".json" if args.json else ".txt", figures)
+        if args.preview:
+            picture = outputs.misses_picture(suffix_of(args.preview), work, marks)
+            write(args, {args.preview: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
+    if work.plan.passes or args.json:
+        tell(text)
+    elif advice:
+        tell(advice + "\n")
+    if work.refused:
+        refused = folded((notice.where, notice.sentence) for notice in work.refused)
+        raise RefusedError([(args.input, *each) for each in refused])
+
+
+def _all_brushes(args) -> None:
+    given, args.brush = args.brush or [], preparation.DEFAULT_BRUSH  # whatever brush the drawing asks for
+    settle(args, args.input)
+    asked = [*brush_names(), *(name for name in given if name not in brush_names())]
+    brushes = []
+    for name in asked:
+        with about(name):
+            brushes.append(find_brush(name))
+    cell = cell_of(args)
+    with about(args.input):
+        suits = comparison.suits(args.input, options_of(args, cell), brushes, stage)
+        title = arrange(read_drawing(args.input, reading_of(args)), layout_of(args)).title
+        tell(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))

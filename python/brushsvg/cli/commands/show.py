@@ -1,0 +1,67 @@
+"""brushsvg predict, animate and import: what will be painted, and what was understood."""
+
+from __future__ import annotations
+
+from ...drawing import read_drawing
+from ...drawing.design import Notice
+from ...drawing.layout import arrange
+from ...errors import Error
+from ...pipeline import outputs
+from ...strokes.extraction import strokes as strokes_of
+from ..console import about, say, stage, warn
+from .options import cell_of, layout_of, reading_of, settle
+from .outputs import check_places, suffix_of, write
+from .prepare import look, seconds_of
+
+
+def predict_file(args) -> None:
+    check_places(args.output)
+    settle(args, args.input)
+    cell, suffix = cell_of(args), suffix_of(args.output)
+    outlines = suffix != ".png" or args.band
+    work, marks, *_ = look(args, cell, outlines=outlines, whole=suffix == ".json")
+    with about(args.input):
+        band = None
+        if args.band:
+            from ...evaluation.uncertainty import band as band_of
+
+            stage("finding how sure it is")
+            band = band_of(work.plan, work.brush, marks)
+            if not any(band.rings):
+                say(work.brush.name, band.words)
+        picture = outputs.picture(suffix_of(args.output), work, marks, band)
+    write(args, {args.output: picture}, len(work.plan.passes), seconds_of(work, cell))
+
+
+def animate_file(args) -> None:
+    check_places(args.output)
+    settle(args, args.input)
+    cell = cell_of(args)
+    work, marks, *_ = look(args, cell, outlines=True, in_loads=True)
+    with about(args.input):
+        page = outputs.played(work, marks, cell, args.speed)
+    write(args, {args.output: page}, len(work.plan.passes), seconds_of(work, cell))
+
+
+def import_file(args) -> None:
+    check_places(args.output)
+    with about(args.input):
+        stage("reading")
+        design = arrange(read_drawing(args.input, reading_of(args)), layout_of(args))
+        try:
+            strokes, notices = strokes_of(design, args.paths_as)
+        except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+            if args.editable:
+                raise
+            strokes, notices = [], [Notice(nothing.where, str(nothing))]
+        notices = [*design.notices, *notices]
+        warn(args.input, [(notice.where, notice.sentence) for notice in notices])
+        if args.editable:
+            from ...pictures.editable_svg import lines_svg
+
+            picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
+        else:
+            from ...pictures.overview import overview
+
+            picture = overview(suffix_of(args.output), design, strokes, notices)
+    write(args, {args.output: picture}, len(strokes))

@@ -1,0 +1,79 @@
+"""Drawings in, Design out: one format per file. READERS names them all."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..errors import Error
+from ..files import read_bytes
+
+if TYPE_CHECKING:
+    from .design import Design
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """What a reader is asked for.
+
+    sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
+    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG); lenient: take what
+    is sound of damaged geometry, with a notice for what is not.
+    """
+
+    sheet_mm: tuple[float, float] | None = None
+    units: str | None = None
+    select: str | None = None
+    lenient: bool = False
+
+
+AS_DRAWN = ReadOptions()
+
+
+def _svg(data: bytes, options: ReadOptions) -> Design:
+    from .svg import read_svg  # loaded for who reads, not for who only asks what can be read
+
+    return read_svg(data, options)
+
+
+def _dxf(data: bytes, options: ReadOptions) -> Design:
+    from .dxf import read_dxf
+
+    return read_dxf(data, options)
+
+
+def settings_in(path: str | os.PathLike, alone: bool = False) -> dict:
+    """Brush, cell, compensation, tolerance [mm] and wide that a drawing asks for, as far as it does.
+
+    Error if the file cannot be read; alone, where nothing else of it will be: also if it is no drawing.
+    """
+    if os.path.splitext(path)[1].lower() not in (".svg", ".svgz"):
+        if alone:
+            read_bytes(path)  # a DXF asks for nothing, but there should be one
+        return {}
+    from .svg import settings_of
+
+    return settings_of(read_bytes(path), alone)
+
+
+READERS = {".svg": _svg, ".svgz": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
+
+
+def read_drawing(path: str | os.PathLike, options: ReadOptions = AS_DRAWN) -> Design:
+    """The drawing in a file, its format chosen by extension.
+
+    Error if the file cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and
+    lenient is not asked for.
+    """
+    extension = os.path.splitext(path)[1]
+    reader = READERS.get(extension.lower())
+    if reader is None:
+        known = ", ".join(READERS)
+        raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
+    design = reader(read_bytes(path), options)
+    if not options.lenient:
+        for notice in design.notices:
+            if notice.damaged:
+                raise Error(notice.sentence, where=notice.where)
+    return design

@@ -1,0 +1,42 @@
+"""DXF to Design: the model space, in millimetres. How it is read: docs/dxf.md."""
+
+from __future__ import annotations
+
+from .. import AS_DRAWN, ReadOptions
+from ..design import Design, Notice
+from ..empty_drawing import nothing_to_paint
+from .entity_walk import Walk
+from .file import open_dxf
+from .linetypes import Dashes
+from .placement import anchored, in_range, with_margin
+from .polylines import chained, element_of
+from .units import unit_of
+
+_FLAT_MM = 1e-3
+
+
+def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
+    """The model space, its strokes in the order drawn, in mm.
+
+    The sheet is what is drawn and 20 mm around it. A sheet given has the drawing's origin at its lower left.
+
+    Error if it is no DXF, says no unit where options name none either, or has nothing to paint.
+    """
+    document, notices = open_dxf(data)
+    mm_per_unit, unit_notices = unit_of(document, options.units)
+    walk = Walk(document, mm_per_unit)
+    walk.run()
+    pieces, far = in_range(walk.pieces if options.sheet_mm else anchored(walk.pieces))
+    notices += [*unit_notices, *walk.notices, *far]
+    if not pieces:
+        raise nothing_to_paint(notices)
+    heights = [curve.cubics[..., 2] for piece in pieces for curve in piece.curves]
+    lowest, highest = min(z.min() for z in heights), max(z.max() for z in heights)
+    if highest - lowest > _FLAT_MM:
+        sentence = f"the drawing is not flat: heights from {lowest:.6g} to {highest:.6g} mm are left out"
+        notices.append(Notice("z", sentence))
+    dashes = Dashes()
+    elements = [dashes.cut(element_of(piece), piece.pen) for piece in chained(pieces)]
+    notices += dashes.notices
+    sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else with_margin(elements)
+    return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())

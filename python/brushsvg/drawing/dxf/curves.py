@@ -1,0 +1,265 @@
+"""A DXF entity to cubics, in its own world and drawing units: exact where cubics can be, else to a tolerance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geometry.arc_to_cubics import arc_count
+from .library import ezdxf
+from .splines import b_spline, interpolated, joined
+
+FILLED = frozenset(("HATCH", "MPOLYGON", "SOLID", "TRACE"))
+_FLAT = ezdxf.math.OCS()
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line: cubics (n, 4, 3) end to end; widths: (n, 2), at the start and end of each, None if none are drawn.
+
+    A width of 0 is drawn with the entity's line weight.
+    """
+
+    cubics: np.ndarray
+    closed: bool = False
+    widths: np.ndarray | None = None
+
+
+def curves(entity, tolerance: float) -> list[Curve] | None:
+    """The lines of an entity, of a FILLED one its outlines; [] if it has no geometry, None if it is not read.
+
+    tolerance: in drawing units. Raises whatever ezdxf raises where the entity is broken.
+    """
+    draw = _DRAWN.get(entity.dxftype())
+    return None if draw is None else draw(entity, tolerance)
+
+
+def straight(points) -> np.ndarray:
+    """Cubics through points (n, d): (n - 1, 4, d)."""
+    points = np.asarray(points, dtype=float)
+    a, b = points[:-1, None], points[1:, None]
+    return a + (b - a) * (np.arange(4) / 3)[:, None]
+
+
+# Straight and round ---------------------------------------------------------------------------------
+
+
+def _line(entity, _tolerance: float) -> list[Curve]:
+    return [Curve(straight([entity.dxf.start.xyz, entity.dxf.end.xyz]))]
+
+
+def _point(entity, _tolerance: float) -> list[Curve]:
+    return [Curve(straight([entity.dxf.location.xyz] * 2))]
+
+
+def _arc(entity, tolerance: float) -> list[Curve]:
+    dxf = entity.dxf
+    if dxf.radius == 0:
+        return []
+    angles = (dxf.start_angle, dxf.end_angle) if entity.dxftype() == "ARC" else (0.0, 360.0)
+    tool = ezdxf.math.ConstructionEllipse.from_arc(dxf.center, abs(dxf.radius), dxf.extrusion, *angles)
+    return _elliptical(tool, tolerance)
+
+
+def _ellipse(entity, tolerance: float) -> list[Curve]:
+    return _elliptical(entity.construction_tool(), tolerance)
+
+
+def _elliptical(tool, tolerance: float) -> list[Curve]:
+    if tool.major_axis.magnitude == 0:
+        return []
+    count = arc_count(tool.param_span, tool.major_axis.magnitude, tolerance)
+    beziers = list(ezdxf.math.cubic_bezier_from_ellipse(tool, count))
+    if not beziers:
+        return []
+    cubics = np.array([[point.xyz for point in bezier.control_points] for bezier in beziers])
+    return [Curve(cubics, math.isclose(tool.param_span, math.tau, rel_tol=1e-9))]
+
+
+# Polylines ------------------------------------------------------------------------------------------
+
+
+def _lwpolyline(entity, tolerance: float) -> list[Curve]:
+    rows = np.array(entity.get_points("xybse"), dtype=float).reshape(-1, 5)
+    if entity.dxf.hasattr("const_width"):
+        rows[:, 3:] = entity.dxf.const_width
+    return _polyline_2d(rows, entity.closed, entity.ocs(), entity.dxf.elevation, tolerance)
+
+
+def _polyline(entity, tolerance: float) -> list[Curve] | None:
+    if entity.is_polygon_mesh or entity.is_poly_face_mesh:
+        return None
+    vertices = entity.vertices
+    if entity.dxf.flags & entity.SPLINE_FIT_VERTICES_ADDED:
+        vertices = [vertex for vertex in vertices if not vertex.dxf.flags & vertex.SPLINE_FRAME_CONTROL_POINT]
+    if entity.is_3d_polyline:
+        points = [vertex.dxf.location.xyz for vertex in vertices]
+        if entity.is_closed and len(points) > 1:
+            points.append(points[0])
+        return (
+            [Curve(straight(points if len(points) > 1 else points * 2), entity.is_closed)] if points else []
+        )
+    widths = entity.dxf.get("default_start_width", 0.0), entity.dxf.get("default_end_width", 0.0)
+    rows = [
+        (
+            vertex.dxf.location.x,
+            vertex.dxf.location.y,
+            vertex.dxf.get("bulge", 0.0),
+            vertex.dxf.get("start_width", widths[0]),
+            vertex.dxf.get("end_width", widths[1]),
+        )
+        for vertex in vertices
+    ]
+    if not rows:
+        return []
+    elevation = entity.dxf.elevation.z if entity.dxf.hasattr("elevation") else vertices[0].dxf.location.z
+    return _polyline_2d(np.array(rows), entity.is_closed, entity.ocs(), elevation, tolerance)
+
+
+def _polyline_2d(rows: np.ndarray, closed: bool, ocs, elevation: float, tolerance: float) -> list[Curve]:
+    """rows: x, y, bulge, start and end width of each vertex; those of the last one count if it is closed."""
+    if not len(rows):
+        return []
+    if len(rows) == 1:
+        rows, closed = np.repeat(rows, 2, axis=0), False
+    p = rows[:, 0] + 1j * rows[:, 1]
+    q = np.roll(p, -1)
+    count = len(rows) if closed else len(rows) - 1
+    pieces = list((p[:count, None] + (q - p)[:count, None] * np.arange(4) / 3)[:, None])
+    # How far an arc leaves its chord: from there on it is one.
+    for k in np.flatnonzero(~(np.abs(rows[:count, 2] * (q - p)[:count]) / 2 <= 1e-3 * tolerance)):
+        pieces[k] = _bulge(p[k], q[k], rows[k, 2], tolerance)
+    flat = np.concatenate(pieces)
+    cubics = _world(np.stack((flat.real, flat.imag, np.full(flat.shape, float(elevation))), axis=-1), ocs)
+    if not rows[:count, 3:].any():
+        return [Curve(joined(cubics), closed)]
+    drawn = []
+    for piece, ends in zip(pieces, rows[:count, 3:], strict=True):
+        at = np.linspace(*ends, len(piece) + 1)
+        drawn.append(np.column_stack((at[:-1], at[1:])))
+    return [Curve(joined(cubics), closed, np.concatenate(drawn))]
+
+
+def _bulge(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray:
+    """Cubics (n, 4) of an arc from p to q, in complex numbers. bulge: tangent of a quarter of its angle, left > 0."""
+    turn = 4 * math.atan(bulge)
+    chord = 2 * math.sin(turn / 2)
+    count = arc_count(abs(turn), abs((q - p) / chord), tolerance)
+    s = np.linspace(0.0, 1.0, count + 1)
+    at = p + (q - p) * np.exp(0.5j * turn * (s - 1)) * np.sin(turn * s / 2) / math.sin(turn / 2)
+    at[-1] = q
+    handle = 4 / 3 * math.tan(turn / count / 4) * (q - p) / chord * np.exp(1j * turn * (s - 0.5))
+    return np.column_stack((at[:-1], at[:-1] + handle[:-1], at[1:] - handle[1:], at[1:]))
+
+
+def _world(points: np.ndarray, ocs) -> np.ndarray:
+    return points @ np.array([ocs.ux.xyz, ocs.uy.xyz, ocs.uz.xyz]) if ocs.transform else points
+
+
+# Splines --------------------------------------------------------------------------------------------
+
+
+def _spline(entity, tolerance: float) -> list[Curve]:
+    dxf = entity.dxf
+    if len(entity.control_points):
+        return [Curve(b_spline(dxf.degree, entity.knots, entity.control_points, entity.weights, tolerance))]
+    tangents = dxf.get("start_tangent"), dxf.get("end_tangent")
+    return [Curve(interpolated(entity.fit_points, tangents, tolerance))]
+
+
+# Faces and fillings ---------------------------------------------------------------------------------
+
+
+def _quadrilateral(entity, _tolerance: float) -> list[Curve]:
+    points = [point.xyz for point in entity.wcs_vertices()]
+    return [Curve(straight([*points, points[0]]), True)]
+
+
+def _face(entity, tolerance: float) -> list[Curve]:
+    points = [point.xyz for point in entity.wcs_vertices()]
+    visible = entity.get_edges_visibility()[: len(points)]
+    if all(visible):
+        return _quadrilateral(entity, tolerance)
+    edges = zip(points, [*points[1:], points[0]], visible, strict=True)
+    return [Curve(straight([begin, end])) for begin, end, seen in edges if seen]
+
+
+def _hatch(entity, tolerance: float) -> list[Curve]:
+    ocs, elevation = entity.ocs(), entity.dxf.elevation.z
+    offset = entity.dxf.get("offset_vector", (0, 0)) if entity.dxftype() == "MPOLYGON" else (0, 0)
+    paths = list(entity.paths.rendering_paths(entity.dxf.hatch_style)) or list(entity.paths)
+    outlines = []
+    for path in paths:
+        if isinstance(path, ezdxf.entities.PolylinePath):
+            rows = [(x, y, bulge, 0.0, 0.0) for x, y, bulge in path.vertices]
+            pieces = [line.cubics for line in _polyline_2d(np.array(rows), True, _FLAT, 0.0, tolerance)]
+        else:
+            pieces = [line.cubics for edge in path.edges for line in _edge(edge, tolerance)]
+        if pieces:
+            shift = np.array([offset[0], offset[1], elevation])
+            outlines.append(Curve(_world(_outline(pieces) + shift, ocs), True))
+    return outlines
+
+
+def _edge(edge, tolerance: float) -> list[Curve]:
+    """Of a hatch, in its plane."""
+    match edge.EDGE_TYPE:
+        case "LineEdge":
+            return [Curve(straight([(*edge.start, 0.0), (*edge.end, 0.0)]))]
+        case "ArcEdge":
+            angles = edge.start_angle, edge.end_angle
+            tool = ezdxf.math.ConstructionEllipse.from_arc(edge.center, abs(edge.radius), (0, 0, 1), *angles)
+            return _elliptical(tool, tolerance)
+        case "EllipseEdge":
+            return _elliptical(edge.construction_tool(), tolerance)
+    points = [(*point, 0.0) for point in edge.control_points]
+    if not points:
+        fit_points = [(*point, 0.0) for point in edge.fit_points]
+        return [Curve(interpolated(fit_points, (edge.start_tangent, edge.end_tangent), tolerance))]
+    return [Curve(b_spline(edge.degree, edge.knot_values, points, edge.weights, tolerance))]
+
+
+def _outline(pieces: list[np.ndarray]) -> np.ndarray:
+    """Edges, each of which may have been drawn from its end to its start, as one closed line."""
+    first = pieces[0]
+    if len(pieces) > 1 and _distance(first[0, 0], pieces[1]) < _distance(first[-1, 3], pieces[1]):
+        first = reversed_cubics(first)
+    line = [first]
+    for piece in pieces[1:]:
+        end = line[-1][-1, 3]
+        if math.dist(end, piece[-1, 3]) < math.dist(end, piece[0, 0]):
+            piece = reversed_cubics(piece)
+        line += [straight([end, piece[0, 0]]), piece]
+    line.append(
+        straight([line[-1][-1, 3], first[0, 0]])
+    )  # lines without length are taken out later, as all are
+    return np.concatenate(line)
+
+
+def _distance(point: np.ndarray, piece: np.ndarray) -> float:
+    return min(math.dist(point, piece[0, 0]), math.dist(point, piece[-1, 3]))
+
+
+def reversed_cubics(cubics: np.ndarray) -> np.ndarray:
+    return cubics[::-1, ::-1].copy()
+
+
+_DRAWN: dict[str, Callable[[object, float], list[Curve] | None]] = {
+    "LINE": _line,
+    "POINT": _point,
+    "ARC": _arc,
+    "CIRCLE": _arc,
+    "ELLIPSE": _ellipse,
+    "LWPOLYLINE": _lwpolyline,
+    "POLYLINE": _polyline,
+    "SPLINE": _spline,
+    "HELIX": _spline,
+    "SOLID": _quadrilateral,
+    "TRACE": _quadrilateral,
+    "3DFACE": _face,
+    "HATCH": _hatch,
+    "MPOLYGON": _hatch,
+}

@@ -1,0 +1,123 @@
+"""The entities of a text DXF, before ezdxf builds anything of them.
+
+ezdxf refuses a whole file over one entity that it cannot build, and drops others without a word. So what nobody here
+reads is taken out beforehand and counted, and, where the file cannot be loaded without, what is broken.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import BinaryIO
+
+from .library import ezdxf
+from .markers import MARKED, SUBCLASS, Tag, is_marked, with_markers
+
+_R12 = "ARC ATTDEF ATTRIB BLOCK CIRCLE DIMENSION ENDBLK INSERT LINE POINT POLYLINE SEQEND SOLID TEXT TRACE VERTEX"
+_OLD = frozenset([*_R12.encode().split(), b"3DFACE"])
+_BARE = frozenset((b"ELLIPSE", b"RAY", b"XLINE"))  # read without markers, too
+_ONLY_MARKED = frozenset(
+    b"ACAD_PROXY_ENTITY ARC_DIMENSION HELIX LARGE_RADIAL_DIMENSION MLEADER MULTILEADER".split()
+)
+_NEW = _BARE | _ONLY_MARKED | SUBCLASS.keys()
+_PARTS = frozenset((b"ATTRIB", b"SEQEND", b"VERTEX"))  # of the entity before them
+_SILENT = frozenset((b"VIEWPORT",))
+_FLOATS = frozenset((*range(10, 60), *range(140, 150), *range(210, 240)))
+_END = Tag(0, b"EOF")
+
+
+@dataclass
+class Entities:
+    """A loader for ezdxf.recover.Recover. left_out: by type, what is not read; broken: (name, why) of what was taken
+    out for it, if is_strict.
+    """
+
+    is_strict: bool = False
+    left_out: Counter[str] = field(default_factory=Counter)
+    broken: list[tuple[str, str]] = field(default_factory=list)
+    _number: int = 0
+
+    def tags(self, stream: BinaryIO) -> Iterator[Tag]:
+        tags = list(ezdxf.recover.bytes_loader(stream))
+        starts = [k for k, (code, _) in enumerate(tags) if code == 0]
+        kept = [part for whole in self._readable(tags, starts) for part in whole]
+        has_new = any(part[0].value.strip() in _NEW for part in kept)
+        yield from _versioned(tags[: starts[0]] if starts else tags, kept) if has_new else _flat(kept)
+
+    def _readable(self, tags: list[Tag], starts: list[int]) -> Iterator[list[list[Tag]]]:
+        """What stands between group codes 0; entities with all their parts."""
+        section, whole = b"", []
+        for begin, end in zip(starts, [*starts[1:], len(tags)], strict=True):
+            part, kind = tags[begin:end], tags[begin].value.strip()
+            if kind == b"SECTION":
+                section = part[1].value.strip() if len(part) > 1 else b""
+            drawn = section in (b"ENTITIES", b"BLOCKS") and kind not in (b"SECTION", b"ENDSEC", b"EOF")
+            if whole and not (drawn and kind in _PARTS):
+                yield from self._sound(whole)
+                whole = []
+            if not drawn:
+                yield [part]
+            elif whole or self._is_read(kind, part):
+                whole.append(with_markers(part, SUBCLASS[kind]) if kind in SUBCLASS else part)
+        if whole:
+            yield from self._sound(whole)
+
+    def _is_read(self, kind: bytes, part: list[Tag]) -> bool:
+        if kind in _OLD or kind in _BARE or kind in SUBCLASS:
+            return True
+        if kind in _ONLY_MARKED and is_marked(part):
+            return True
+        if kind not in _SILENT:
+            self.left_out[kind.decode(errors="replace")] += 1
+        return False
+
+    def _sound(self, whole: list[list[Tag]]) -> Iterator[list[list[Tag]]]:
+        self._number += 1
+        if self.is_strict and (why := _fault(whole)):
+            handle = next((tag.value for tag in whole[0] if tag.code == 5), b"")
+            name = b"-".join((whole[0][0].value.strip(), handle.strip() or b"%d" % self._number))
+            self.broken.append((name.decode(errors="replace"), why))
+        else:
+            yield whole
+
+
+def _flat(parts: list[list[Tag]]) -> Iterator[Tag]:
+    return (tag for part in parts for tag in part)
+
+
+def _versioned(before: list[Tag], parts: list[list[Tag]]) -> Iterator[Tag]:
+    """The tags of a file with newer entities, which then is no R12."""
+    tags = [*before, *_flat(parts)]
+    versions = [k + 1 for k, tag in enumerate(tags[:-1]) if tag == (9, b"$ACADVER")]
+    for k in versions:
+        if tags[k].value.strip() < MARKED:
+            tags[k] = Tag(1, b"AC1015")
+    if not versions:
+        header = (0, b"SECTION"), (2, b"HEADER"), (9, b"$ACADVER"), (1, b"AC1015"), (0, b"ENDSEC")
+        yield from (Tag(*tag) for tag in header)
+    yield from tags
+
+
+def _fault(whole: list[list[Tag]]) -> str:
+    """Why ezdxf cannot build an entity of its tags as they are, "" if it can."""
+    for part in whole:
+        for code, value in part:
+            if code in _FLOATS and not _is_number(value):
+                return f"{value.decode(errors='replace')!r} at group code {code} is not a number"
+        try:
+            tags = ezdxf.recover.safe_tag_loader(None, lambda _, part=part: iter([*part, _END]))
+            ezdxf.entities.factory.load(
+                ezdxf.lldxf.extendedtags.ExtendedTags(ezdxf.lldxf.tags.Tags(list(tags)[:-1]))
+            )
+        except Exception as problem:  # whatever ezdxf meets in bytes that anyone may have written
+            return str(problem).rstrip(".")
+    return ""
+
+
+def _is_number(value: bytes) -> bool:
+    try:
+        float(value)
+    except ValueError:
+        return False
+    return True

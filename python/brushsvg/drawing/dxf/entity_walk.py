@@ -1,0 +1,260 @@
+"""The walk over a DXF's model space: blocks unfolded, entities to lines on paper in the order they were drawn."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...errors import Error
+from ..design import Notice
+from ..svg.path_to_cubics import LARGEST_MM
+from . import curves as dxf_curves
+from .curves import Curve
+from .file import reason, shown
+from .fonts import NoFontError
+from .library import ezdxf
+from .lineweights import Pen, Pens
+from .text_entities import Letters
+
+_TOLERANCE_MM = 1e-4
+_MOST_ENTITIES = 100_000  # a brush paints some thousand strokes a day; what unfolds to more was made to
+_MOST_CUBICS = 1_000_000
+_FARTHEST_MM = 1e11  # from the origin: beyond it a number of 64 bits does not know hundredths of a hair
+_DEEPEST = 50  # blocks in blocks
+_JOINABLE = frozenset(("LINE", "ARC", "ELLIPSE", "SPLINE"))
+_SILENT = frozenset(("VIEWPORT", "ATTDEF", "SEQEND"))
+_TEXT = frozenset(("TEXT", "ATTRIB"))
+_TEXT_ADVICE = "text is not read: explode it into lines in the program that made the drawing"
+_ENDLESS = frozenset(("RAY", "XLINE"))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What one entity paints. curves: cubics (n, 4, 3) on paper [mm], z up to the caller; widths in mm.
+
+    block: the block reference it comes from, "" for the drawing itself; fill_rule: "" for lines; joinable: may be
+    part of a longer line.
+    """
+
+    id: str
+    block: str
+    pen: Pen
+    curves: tuple[Curve, ...]
+    fill_rule: str = ""
+    joinable: bool = False
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where a block's entities go. mm_from_block: (4, 4), from the right: row vectors."""
+
+    mm_from_block: np.ndarray
+    pen: Pen | None = None
+    name: str = ""
+    blocks: tuple[str, ...] = ()
+
+    @cached_property
+    def stretch(self) -> float:
+        """Greatest length on paper of a unit [mm]."""
+        return float(np.linalg.norm(self.mm_from_block[:3, :3], 2))
+
+    @cached_property
+    def mean_stretch(self) -> float:
+        return math.sqrt(abs(float(np.linalg.det(self.mm_from_block[:2, :2]))))
+
+
+def _top(name: str) -> str:
+    """A place in the drawing itself: names of blocks in blocks can be of any length."""
+    return name.partition("/")[0]
+
+
+def _lines_of(attribute):
+    """What shows an attribute: newer ones can have several lines."""
+    return attribute.virtual_mtext_entity() if attribute.has_embedded_mtext_entity else attribute
+
+
+class Walk:
+    """pieces and notices of the model space, once run."""
+
+    def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
+        self.document = document
+        self.pens = Pens(document, mm_per_unit)
+        self.letters = Letters(document)
+        self.top = _Place(np.diag([mm_per_unit, mm_per_unit, mm_per_unit, 1.0]))
+        self.pieces: list[Piece] = []
+        self.notices: list[Notice] = []
+        self._counts: Counter[tuple[str, str, str | None]] = Counter()
+        self._known: dict[tuple[str | None, float], list[Curve] | None] = {}
+        self._entities = self._cubics = 0
+
+    def run(self) -> None:
+        with np.errstate(all="ignore"):
+            self._walk(self.document.modelspace(), self.top)
+        for layout in self.document.layouts:
+            if not layout.is_modelspace:
+                count = sum(entity.dxftype() not in _SILENT for entity in layout)
+                self._counts[shown(layout.name), "paper space is not painted", None] += count
+        for (where, why, layer), count in self._counts.items():
+            if count:
+                entities = "1 entity" if count == 1 else f"{count} entities"
+                self.notices.append(Notice(where, f"{why}: {entities} left out", layer=layer))
+        self.notices += self.letters.notices
+
+    def _walk(self, entities, place: _Place) -> None:
+        for number, entity in enumerate(entities, 1):
+            self._entities += 1
+            if self._entities > _MOST_ENTITIES:
+                raise Error(
+                    f"the drawing unfolds to more than {_MOST_ENTITIES} entities, blocks in blocks counted "
+                    "each time they are inserted",
+                    where=_top(place.name),
+                )
+            kind = shown(entity.dxftype(), 40)
+            name = f"{place.name}/" if place.name else ""
+            name += f"{kind}-{entity.dxf.handle or number}"
+            layer = None
+            try:
+                if kind in _SILENT:
+                    continue
+                if not isinstance(entity, ezdxf.entities.DXFGraphic):
+                    self._leave_out(kind, f"{kind} is not read")
+                    continue
+                pen = self.pens.pen(entity, place.pen)
+                layer = pen.layer
+                self._entity(entity, kind, name, pen, place)
+            except Error:
+                raise
+            except NoFontError:
+                self._leave_out(kind, _TEXT_ADVICE, layer)
+            except Exception as problem:  # whatever ezdxf meets in numbers that anyone may have written
+                self._note(name, f"it is damaged ({reason(problem)}): left out", layer, damaged=True)
+
+    def _entity(self, entity, kind: str, name: str, pen: Pen, place: _Place) -> None:
+        if entity.dxf.get("invisible", 0):
+            self._leave_out("invisible", "entities made invisible are not painted")
+        elif kind == "INSERT":
+            self._insert(entity, name, pen, place)
+        elif pen.hidden:
+            self._leave_out(pen.layer, pen.hidden, pen.layer)
+        elif kind in _TEXT:
+            lines = self.letters.outlines(entity, name, pen.layer)
+            self._piece(entity, kind, name, pen, place, lines)
+        elif kind == "MTEXT":
+            self._parts(self.letters.parts(entity, name), name, pen, place)
+        elif kind in _ENDLESS:
+            self._leave_out(kind, f"{kind} has no ends")
+        elif (lines := self._curves(entity, place.stretch)) is not None:
+            self._piece(entity, kind, name, pen, place, lines)
+        elif isinstance(entity, ezdxf.protocols.SupportsVirtualEntities):
+            parts = list(ezdxf.protocols.virtual_entities(entity))
+            if not parts:
+                self._leave_out(kind, f"{kind} is not read")
+            self._parts(parts, name, pen, place)
+        else:
+            self._leave_out(kind, f"{kind} is not read")
+
+    def _parts(self, parts: list, name: str, pen: Pen, place: _Place) -> None:
+        self._deeper(name, place)
+        self._walk(parts, _Place(place.mm_from_block, pen, name, (*place.blocks, name)))
+
+    def _curves(self, entity, stretch: float) -> list[Curve] | None:
+        """Kept for the next time its block is inserted at about that size: unfolding must not cost more than once."""
+        stretch = 2.0 ** math.ceil(math.log2(stretch))
+        key = entity.dxf.handle, stretch
+        if key not in self._known or key[0] is None:
+            self._known[key] = dxf_curves.curves(entity, _TOLERANCE_MM / stretch)
+        return self._known[key]
+
+    def _insert(self, insert, name: str, pen: Pen, place: _Place) -> None:
+        if pen.frozen:
+            self._leave_out(pen.layer, pen.hidden, pen.layer)
+            return
+        shown_here = [attribute for attribute in insert.attribs if not attribute.is_invisible]
+        self._parts([_lines_of(attribute) for attribute in shown_here], name, pen, place)
+        block = insert.block()
+        block_name = shown(insert.dxf.get("name", ""), 40)
+        if block is None:
+            self._note(name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True)
+            return
+        if block.block.is_xref:
+            self._note(
+                name, f"block {block_name!r} is kept in another file, which is not read: left out", pen.layer
+            )
+            return
+        key = insert.dxf.name.casefold()
+        if key in place.blocks:
+            raise Error(f"block {block_name!r} inserts itself", where=_top(name))
+        if ezdxf.xclip.XClip(insert).is_clipping_enabled:
+            self._note(name, "its clipping (XCLIP) is not read: it counts as whole", pen.layer)
+        self._deeper(name, place)
+        matrix = np.array(list(insert.matrix44())).reshape(4, 4)
+        for suffix, shift in self._array(insert, name):
+            moved = matrix.copy()
+            moved[3, :3] += shift
+            inner = moved @ place.mm_from_block
+            self._walk(block, _Place(inner, pen, name + suffix, (*place.blocks, key)))
+
+    def _array(self, insert, name: str):
+        """(Suffix of the name, shift in the world of the insert) of each place of a block in rows and columns."""
+        dxf = insert.dxf
+        rows = dxf.get("row_count", 1) if dxf.get("row_spacing", 0.0) else 1
+        columns = dxf.get("column_count", 1) if dxf.get("column_spacing", 0.0) else 1
+        rows, columns = max(rows, 1), max(columns, 1)
+        if rows * columns > _MOST_ENTITIES:
+            raise Error(
+                f"{rows} rows of {columns} columns are more than {_MOST_ENTITIES} entities", where=_top(name)
+            )
+        if rows == columns == 1:
+            return [("", np.zeros(3))]
+        turn = math.radians(dxf.get("rotation", 0.0))
+        ocs = insert.ocs()
+        places = []
+        for row, column in itertools.product(range(rows), range(columns)):
+            self._entities += 1
+            x, y = column * dxf.get("column_spacing", 0.0), row * dxf.get("row_spacing", 0.0)
+            shift = (x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn), 0.0)
+            places.append((f".{row + 1}.{column + 1}", np.array(ocs.to_wcs(ezdxf.math.Vec3(shift)).xyz)))
+        return places
+
+    def _deeper(self, name: str, place: _Place) -> None:
+        if len(place.blocks) >= _DEEPEST:
+            raise Error(f"blocks are nested more than {_DEEPEST} deep", where=_top(name))
+
+    def _piece(self, entity, kind: str, name: str, pen: Pen, place: _Place, lines: list[Curve]) -> None:
+        fill_rule = "nonzero" if kind in _TEXT else "evenodd" if kind in dxf_curves.FILLED else ""
+        found = []
+        for line in lines:
+            self._cubics += len(line.cubics)
+            if self._cubics > _MOST_CUBICS:
+                raise Error(f"the drawing unfolds to more than {_MOST_CUBICS} curves", where=_top(name))
+            cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
+            widths = None if line.widths is None else line.widths * place.mean_stretch
+            if not (np.abs(cubics).max() <= _FARTHEST_MM and np.ptp(cubics, axis=(0, 1)).max() <= LARGEST_MM):
+                self._note(
+                    name, "its geometry is not finite or beyond 1e6 mm: left out", pen.layer, damaged=True
+                )
+                return
+            if widths is not None and not (widths.min() >= 0 and widths.max() <= LARGEST_MM):
+                self._note(
+                    name, "its widths are outside the range [0, 1e6] mm: left out", pen.layer, damaged=True
+                )
+                return
+            found.append(Curve(cubics, line.closed, widths))
+        if not found:
+            self._note(name, "it has no geometry: left out", pen.layer)
+            return
+        if kind in ("HATCH", "MPOLYGON") and not entity.dxf.solid_fill:
+            self._note(name, "its pattern is not read: it counts as filled", pen.layer)
+        joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
+        self.pieces.append(Piece(name, place.name, pen, tuple(found), fill_rule, joinable))
+
+    def _leave_out(self, where: str, why: str, layer: str | None = None) -> None:
+        self._counts[where, why, layer] += 1
+
+    def _note(self, where: str, sentence: str, layer: str | None, damaged: bool = False) -> None:
+        self.notices.append(Notice(where, sentence, damaged, layer))

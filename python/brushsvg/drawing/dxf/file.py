@@ -1,0 +1,103 @@
+"""Bytes to an ezdxf document, as far as they can be repaired, and what was repaired."""
+
+from __future__ import annotations
+
+import io
+
+from ...errors import Error
+from ..design import Notice
+from .entities import Entities
+from .library import ezdxf
+
+_BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
+_MOST_NOTICES = 5
+_NUMBER = ezdxf.audit.AuditError.INVALID_FLOATING_POINT_VALUE
+
+
+class _Auditor(ezdxf.audit.Auditor):
+    def check_block_reference_cycles(self) -> None:
+        """Left out: it walks every path through nested blocks. We count while we unfold them."""
+
+    def trash(self, entity) -> None:
+        """What is drawn is kept even if it is broken, so that the walk can name it."""
+        if not isinstance(entity, ezdxf.entities.DXFGraphic):
+            super().trash(entity)
+
+
+def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
+    """The document and a few notices on its damage. Error if it is no DXF, or damaged beyond repair."""
+    if data[:4] == b"AC10" and data[4:6].isdigit():
+        raise Error("the file is a DWG, not a DXF: save it as DXF in the program that made it")
+    if b"ENTITIES" not in data:
+        raise Error("the file is not a DXF, or cut short: it has no ENTITIES")
+    read = _binary if data.startswith(_BINARY) else _text
+    try:
+        document, notices = read(data)
+        auditor = _Auditor(document)
+        auditor.run()
+    except ezdxf.DXFError as problem:
+        raise Error(f"the DXF is damaged beyond repair: {reason(problem)}") from None
+    except Exception:  # whatever ezdxf meets in bytes that anyone may have written
+        raise Error("the DXF is damaged beyond repair, or cut short") from None
+    return document, notices + _some([("file", error.message) for error in auditor.errors], damaged=False)
+
+
+def _binary(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
+    return ezdxf.document.Drawing.load(ezdxf.lldxf.tagger.binary_tags_loader(data)), []
+
+
+def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
+    damage = []
+    if not data.rstrip(b" \t\r\n\0\x1a").endswith(b"EOF"):
+        damage.append(("file", "the end of the file is missing"))
+        data = _up_to_the_last_entity(data)
+    entities = Entities()
+    try:
+        document, recovered = _loaded(data, entities)
+        bad_numbers = any(code == _NUMBER for code, _ in recovered.errors)
+    except Exception:  # as above; entity by entity it is told what is wrong
+        bad_numbers = True
+    if bad_numbers:
+        entities = Entities(is_strict=True)
+        document, recovered = _loaded(data, entities)
+    damage += [(shown(name), f"it is damaged ({shown(why)}): left out") for name, why in entities.broken]
+    damage += [("file", message) for _, message in (*recovered.errors, *recovered.fixes)]
+    counts = [
+        Notice(shown(kind), f"{shown(kind)} is not read: {n} {'entity' if n == 1 else 'entities'} left out")
+        for kind, n in entities.left_out.items()
+    ]
+    return document, _some(damage, damaged=True) + counts
+
+
+def _loaded(data: bytes, entities: Entities) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
+    """As ezdxf.recover.read() does, but without its audit."""
+    recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=entities.tags)
+    document = ezdxf.document.Drawing()
+    document._load_section_dict(recovered.section_dict)
+    return document, recovered
+
+
+def _up_to_the_last_entity(data: bytes) -> bytes:
+    """Of a file that was cut short: what follows a last group code 0 may be half an entity."""
+    lines = data.split(b"\n")
+    codes = range(0, len(lines), 2)
+    last = next((k for k in reversed(codes) if lines[k].strip() == b"0"), 0)
+    return b"\n".join([*lines[:last], b"0", b"ENDSEC", b"0", b"EOF", b""])
+
+
+def reason(problem: Exception) -> str:
+    """What ezdxf says of a problem, as the end of a sentence."""
+    return shown(str(problem)).rstrip(".") or type(problem).__name__
+
+
+def shown(text: str, most: int = 120) -> str:
+    """Text of a file as it can stand in a sentence: one line, nothing that does not print."""
+    text = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def _some(told: list[tuple[str, str]], damaged: bool) -> list[Notice]:
+    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in told[:_MOST_NOTICES]]
+    if more := len(told) - len(kept):
+        kept.append(("file", f"and {more} more such problems"))
+    return [Notice(where, sentence, damaged) for where, sentence in kept]

@@ -1,0 +1,144 @@
+"""Fonts of this machine for the text of a DXF: files found by name, only those opened that a text asks for."""
+
+from __future__ import annotations
+
+import os
+import platform
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
+from pathlib import Path, PureWindowsPath
+
+from .file import shown
+from .library import ezdxf
+
+_fonts = ezdxf.fonts.fonts
+_found = ezdxf.fonts.font_manager
+
+_MOST_FILES = 50_000  # looked at; beyond, what is not found yet counts as missing
+# Endings of file names, without hyphens and blanks, by (bold, italic); the short ones are Windows'.
+_ENDINGS = {
+    (False, False): ("", "regular", "book", "roman"),
+    (True, False): ("bold", "bd", "b"),
+    (False, True): ("italic", "oblique", "i"),
+    (True, True): ("bolditalic", "boldoblique", "bi", "z"),
+}
+
+
+class NoFontError(Exception):
+    """This machine has no font."""
+
+
+@dataclass(frozen=True)
+class Font:
+    """name: for people; path: of its file; why: it stands for another one, "" if it is what was asked for."""
+
+    name: str
+    path: Path
+    why: str = ""
+
+    def drawn_at(self, cap_height: float, width_factor: float = 1.0):
+        """ezdxf's AbstractFont."""
+        font = _fonts.sideload_ttf(self.path, cap_height)
+        font.width_factor = width_factor
+        return font
+
+    def missing(self, text: str) -> list[str]:
+        """Characters it has no glyph for."""
+        known = self.drawn_at(1.0).glyph_cache.cmap
+        return [c for c in dict.fromkeys(text) if not c.isspace() and ord(c) not in known]
+
+
+class Fonts:
+    """The fonts of text styles, or what stands for them."""
+
+    def __init__(self, styles):
+        self._styles = styles
+        self._known: dict[tuple, Font] = {}
+
+    def face(self, style_name: str):
+        """What a text style asks for, an ezdxf FontFace."""
+        known = style_name in self._styles
+        style = self._styles.get(style_name) if known else ezdxf.entities.Textstyle()
+        family, italic, bold = style.get_extended_font_data()
+        slant, weight = "Italic" if italic else "Regular", 700 if bold else 400
+        return _fonts.FontFace(style.dxf.font, family, slant, weight)
+
+    def font(self, face) -> Font:
+        """NoFontError if there is none at all."""
+        key = face.filename, face.family, face.is_bold, face.is_italic
+        if key not in self._known:
+            self._known[key] = self._opened(face)
+        return self._known[key]
+
+    def _opened(self, face) -> Font:
+        for name in _names(face):
+            if (path := self._files.get(name)) and (font := _usable(path)):
+                return font
+        for stem in _stems(face):
+            if (path := self._stems.get(stem)) and (font := _usable(path)):
+                return font
+        if self._stand_in is None:
+            raise NoFontError
+        name = PureWindowsPath(face.filename).name
+        if name and not face.family and _fonts.is_shx_font_name(name):
+            why = "the drawing's SHX fonts are no strokes here"
+        else:
+            why = f"there is no font {shown(face.family or name, 40)} here"
+        return Font(self._stand_in.name, self._stand_in.path, why)
+
+    @cached_property
+    def _files(self) -> dict[str, Path]:
+        """By file name in lower case; of two, the first in ezdxf's order of folders."""
+        folders = _found.FONT_DIRECTORIES.get(platform.system(), _found.LINUX_FONT_DIRS)
+        files = (path for folder in folders for path in _files_in(os.path.expanduser(folder)))
+        found: dict[str, Path] = {}
+        for path in islice(files, _MOST_FILES):
+            if path.suffix.lower() in _found.SUPPORTED_TTF_TYPES:
+                found.setdefault(path.name.lower(), path)
+        return found
+
+    @cached_property
+    def _stems(self) -> dict[str, Path]:
+        return {_plain(Path(name).stem): self._files[name] for name in sorted(self._files, reverse=True)}
+
+    @cached_property
+    def _stand_in(self) -> Font | None:
+        """One that looks like Arial, or any upright sans serif."""
+        names = [name.lower() for name in _found.DEFAULT_FONTS]
+        names += [
+            name for name in sorted(self._files) if _plain(Path(name).stem).endswith(("sans", "sansregular"))
+        ]
+        paths = (self._files[name] for name in names if name in self._files)
+        return next(filter(None, map(_usable, paths)), None)
+
+
+def _files_in(folder: str):
+    for place, folders, names in os.walk(folder):
+        folders.sort()
+        yield from (Path(place, name) for name in sorted(names))
+
+
+def _usable(path: Path) -> Font | None:
+    try:
+        font = _fonts.sideload_ttf(path, 1.0)
+        names = font.glyph_cache.font["name"]
+        name = names.getBestFullName() or names.getBestFamilyName() or path.stem
+        return Font(shown(name, 40), path)
+    except Exception:  # whatever fontTools meets in a file that is no font
+        return None
+
+
+def _names(face) -> list[str]:
+    name = PureWindowsPath(face.filename).name.lower()
+    return [name, f"{name}.ttf", _fonts.map_shx_to_ttf(name).lower()] if name else []
+
+
+def _stems(face) -> list[str]:
+    family = _plain(face.family)
+    italic = face.is_italic or face.is_oblique
+    return [family + ending for ending in _ENDINGS[face.is_bold, italic]] if family else []
+
+
+def _plain(name: str) -> str:
+    return "".join(c for c in name.lower() if c.isalnum())

@@ -1,0 +1,149 @@
+"""What a DXF entity is drawn with: layer, colour and line weight, inherited from layers and blocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .file import shown
+from .library import ezdxf
+
+_BYBLOCK, _BYLAYER = 0, 256  # as colours
+_WEIGHT_BYLAYER, _WEIGHT_BYBLOCK = -1, -2
+_DEFAULT_WIDTH_MM = 0.25  # what CAD programs draw line weight "default" with; DXF itself does not say
+_BLACK = "#000000"
+
+
+@dataclass(frozen=True)
+class LineType:
+    """pattern_mm: dash, gap, dash, gap ...; () if it has letters or shapes, or is broken itself."""
+
+    name: str
+    pattern_mm: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Pen:
+    """layer: its name, for people and to look it up; hidden: why nothing of it is painted, "" if it is.
+
+    line_type: None if unbroken; line_scale: of its pattern; frozen: blocks inserted on this layer are hidden with all
+    they hold.
+    """
+
+    layer: str = "0"
+    key: str = "0"
+    colour: str = _BLACK
+    width_mm: float = _DEFAULT_WIDTH_MM
+    line_type: LineType | None = None
+    line_scale: float = 1.0
+    hidden: str = ""
+    frozen: bool = False
+
+
+class Pens:
+    """The layers of a document, and what they make of its entities."""
+
+    def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
+        scale = document.header.get("$LTSCALE", 1.0) * mm_per_unit
+        types = ((_key(line.dxf.name), _line_type(line, scale)) for line in document.linetypes)
+        self._line_types = {key: line_type for key, line_type in types if line_type is not None}
+        self._layers = {_key(layer.dxf.name): self._of_layer(layer) for layer in document.layers}
+
+    def hidden(self) -> dict[str, str]:
+        """Why each layer is not painted, "" if it is."""
+        return {pen.layer: pen.hidden for pen in self._layers.values()}
+
+    def pen(self, entity, outer: Pen | None) -> Pen:
+        """outer: the pen of the block reference the entity is in, None outside of blocks."""
+        dxf, block = entity.dxf, outer or Pen()
+        name, key = shown(dxf.layer), _key(dxf.layer)
+        if key == "0":
+            name, key = block.layer, block.key
+        layer = self._layers.get(key) or Pen(name, key)
+        line_type = _key(dxf.get("linetype", "BYLAYER"))
+        by = {"bylayer": layer.line_type, "byblock": block.line_type}
+        return Pen(
+            layer.layer,
+            key,
+            self._colour(entity, layer, block),
+            self._width_mm(dxf.get("lineweight", _WEIGHT_BYLAYER), layer, block),
+            by.get(line_type, self._line_types.get(line_type)),
+            dxf.get("ltscale", 1.0),
+            layer.hidden,
+            layer.frozen,
+        )
+
+    def _of_layer(self, layer) -> Pen:
+        name = layer.dxf.name
+        hidden = ""
+        if layer.is_frozen():
+            hidden = "the layer is frozen"
+        elif layer.is_off():
+            hidden = "the layer is off"
+        elif not layer.dxf.get("plot", 1) or _key(name) == "defpoints":
+            hidden = "the layer is not for plotting"
+        return Pen(
+            shown(name),
+            _key(name),
+            _rgb(layer.rgb, layer.color),
+            self._width_mm(layer.dxf.get("lineweight", -3), Pen(), Pen()),
+            self._line_types.get(_key(layer.dxf.get("linetype", ""))),
+            hidden=hidden,
+            frozen=layer.is_frozen(),
+        )
+
+    @staticmethod
+    def _colour(entity, layer: Pen, block: Pen) -> str:
+        number = entity.dxf.get("color", _BYLAYER)
+        if entity.dxf.hasattr("true_color"):
+            return _rgb(entity.rgb, number)
+        if number == _BYLAYER:
+            return layer.colour
+        return block.colour if number == _BYBLOCK else _rgb(None, number)
+
+    @staticmethod
+    def _width_mm(weight: int, layer: Pen, block: Pen) -> float:
+        """weight: in 1/100 mm. 0 is "as thin as can be", which a brush takes for the default."""
+        if weight == _WEIGHT_BYLAYER:
+            return layer.width_mm
+        if weight == _WEIGHT_BYBLOCK:
+            return block.width_mm
+        return weight / 100 if weight > 0 else _DEFAULT_WIDTH_MM
+
+
+def _line_type(line, scale: float) -> LineType | None:
+    tags = line.pattern_tags
+    elements = [tag.value for tag in tags.tags if tag.code == 49]
+    if tags.is_complex_type():
+        return LineType(shown(line.dxf.name), ())
+    if not any(element < 0 for element in elements):  # no gaps
+        return None
+    return LineType(shown(line.dxf.name), tuple(scale * length for length in _cyclic(elements)))
+
+
+def _cyclic(elements: list[float]) -> list[float]:
+    """Lengths of dash, gap, dash, gap ... of a line type, [] without a dash; elements: its dashes, its gaps below 0.
+
+    It starts with a whole dash, as CAD programs start lines.
+    """
+    first = next((k for k, element in enumerate(elements) if not element < 0), len(elements))
+    pattern: list[float] = []
+    for element in elements[first:] + elements[:first] if first < len(elements) else []:
+        if len(pattern) % 2 == (element < 0):
+            pattern.append(abs(element))
+        else:
+            pattern[-1] += abs(element)
+    if len(pattern) % 2:
+        pattern[0] += pattern.pop()
+    return pattern
+
+
+def _rgb(true_colour: tuple[int, int, int] | None, number: int) -> str:
+    """White is what CAD programs show on black paper in place of black: number 7 is either."""
+    if true_colour is None:
+        true_colour = ezdxf.colors.aci2rgb(number) if 0 < number < 256 and number != 7 else (0, 0, 0)
+    colour = "#{:02x}{:02x}{:02x}".format(*true_colour)
+    return _BLACK if colour == "#ffffff" else colour
+
+
+def _key(name: str) -> str:
+    return name.casefold()

@@ -1,0 +1,98 @@
+"""What DXF entities paint, as elements of a Design: lines that meet joined, widths along the arc length."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...geometry.arc_length import knots
+from ..design import Element, SubPath
+from .curves import Curve, reversed_cubics, straight
+from .entity_walk import Piece
+from .splines import joined
+
+_GAP_MM = 1e-4  # ends nearer than this meet
+_NOTHING_MM = 1e-6  # cubics below it have a direction made of rounding errors
+
+
+def chained(pieces: list[Piece]) -> list[Piece]:
+    """Lines that were drawn one after the other and meet, as one: the brush is not lifted between them."""
+    chains: list[list[Piece]] = []
+    ends = None  # of the last chain: start and end
+    for piece in pieces:
+        begin, end = (piece.curves[0].cubics[k, m, :2] for k, m in ((0, 0), (-1, 3)))
+        if ends is not None and _alike(chains[-1][-1], piece):
+            chain = chains[-1]
+            meets = [[_meet(mine, its) for its in (begin, end)] for mine in ends]
+            if len(chain) == 1 and any(meets[0]) and not any(meets[1]):
+                chain[0], ends, meets = _turned(chain[0]), ends[::-1], meets[::-1]
+            if any(meets[1]):
+                if not meets[1][0]:
+                    piece, begin, end = _turned(piece), end, begin
+                chain.append(piece)
+                ends = None if _meet(ends[0], end) else (ends[0], end)
+                continue
+        chains.append([piece])
+        ends = (begin, end) if piece.joinable and not _meet(begin, end) else None
+    return [_joined(chain) for chain in chains]
+
+
+def _alike(a: Piece, b: Piece) -> bool:
+    return b.joinable and a.block == b.block and a.pen == b.pen
+
+
+def _meet(a: np.ndarray, b: np.ndarray) -> bool:
+    return math.dist(a, b) <= _GAP_MM
+
+
+def _turned(piece: Piece) -> Piece:
+    (curve,) = piece.curves
+    return replace(piece, curves=(replace(curve, cubics=reversed_cubics(curve.cubics)),))
+
+
+def _joined(chain: list[Piece]) -> Piece:
+    if len(chain) == 1:
+        return chain[0]
+    cubics = np.concatenate([piece.curves[0].cubics for piece in chain])
+    return replace(chain[0], curves=(Curve(cubics),))
+
+
+def element_of(piece: Piece) -> Element:
+    default_mm = 0.0 if piece.fill_rule else piece.pen.width_mm
+    subpaths = tuple(_subpath(curve, default_mm) for curve in piece.curves)
+    drawn = [subpath.widths[:, 1] for subpath in subpaths if subpath.widths is not None]
+    width_mm = float(np.concatenate(drawn).max()) if drawn else default_mm
+    if len(subpaths) == len(drawn) == 1 and np.ptp(drawn[0]) == 0:
+        subpaths = (replace(subpaths[0], widths=None),)
+    return Element(piece.id, subpaths, width_mm, piece.pen.colour, piece.pen.layer, fill_rule=piece.fill_rule)
+
+
+def _subpath(curve: Curve, default_mm: float) -> SubPath:
+    cubics, widths = curve.cubics[..., :2], curve.widths
+    if widths is not None:
+        widths = np.where((widths == 0).all(axis=1, keepdims=True), default_mm, widths)
+    gap = math.dist(cubics[0, 0], cubics[-1, 3])
+    if curve.closed and gap > _GAP_MM:
+        cubics = np.concatenate((cubics, straight([cubics[-1, 3], cubics[0, 0]])))
+        widths = None if widths is None else np.concatenate((widths, widths[-1:, 1:].repeat(2, axis=1)))
+    real = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) >= _NOTHING_MM
+    if not real.any():
+        point = np.repeat(cubics[:1, :1], 4, axis=1)
+        return SubPath(point, widths=None if widths is None else np.array([[0.0, widths.max()]]))
+    cubics, widths = joined(cubics[real]), None if widths is None else widths[real]
+    # As drawn if it has widths: one that tapers off where it began is not a ring.
+    closed = curve.closed or (gap <= _GAP_MM and widths is None)
+    if closed:
+        cubics[-1, 3] = cubics[0, 0]
+    return SubPath(cubics, closed, None if widths is None else _along(cubics, widths))
+
+
+def _along(cubics: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """(k, 2): fraction of the arc length and width there; two rows at one fraction where the width jumps."""
+    at = np.cumsum([0.0, *knots(cubics)[:, -1]])
+    at = at / at[-1]
+    rows = np.column_stack((np.column_stack((at[:-1], at[1:])).ravel(), widths.ravel()))
+    new = np.append(True, (np.diff(rows, axis=0) != 0).any(axis=1))
+    return rows[new]

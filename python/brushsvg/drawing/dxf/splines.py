@@ -1,0 +1,130 @@
+"""B-splines to cubics: exact up to degree 3 with even weights, else to a tolerance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .library import ezdxf
+
+_LARGEST_DEGREE = 32  # CAD programs stop at 25; the work grows with its square
+_MOST_FIT_POINTS = 2000  # ezdxf solves a full system of equations for them
+_MOST_HALVINGS = 12  # a piece 4096 times shorter that still does not fit has no tangent
+_MOST_PIECES = 100_000
+
+
+def joined(cubics: np.ndarray) -> np.ndarray:
+    """Cubics (n, 4, d) of which each starts exactly where the one before it ends."""
+    cubics = cubics.copy()
+    cubics[1:, 0] = cubics[:-1, 3]
+    return cubics
+
+
+def interpolated(fit_points, tangents, tolerance: float) -> np.ndarray:
+    """Cubics (n, 4, 3) through fit points as CAD programs lay them; tangents: at the start and end, or None."""
+    if len(fit_points) > _MOST_FIT_POINTS:
+        raise ValueError(f"{len(fit_points)} fit points without control points, {_MOST_FIT_POINTS} are read")
+    both = None if any(tangent is None for tangent in tangents) else tangents
+    tool = ezdxf.math.fit_points_to_cad_cv(fit_points, both)
+    points = [point.xyz for point in tool.control_points]
+    return b_spline(tool.degree, tool.knots(), points, tool.weights(), tolerance)
+
+
+def b_spline(degree: int, knots, points, weights, tolerance: float) -> np.ndarray:
+    """Cubics (n, 4, 3). points: (n, 3); no knots: evenly spaced ones, clamped; no weights: all alike.
+
+    ValueError if they do not go together.
+    """
+    points = np.array(points, dtype=float).reshape(-1, 3)
+    knots, weights = np.array(knots, dtype=float), np.array(weights, dtype=float)
+    if not 1 <= degree <= _LARGEST_DEGREE:
+        raise ValueError(f"the degree {degree} is outside the range [1, {_LARGEST_DEGREE}]")
+    if len(points) <= degree:
+        raise ValueError(f"{len(points)} control points are too few for degree {degree}")
+    if not len(knots):
+        inner = np.arange(len(points) - degree + 1.0)
+        knots = np.concatenate((np.zeros(degree), inner, np.full(degree, inner[-1])))
+    if not len(weights):
+        weights = np.ones(len(points))
+    if len(knots) != len(points) + degree + 1:
+        raise ValueError(f"{len(knots)} knots do not go with {len(points)} control points of degree {degree}")
+    if not (np.diff(knots) >= 0).all():
+        raise ValueError("the knots do not ascend")
+    if len(weights) != len(points) or not (weights > 0).all():
+        raise ValueError("each control point needs one weight above 0")
+    weights = weights / weights.max()
+    pieces = _beziers(np.column_stack((points * weights[:, None], weights)), knots, degree)
+    if degree <= 3 and np.ptp(weights) == 0:
+        return joined(_elevated(pieces[..., :3]))
+    return joined(_fitted(pieces, tolerance))
+
+
+def _beziers(points: np.ndarray, knots: np.ndarray, degree: int) -> np.ndarray:
+    """Control points (spans, degree + 1, 4) of each span that is not empty: its polar forms, by de Boor's scheme."""
+    tiny = 1e-10 * (knots[-1] - knots[0])
+    spans = np.array([k for k in range(degree, len(points)) if knots[k + 1] - knots[k] > tiny], dtype=int)
+    if not len(spans):
+        raise ValueError("all knots coincide")
+    begin, end = knots[spans], knots[spans + 1]
+    pieces = []
+    for from_end in range(degree + 1):
+        d = [points[spans - degree + j] for j in range(degree + 1)]
+        for r in range(1, degree + 1):
+            at = end if r <= from_end else begin
+            for j in range(degree, r - 1, -1):
+                left, right = knots[spans + j - degree], knots[spans + j + 1 - r]
+                part = ((at - left) / (right - left))[:, None]
+                d[j] = (1 - part) * d[j - 1] + part * d[j]
+        pieces.append(d[degree])
+    return np.stack(pieces, axis=1)
+
+
+def _elevated(pieces: np.ndarray) -> np.ndarray:
+    while (degree := pieces.shape[1] - 1) < 3:
+        part = (np.arange(1, degree + 1) / (degree + 1))[:, None]
+        inner = part * pieces[:, :-1] + (1 - part) * pieces[:, 1:]
+        pieces = np.concatenate((pieces[:, :1], inner, pieces[:, -1:]), axis=1)
+    return pieces
+
+
+def _fitted(pieces: np.ndarray, tolerance: float) -> np.ndarray:
+    """Cubics in place of rational Bezier curves (n, degree + 1, 4): those that do not fit are halved."""
+    begin, length = np.arange(len(pieces), dtype=float), 1.0
+    begins, found = [], []
+    for halvings in range(_MOST_HALVINGS + 1):
+        cubics, off = _hermite(pieces)
+        rough = (off > 0.5 * tolerance) & (halvings < _MOST_HALVINGS)  # not nan: caught where all geometry is
+        begins.append(begin[~rough])
+        found.append(cubics[~rough])
+        if not rough.any():
+            break
+        if rough.sum() > _MOST_PIECES:
+            raise ValueError(f"more than {_MOST_PIECES} cubics are needed for it")
+        length /= 2
+        begin = np.concatenate((begin[rough], begin[rough] + length))
+        pieces = np.concatenate(_halves(pieces[rough], 0.5))
+    return np.concatenate(found)[np.argsort(np.concatenate(begins))]
+
+
+def _hermite(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cubics with the ends and end tangents of rational curves, and how far they are off at three parameters."""
+    degree = pieces.shape[1] - 1
+    weights = pieces[..., 3:]
+    p = pieces[..., :3] / weights
+    first = degree * weights[:, 1] / weights[:, 0] * (p[:, 1] - p[:, 0])
+    last = degree * weights[:, -2] / weights[:, -1] * (p[:, -1] - p[:, -2])
+    cubics = np.stack((p[:, 0], p[:, 0] + first / 3, p[:, -1] - last / 3, p[:, -1]), axis=1)
+    off = np.zeros(len(pieces))
+    for t in (0.25, 0.5, 0.75):
+        true = _halves(pieces, t)[1][:, 0]
+        off = np.maximum(off, np.abs(true[:, :3] / true[:, 3:] - _halves(cubics, t)[1][:, 0]).max(axis=1))
+    return cubics, off
+
+
+def _halves(points: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """de Casteljau: the control points (n, degree + 1, d) left and right of t."""
+    left, right = [points[:, 0]], [points[:, -1]]
+    while points.shape[1] > 1:
+        points = (1 - t) * points[:, :-1] + t * points[:, 1:]
+        left.append(points[:, 0])
+        right.append(points[:, -1])
+    return np.stack(left, axis=1), np.stack(right[::-1], axis=1)

@@ -1,0 +1,52 @@
+"""What a unit of a DXF is in mm: its header, or who reads it, says so."""
+
+from __future__ import annotations
+
+import math
+
+from ...errors import Error
+from ..design import Notice
+
+_FOOT_MM = 304.8
+_SURVEY_FOOT_MM = 1_200_000 / 3937
+# $INSUNITS: name, mm.
+_UNITS = {
+    1: ("inches", 25.4),
+    2: ("feet", _FOOT_MM),
+    3: ("miles", 5280 * _FOOT_MM),
+    4: ("millimetres", 1.0),
+    5: ("centimetres", 10.0),
+    6: ("metres", 1e3),
+    7: ("kilometres", 1e6),
+    8: ("microinches", 25.4e-6),
+    9: ("mils", 25.4e-3),
+    10: ("yards", 3 * _FOOT_MM),
+    11: ("angstroms", 1e-7),
+    12: ("nanometres", 1e-6),
+    13: ("microns", 1e-3),
+    14: ("decimetres", 100.0),
+    15: ("decametres", 1e4),
+    16: ("hectometres", 1e5),
+    17: ("gigametres", 1e12),
+    18: ("astronomical units", 149_597_870_700e3),
+    19: ("light years", 9_460_730_472_580_800e3),
+    20: ("parsecs", 149_597_870_700e3 * 648_000 / math.pi),
+    21: ("US survey feet", _SURVEY_FOOT_MM),
+    22: ("US survey inches", _SURVEY_FOOT_MM / 12),
+    23: ("US survey yards", 3 * _SURVEY_FOOT_MM),
+    24: ("US survey miles", 5280 * _SURVEY_FOOT_MM),
+}
+_ASKED_FOR = {"mm": _UNITS[4], "in": _UNITS[1]}
+
+
+def unit_of(document, asked_for: str | None) -> tuple[float, list[Notice]]:
+    """Of the drawing, or as asked for. Error where neither says a unit."""
+    name, drawn = _UNITS.get(document.header.get("$INSUNITS", 0), ("", None))
+    if asked_for is None:
+        if drawn is None:
+            raise Error("the drawing does not say its unit: give --units mm or --units in", where="$INSUNITS")
+        return drawn, []
+    wanted_name, wanted = _ASKED_FOR[asked_for]
+    if drawn is None or drawn == wanted:
+        return wanted, []
+    return wanted, [Notice("$INSUNITS", f"the drawing is in {name}; read in {wanted_name}, as asked for")]

@@ -1,0 +1,232 @@
+"""One shape of an SVG file to an Element: what it is painted with, its geometry on paper, its dashes."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import Error
+from ...geometry.arc_length import knots
+from ...units import MM_PER, number
+from ..design import Element, SubPath, extremes
+from . import shapes
+from .context import Context, Notes, local
+from .css_cascade import MARKERS
+from .paint import Paints
+from .path_to_cubics import LARGEST_MM, trace
+from .power_stroke import PowerStroke, drawn_line, with_widths
+from .transform import IDENTITY, scales
+
+_WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
+_WHITE = "#ffffff"
+_UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
+# A page of text has a hundredth of each.
+_MOST_DASHES = 100_000
+_MOST_DATA = 10_000_000  # characters of path data
+
+
+class Painted:
+    """elements: those of the drawing in the order painted. bent: what lies in path effects of groups."""
+
+    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
+        self.elements: list[Element] = []
+        self.by_id = by_id
+        self.paints = paints
+        self.bent = bent
+        self.notes = notes
+        self.nameless = self.data = 0
+        self.dashes_left = _MOST_DASHES
+
+    def add(self, node: ET.Element, tag: str, context: Context) -> None:
+        """Take a shape in, as far as it is sound."""
+        properties = context.style.inherited
+        stroke, of_stroke = self.paints.of(properties, "stroke")
+        fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
+        attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
+        power, sentences = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
+        greatest, least = scales(context.matrix)
+        if least <= 1e-12 * greatest:
+            self.notes.add(node, context, "its transforms flatten it to nothing: left out")
+            return
+        mm_per_user = math.sqrt(greatest * least)
+        width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
+        if context.style.own["vector-effect"] == "non-scaling-stroke":
+            width_mm *= MM_PER["px"] / mm_per_user
+        if power:
+            attributes = {**attributes, "d": power.d}
+            stroke, of_stroke = (fill, of_fill) if fill != "none" else (stroke, of_stroke)
+            fill = "none"
+        if "width_mm" in context.settings:
+            width_mm, power = context.settings["width_mm"], None
+            if stroke == "none" and fill == "none":  # a shape stays a shape
+                stroke = properties["color"][:7]
+        if power is None and width_mm == 0:
+            stroke = "none"
+        if stroke == "none" and fill == "none":
+            self.notes.add(node, context, "it has neither stroke nor fill: left out")
+            return
+        if not width_mm <= LARGEST_MM:
+            sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
+            self.notes.add(node, context, sentence, damaged=True)
+            return
+        told = len(self.notes.notices)
+        subpaths = self._drawn(node, tag, attributes, context, power, stroke != "none")
+        if not subpaths:
+            return
+        if stroke != "none" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
+            sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
+            self.notes.add(node, context, sentence)
+        sentences += of_fill * (fill != "none") + of_stroke * (stroke != "none")
+        if _WHITE in (fill, stroke):
+            sentences.append(
+                "it is white, and painted like any colour: what it hides in the drawing is painted, too"
+            )
+        if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
+            sentences.append("markers are not read: left out")
+        for sentence in sentences:
+            self.notes.add(node, context, sentence)
+        self.elements.append(
+            Element(
+                id=self._named(node, context, told),
+                subpaths=subpaths,
+                stroke_width_mm=0.0 if stroke == "none" else width_mm,
+                colour=fill if stroke == "none" else stroke,
+                layer=context.layer,
+                settings=context.settings,
+                fill_rule="" if fill == "none" else properties["fill-rule"],
+            )
+        )
+
+    def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
+        """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""
+        attributes = {**node.attrib, **context.style.geometry}
+        try:
+            commands = shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
+        except shapes.DamageError:
+            return None
+        line = trace(commands, IDENTITY, 1.0)
+        if line.beyond is not None or not line.subpaths:
+            return None
+        points = np.concatenate([extremes(subpath.cubics) for subpath in line.subpaths])
+        (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
+        return x, y, width, height
+
+    def _named(self, node: ET.Element, context: Context, told: int) -> str:
+        """A painted element's name; what was told about one without an id is told about its name as well."""
+        if name := context.name(node):
+            return name
+        self.nameless += 1
+        name = f"stroke{self.nameless}"
+        notices = self.notes.notices
+        if len(notices) > told:
+            label = f"{name} ({self.notes.label(node)})"
+            notices[told:] = [replace(notice, where=label) for notice in notices[told:]]
+        return name
+
+    def _drawn(
+        self, node, tag: str, attributes, context: Context, power: PowerStroke | None, is_line: bool
+    ) -> tuple[SubPath, ...]:
+        """What is painted of an element's geometry, on paper."""
+        greatest, least = scales(context.matrix)
+        mm_per_user = math.sqrt(greatest * least)
+        subpaths = self._sound(node, tag, attributes, context, greatest)
+        if power:
+            subpaths = with_widths(power, subpaths, mm_per_user)
+        if is_line:
+            subpaths = self._dashed(node, context, subpaths, mm_per_user)
+        return self._shown(node, context, subpaths)
+
+    def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
+        self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
+        if self.data > _MOST_DATA:
+            raise Error(
+                f"the drawing has more than {_MOST_DATA} characters of path data", self.notes.label(node)
+            )
+        try:
+            commands = shapes.commands_of(tag, attributes, context.viewport, context.em_px)
+            if not commands:
+                self.notes.add(node, context, "it has no geometry: left out")
+        except shapes.DamageError as damage:
+            self.notes.add(node, context, str(damage), damaged=True)
+            commands = damage.commands
+        line = trace(commands, context.matrix, greatest)
+        if line.beyond is not None:
+            self.notes.add(node, context, _beyond(attributes, tag, line.beyond), damaged=True)
+        if line.lone_movetos:
+            count = "a moveto" if line.lone_movetos == 1 else f"{line.lone_movetos} movetos"
+            self.notes.add(node, context, f"{count} without a line to follow: skipped")
+        return line.subpaths
+
+    def _dashed(self, node, context: Context, subpaths, mm_per_user: float) -> tuple[SubPath, ...]:
+        properties = context.style.inherited
+        if properties["stroke-dasharray"] == "none" or not subpaths:
+            return subpaths
+        from .dashes import dashed
+
+        words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
+        try:
+            scale = mm_per_user * self._path_scale(node, context, subpaths, mm_per_user)
+            pattern = [context.length(word, context.diagonal) * scale for word in words]
+            offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
+        except Error as error:
+            self.notes.add(node, context, f"stroke-dasharray: {error}: the line counts as solid")
+            return subpaths
+        if min(pattern, default=0.0) < 0:
+            self.notes.add(node, context, "stroke-dasharray has a negative length: the line counts as solid")
+            return subpaths
+        if not 0 < sum(pattern) < math.inf:
+            return subpaths
+        if subpaths[0].widths is not None:
+            self.notes.add(node, context, "its dashes are not read: its width varies")
+            return subpaths
+        pieces: list[SubPath] = []
+        try:
+            for subpath in subpaths:
+                pieces += dashed(subpath, pattern, offset, self.dashes_left - len(pieces))
+        except Error as error:
+            raise Error(str(error), where=self.notes.label(node)) from None
+        self.dashes_left -= len(pieces)
+        self.notes.add(node, context, f"it is dashed: {len(pieces)} strokes, one for each dash")
+        return tuple(pieces)
+
+    def _path_scale(self, node, context: Context, subpaths, mm_per_user: float) -> float:
+        """What a unit of the dashes is, in user units: less or more where pathLength says how long the path is."""
+        text = (node.get("pathLength") or "").strip()
+        if not text:
+            return 1.0
+        try:
+            said = number(text)
+        except Error as error:
+            self.notes.add(node, context, f"pathLength: {error}; it counts as not given")
+            return 1.0
+        if said < 0:
+            return 1.0
+        length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
+        return length_mm / mm_per_user / said if said else math.inf
+
+    def _shown(self, node, context: Context, subpaths) -> tuple[SubPath, ...]:
+        """What a nested viewport shows of it: all, or nothing. A line is not cut."""
+        window = context.window_mm
+        if window is None or not subpaths:
+            return subpaths
+        points = np.concatenate([extremes(subpath.cubics) for subpath in subpaths])
+        (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+        if x0 > window[2] or x1 < window[0] or y0 > window[3] or y1 < window[1]:
+            self.notes.add(node, context, "it lies outside of the viewport that would show it: left out")
+            return ()
+        slack = 1e-6
+        beyond = (window[0] - x0, window[1] - y0, x1 - window[2], y1 - window[3])
+        if max(beyond) > slack:
+            self.notes.add(node, context, "its viewport cuts it off in the drawing: painted whole")
+        return subpaths
+
+
+def _beyond(attributes, tag: str, place: int) -> str:
+    name = {"path": "d", "polyline": "points", "polygon": "points"}.get(tag)
+    if name is None:
+        return "its geometry lies beyond 1e6 mm: left out"
+    found = shapes.snippet(attributes[name], place)
+    return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; read up to there"

@@ -1,0 +1,110 @@
+"""What a drawing says to brushsvg itself: data-brushsvg-* on paths, groups and layers, inherited, and on its root."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from ...errors import Error
+from ...units import length_mm, number
+
+PREFIX = "data-brushsvg-"
+
+
+def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:
+    """Settings that an element says itself, as docs/drawings.md lists them, and what of them is not valid."""
+    settings, problems = _read(attributes, _KNOWN | _OF_THE_DOCUMENT if is_root else _KNOWN)
+    return {key: value for key, value in settings.items() if key not in _OF_THE_DOCUMENT}, problems
+
+
+def document_settings(attributes: dict[str, str]) -> dict:
+    """What the root element says of the whole job: brush, cell, compensation, tolerance, wide; valid ones only."""
+    settings, _ = _read(attributes, _OF_THE_DOCUMENT | {"brush": _KNOWN["brush"]})
+    return settings
+
+
+def _read(attributes: dict[str, str], known: dict) -> tuple[dict, list[str]]:
+    settings, problems = {}, []
+    for attribute, text in attributes.items():
+        if not attribute.startswith(PREFIX):
+            continue
+        name = attribute.removeprefix(PREFIX)
+        if name not in known:
+            problems.append(f"{attribute} is not known; known: {', '.join(known)}")
+            continue
+        key, read = known[name]
+        try:
+            settings[key] = read(text.strip())
+        except (Error, ValueError) as problem:
+            problems.append(f"{attribute}: {problem}")
+    return settings, problems
+
+
+def _width_mm(text: str) -> float:
+    return _in_range(length_mm(text), 0.001, 1000, "mm")
+
+
+def _speed_mm_s(text: str) -> float:
+    try:
+        value = number(text)
+    except Error:
+        raise Error(f"{text[:24]!r} is not a speed in mm/s") from None
+    return _in_range(value, 0.001, 10000, "mm/s")
+
+
+def _whole(least: int, greatest: int):
+    def read(text: str) -> int:
+        if not re.fullmatch("[+-]?[0-9]{1,18}", text):  # int() reads other alphabets' digits, too
+            raise Error(f"{text[:24]!r} is not a whole number")
+        return _in_range(int(text), least, greatest)
+
+    return read
+
+
+def _yes(text: str) -> bool:
+    if text.lower() not in ("yes", "no", "true", "false", "1", "0"):
+        raise Error(f"{text[:24]!r} is neither yes nor no")
+    return text.lower() in ("yes", "true", "1")
+
+
+def _name(text: str) -> str:
+    if not text:
+        raise Error("it is empty")
+    return text
+
+
+def _one_of(*known: str):
+    def read(text: str) -> str:
+        if text not in known:
+            raise Error(f"{text[:24]!r} is none of {', '.join(known)}")
+        return text
+
+    return read
+
+
+def _tolerance_mm(text: str) -> float:
+    return _in_range(length_mm(text), 1e-5, 10, "mm")
+
+
+def _in_range(value, least, greatest, unit: str = ""):
+    if not (math.isfinite(value) and least <= value <= greatest):
+        unit = unit and f" {unit}"
+        raise Error(f"{value:g}{unit} is outside the range [{least:g}, {greatest:g}]{unit}")
+    return value
+
+
+_KNOWN = {
+    "width": ("width_mm", _width_mm),
+    "speed": ("speed_mm_s", _speed_mm_s),
+    "order": ("order", _whole(-1_000_000, 1_000_000)),
+    "passes": ("passes", _whole(1, 20)),
+    "reload": ("reload", _yes),
+    "skip": ("skip", _yes),
+    "brush": ("brush", _name),
+}
+_OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
+    "cell": ("cell", _name),
+    "compensation": ("compensation", _one_of("none", "constant", "closed", "refined")),
+    "tolerance": ("tolerance", _tolerance_mm),
+    "wide": ("wide", _one_of("clamp", "passes", "refuse")),
+}

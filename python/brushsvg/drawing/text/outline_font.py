@@ -1,0 +1,131 @@
+"""Text in a TrueType or OpenType font: HarfBuzz shapes and draws, fontTools unpacks and makes cubics.
+
+Needs the extra `text`; nobody else imports what it imports.
+"""
+
+from __future__ import annotations
+
+import io
+import zlib
+
+import numpy as np
+import uharfbuzz as hb
+from fontTools.pens.basePen import BasePen
+from fontTools.ttLib import TTFont
+
+from ...errors import Error
+from ..design import Notice, SubPath
+from .typesetting import Placed, Setting
+
+_UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
+_NOTICE = "its letters are outlines, which become strokes as filled shapes do"
+
+
+def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
+    """Lines of text in a font whose em is size_mm, kerned and joined as the font says.
+
+    Of a collection, the first font. Error if the font cannot be read.
+    """
+    setter = _Setter(_unpacked(data), size_mm)
+    placed = tuple(map(setter.place, lines))
+    return Setting(placed, True, tuple(setter.missing), (Notice("font", _NOTICE),))
+
+
+class _Setter:
+    def __init__(self, data: bytes, size_mm: float):
+        face = hb.Face(data)
+        if not face.glyph_count:
+            raise Error("this is a damaged font: it holds no glyphs that can be read")
+        self.font = hb.Font(face)
+        self.mm_per_unit = size_mm / face.upem
+        self.shapes: dict[int, tuple[SubPath, ...]] = {}
+        self.missing: dict[str, None] = {}
+
+    def place(self, line: str) -> tuple[Placed, ...]:
+        buffer = hb.Buffer()
+        buffer.add_codepoints([ord(character) for character in line])
+        buffer.language = "und"  # some builds of HarfBuzz would take the locale's: same input, other bytes
+        buffer.guess_segment_properties()
+        hb.shape(self.font, buffer)
+        infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
+        clusters = sorted({info.cluster for info in infos})
+        ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=True))
+        placed = []
+        x = y = 0
+        for info, position in zip(infos, positions, strict=True):
+            characters = line[info.cluster : ends[info.cluster]]
+            if info.codepoint == 0:
+                lacking = [each for each in characters if not self.font.get_nominal_glyph(ord(each))]
+                self.missing.update(dict.fromkeys(lacking or characters))
+                continue
+            if subpaths := self._shape(info.codepoint):
+                origin = x + position.x_offset, -(y + position.y_offset)
+                placed.append(Placed(characters, subpaths, *(value * self.mm_per_unit for value in origin)))
+            x, y = x + position.x_advance, y + position.y_advance
+        return tuple(placed)
+
+    def _shape(self, glyph: int) -> tuple[SubPath, ...]:
+        if glyph not in self.shapes:
+            pen = _Cubics()
+            self.font.draw_glyph_with_pen(glyph, pen)
+            to_mm = np.array([self.mm_per_unit, -self.mm_per_unit])
+            contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
+            self.shapes[glyph] = tuple(SubPath(cubics, closed=True) for cubics in contours)
+        return self.shapes[glyph]
+
+
+class _Cubics(BasePen):
+    """Contours as eight numbers a cubic; quadratic curves come as cubics from BasePen."""
+
+    def __init__(self):
+        super().__init__(None)
+        self.contours: list[list[tuple[float, ...]]] = []
+
+    def _moveTo(self, point):  # noqa: N802
+        self.contours.append([])
+        self.start = point
+
+    def _lineTo(self, end):  # noqa: N802
+        (x, y), (ex, ey) = self._getCurrentPoint(), end
+        dx, dy = (ex - x) / 3, (ey - y) / 3
+        self._curveToOne((x + dx, y + dy), (ex - dx, ey - dy), end)
+
+    def _curveToOne(self, first, second, end):  # noqa: N802
+        self.contours[-1].append((*self._getCurrentPoint(), *first, *second, *end))
+
+    def _closePath(self):  # noqa: N802
+        if self._getCurrentPoint() != self.start:
+            self._lineTo(self.start)
+
+
+def _unpacked(data: bytes) -> bytes:
+    """The font as HarfBuzz reads it: WOFF is taken out of its compression."""
+    if data.startswith(b"wOF2"):
+        raise Error("WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress")
+    if not data.startswith(b"wOFF"):
+        return data
+    try:
+        font = TTFont(io.BytesIO(data), lazy=True, recalcBBoxes=False, recalcTimestamp=False)
+        left = _UNPACKED
+        for table in font.reader.tables.values():
+            left -= _inflated_length(data[table.offset : table.offset + table.length], left)
+        font.flavor = None
+        out = io.BytesIO()
+        font.save(out, reorderTables=None)
+    except Error:
+        raise
+    except Exception as error:  # fontTools raises whatever it meets in damaged tables
+        reason = str(error).splitlines() or [type(error).__name__]
+        raise Error(f"this is a damaged WOFF font: {reason[0][:120]}") from None
+    return out.getvalue()
+
+
+def _inflated_length(packed: bytes, limit: int) -> int:
+    """Of a table of a WOFF font, found before fontTools fills the memory with it."""
+    try:
+        length = len(zlib.decompressobj().decompress(packed, limit + 1))
+    except zlib.error:
+        return len(packed)  # as it is: WOFF leaves alone what would not shrink
+    if length > limit:
+        raise Error(f"the font unpacks to more than {_UNPACKED} bytes", "", length, (0, _UNPACKED))
+    return length

@@ -1,0 +1,1 @@
+"""Curves and arcs, whatever they are of."""

@@ -1,0 +1,220 @@
+"""The robot's side of the table: where the paper lies, how high, how fast and how far the tool may go, the paint."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+
+import numpy as np
+
+from .frames import frame_of_points, frame_of_pose
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a key of a cell file says and may hold.
+
+    kind: text, yes, whole, number, or the shape of a table of numbers as a tuple, None for any count of rows.
+    """
+
+    help: str
+    kind: object
+    least: float = -1e5
+    greatest: float = 1e5
+
+
+def _key(help: str, kind, least: float = -1e5, greatest: float = 1e5, default=MISSING):
+    return field(default=default, metadata={"entry": Entry(help, kind, least, greatest)})
+
+
+def _number(help: str, least: float, greatest: float, default=MISSING):
+    return _key(help, "number", least, greatest, default)
+
+
+@dataclass(frozen=True)
+class Paper:
+    """Where the sheet's lower left corner lies in the robot's frame: a pose, or points that were taught."""
+
+    origin_mm: tuple = _key(
+        "lower left corner of the sheet in the robot's frame", (3,), default=(0.0, 0.0, 0.0)
+    )
+    rotation_deg: tuple = _key(
+        "about the robot's x, then its y, then its z axis", (3,), -360, 360, default=(0.0, 0.0, 0.0)
+    )
+    taught_mm: tuple = _key(
+        "instead of the pose: the brush's tip at the lower left corner, somewhere along the lower edge and somewhere "
+        "along the left edge, each just touching; a fourth point anywhere on the paper tells whether it is flat",
+        (None, 3),
+        default=(),
+    )
+    flatness_mm: float = _number(
+        "how far off the plane of three the fourth point may lie", 0.01, 10, default=0.5
+    )
+    example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
+
+
+@dataclass(frozen=True)
+class Tool:
+    """The brush's tip, seen from the robot's flange; the brush stands on the paper's normal."""
+
+    tcp_mm: tuple = _key("the brush's tip in the flange's frame", (3,), -2000, 2000)
+    rotation_deg: tuple = _key(
+        "of the tool's frame, z along the brush; about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
+    )
+    spin_deg: float = _number("how the tool is turned about the brush's axis", -360, 360, default=0.0)
+
+
+@dataclass(frozen=True)
+class Heights:
+    """Over the paper: z up, 0 where the unbent brush just touches."""
+
+    safe_mm: float = _number("travel between strokes, clear of clips, vessels and wet paint", 0.5, 1000)
+    clearance_mm: float = _number("below this only at press_mm_s", 0.01, 1e3)
+    lowest_mm: float = _number("never lower than this", -200, -0.01)
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """Of the tool's tip."""
+
+    travel_mm_s: float = _number("at or above the safe height", 0.01, 5000)
+    approach_mm_s: float = _number(
+        "on the way down to the clearance; the brush's limit where that is less", 0.01, 5000
+    )
+    press_mm_s: float = _number("straight down into the paper or paint, and up again", 0.01, 5000)
+    paint_mm_s: float = _number("the most while painting; the brush has a limit of its own", 0.01, 5000)
+    acceleration_mm_s2: float = _number(
+        "for the time estimate, and where the language asks for one", 1, 50000
+    )
+
+
+@dataclass(frozen=True)
+class Blending:
+    """How much of the joint of two moves the machine may cut, so as not to stand still there and bleed."""
+
+    tolerance_mm: float = _number("at most so far from the joint; 0: joints are met exactly", 0, 10)
+    radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Where the tool may be."""
+
+    margin_mm: float = _number("beyond the sheet's edges: the TCP leads the brush", 0, 1e4)
+    tilt_limit_deg: float = _number("how far the paper's normal may lean from the robot's z axis", 0, 180)
+    box_mm: tuple = _key("two opposite corners of a box in the robot's frame", (2, 3), default=())
+    reach_mm: tuple = _key("least and greatest distance from the robot's origin", (2,), 0, 1e5, default=())
+    keep_out_mm: tuple = _key(
+        "boxes in the robot's frame that the tool must not go through, each by two opposite corners",
+        (None, 2, 3),
+        default=(),
+    )
+
+
+@dataclass(frozen=True)
+class Servo:
+    """A pen lift that knows no millimetres: heights over the paper and the values that give them."""
+
+    table: tuple = _key("rows of height in mm and value; both rise or fall steadily", (None, 2))
+    step_mm: float = _number(
+        "the value is renewed when the height has changed by so much", 0.01, 10, default=0.1
+    )
+    settle_s: float = _number("wait after a move of the lift alone", 0, 60, default=0.0)
+
+
+@dataclass(frozen=True)
+class Station:
+    """A vessel, or a place to wait for a person with one. In the paper's frame, as all heights."""
+
+    name: str = _key("as the program's comments call it", "text")
+    place_mm: tuple = _key("x and y of its middle", (2,))
+    colours: tuple = _key(
+        "colours of strokes it serves, as in the drawing, '#rrggbb'; none: all", "texts", default=()
+    )
+    by_hand: bool = _key("the program stops here until a person has dipped the brush", "yes", default=False)
+    surface_mm: float = _number("height of the paint's surface", -1e3, 1e3, default=0.0)
+    depth_mm: float = _number("how deep the tip dips below the surface", 0, 100, default=0.0)
+    rim_mm: float = _number("height of the vessel's rim", -1e3, 1e3, default=0.0)
+    hold_s: float = _number("wait in the paint", 0, 600, default=0.0)
+    drip_s: float = _number("wait above it", 0, 600, default=0.0)
+    wipe_mm: tuple = _key(
+        "points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=()
+    )
+
+
+@dataclass(frozen=True)
+class Reload:
+    """When to fetch paint. Stations of the stroke's colour are visited."""
+
+    when: str = _key("length, stroke or layer", "text")
+    every_mm: float = _number("for length: paint lasts so far", 1, 1e6, default=300.0)
+    backtrack_mm: float = _number("a stroke goes on so far back in its own mark", 0, 100, default=5.0)
+    wash: str = _key("station to visit before the colour changes", "text", default="")
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A machine, its limits and its paint. Lengths in mm, speeds in mm/s, heights over the paper."""
+
+    name: str = _key("as --cell calls it", "text")
+    description: str = _key("one line", "text")
+    language: str = _key("the robot's", "text")
+    decimals: int = _key("of lengths in the program", "whole", 3, 6)
+    paper: Paper
+    heights: Heights
+    speeds: Speeds
+    blending: Blending
+    workspace: Workspace
+    tool: Tool | None = None
+    servo: Servo | None = None
+    reload: Reload | None = None
+    stations: tuple[Station, ...] = ()
+
+
+TABLES = {
+    "paper": Paper,
+    "heights": Heights,
+    "speeds": Speeds,
+    "blending": Blending,
+    "workspace": Workspace,
+    "tool": Tool,
+    "servo": Servo,
+    "reload": Reload,
+}
+OPTIONAL_TABLES = ("tool", "servo", "reload")
+NEEDED_BY = {"grbl-servo": "servo", "urscript": "tool"}
+RELOADS = ("length", "stroke", "layer")
+
+
+def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
+    """(4, 4): the paper's frame in the robot's, the paper z_offset_mm higher than the cell says.
+
+    Error when taught points do not make a plane or the fourth one does not lie in it.
+    """
+    paper = cell.paper
+    if paper.taught_mm:
+        frame = frame_of_points(paper.taught_mm, paper.flatness_mm)
+    else:
+        frame = frame_of_pose(paper.origin_mm, paper.rotation_deg)
+    frame[:3, 3] += z_offset_mm * frame[:3, 2]
+    return frame
+
+
+def value_mm(cell: Cell) -> float:
+    """The most that one value of the servo changes the height by [mm]."""
+    steps = np.diff(np.array(cell.servo.table), axis=0)
+    return float(np.abs(steps[:, 0] / steps[:, 1]).max())
+
+
+def entries(table) -> dict[str, Entry]:
+    """The keys that a table of a cell file may have, with what each means."""
+    return {item.name: item.metadata["entry"] for item in fields(table) if "entry" in item.metadata}
+
+
+def required(table) -> set[str]:
+    """Those of its keys that must be there."""
+    return {item.name for item in fields(table) if "entry" in item.metadata and item.default is MISSING}
+
+
+def tables_of(cell: Cell) -> dict[str, object]:
+    """The tables that the cell has, by name."""
+    return {name: getattr(cell, name) for name in TABLES if is_dataclass(getattr(cell, name))}

@@ -1,0 +1,273 @@
+"""Whether a cell makes sense: what no single key tells is refused, what is odd is remarked on."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import Error
+from .cell import NEEDED_BY, RELOADS, Cell, Station, robot_from_paper, value_mm
+from .frames import moved, normal_tilt_deg
+from .limits import astray
+from .move_extents import ways
+
+COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
+
+
+def check(cell: Cell) -> None:
+    """Error, with the key in `where`, for what no single key tells."""
+    heights = cell.heights
+    if not heights.clearance_mm <= heights.safe_mm:
+        raise Error(
+            f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}",
+            where="heights.clearance_mm",
+        )
+    if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
+        raise Error(f"language {cell.language!r} needs a table {table}", where=table)
+    _check_paper(cell)
+    _check_workspace(cell)
+    if cell.servo:
+        _check_servo(cell)
+    _check_paint(cell)
+
+
+def _check_paper(cell: Cell) -> None:
+    if cell.paper.taught_mm and len(cell.paper.taught_mm) not in (3, 4):
+        raise Error(f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4", where="paper.taught_mm")
+    if cell.paper.taught_mm and (any(cell.paper.origin_mm) or any(cell.paper.rotation_deg)):
+        raise Error("the paper has both a pose and taught points: one must go", where="paper.taught_mm")
+    try:
+        tilt_deg = normal_tilt_deg(robot_from_paper(cell))
+    except Error as refusal:
+        refusal.where = "paper.taught_mm"
+        raise
+    limit_deg = cell.workspace.tilt_limit_deg
+    if tilt_deg > limit_deg + 1e-9:
+        raise Error(
+            f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
+            where="paper",
+        )
+
+
+def _check_workspace(cell: Cell) -> None:
+    box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
+    if box_mm and not all(low < high for low, high in zip(*box_mm, strict=True)):
+        raise Error("the first corner must be the lower one in x, y and z", where="workspace.box_mm")
+    for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
+        if not all(low < high for low, high in zip(*corners, strict=True)):
+            sentence = f"box {number}: the first corner must be the lower one in x, y and z"
+            raise Error(sentence, where="workspace.keep_out_mm")
+    if reach_mm and not reach_mm[0] < reach_mm[1]:
+        raise Error("the least distance must be below the greatest", where="workspace.reach_mm")
+
+
+LARGEST_SHEET_MM = 1e5
+
+
+def out_of_reach(cell: Cell) -> list[tuple[str, str]]:
+    """(key, sentence) where no sheet of any size has a point that the tool may go to, on it or above it."""
+    found: list[tuple[str, str]] = []
+    for height_mm in (0.0, cell.heights.safe_mm):
+        found = found or _beyond(cell, height_mm)
+    return found
+
+
+def _beyond(cell: Cell, height_mm: float) -> list[tuple[str, str]]:
+    box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
+    ends = (-cell.workspace.margin_mm, LARGEST_SHEET_MM)
+    sheet = np.array([(ends[a], ends[b], height_mm) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    left = moved(robot_from_paper(cell), sheet)
+    at = f"at height {height_mm:g} mm the whole sheet"
+    for axis, name in enumerate("xyz" if box_mm else ""):
+        low, high = box_mm[0][axis], box_mm[1][axis]
+        for bound, sign, where in ((low, 1.0, "below"), (high, -1.0, "above")):
+            left = _clipped(left, sign * (left[:, axis] - bound))
+            if not len(left):
+                sentence = f"{at} has {name} {where} {bound:g} mm, outside the range [{low:g}, {high:g}] mm of the box"
+                return [("workspace.box_mm", sentence)]
+    if reach_mm:
+        nearest_mm, farthest_mm = _nearest_mm(left), float(np.linalg.norm(left, axis=1).max())
+        if nearest_mm > reach_mm[1] or farthest_mm < reach_mm[0]:
+            away = (
+                f"{nearest_mm:.0f} mm and more"
+                if nearest_mm > reach_mm[1]
+                else f"at most {farthest_mm:.0f} mm"
+            )
+            bounds = "[{:g}, {:g}] mm".format(*reach_mm)
+            sentence = f"{at} lies {away} from the robot's origin, outside the range {bounds} of its reach"
+            return [("workspace.reach_mm", sentence)]
+    return []
+
+
+def _clipped(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """What of a flat polygon (n, 3) lies where `inside` (n,), which is linear on it, is not negative."""
+    kept = []
+    for k in range(len(corners)):
+        a, b = inside[k - 1], inside[k]
+        if (a < 0) != (b < 0):
+            kept.append(corners[k - 1] + (corners[k] - corners[k - 1]) * (a / (a - b)))
+        if b >= 0:
+            kept.append(corners[k])
+    return np.array(kept).reshape(-1, 3)
+
+
+def _nearest_mm(corners: np.ndarray) -> float:
+    """Distance [mm] of a flat convex polygon (n, 3) from the origin."""
+    sides = np.roll(corners, -1, axis=0) - corners
+    squares = np.maximum((sides**2).sum(axis=1), 1e-12)
+    along = np.clip(-(corners * sides).sum(axis=1) / squares, 0, 1)[:, None]
+    nearest = np.linalg.norm(corners + along * sides, axis=1).min()
+    normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
+    if size := np.linalg.norm(normal):
+        normal = normal / size
+        foot = normal * (normal @ corners[0])
+        turns = np.cross(sides, foot - corners) @ normal
+        if (turns >= 0).all():
+            nearest = min(nearest, np.linalg.norm(foot))
+    return float(nearest)
+
+
+def _check_servo(cell: Cell) -> None:
+    frame = robot_from_paper(cell)
+    lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
+    if NEEDED_BY.get(cell.language) == "servo" and not lies_level:
+        raise Error("a servo's heights are those over the paper: it must lie level, at z 0", where="paper")
+    table = np.array(cell.servo.table)
+    steps = np.diff(table, axis=0)
+    if len(table) < 2 or not ((steps[:, 0] > 0).all() or (steps[:, 0] < 0).all()):
+        raise Error("at least two heights are needed, steadily rising or falling", where="servo.table")
+    if not ((steps[:, 1] > 0).all() or (steps[:, 1] < 0).all()):
+        raise Error("the values must steadily rise or fall with the height", where="servo.table")
+    if (table[:, 1] < 0).any():
+        raise Error(f"value {table[:, 1].min():g} is below 0", where="servo.table")
+    low, high = table[:, 0].min(), table[:, 0].max()
+    if not (low <= cell.heights.lowest_mm and cell.heights.safe_mm <= high):
+        raise Error(
+            f"the heights [{low:g}, {high:g}] mm must hold lowest_mm {cell.heights.lowest_mm:g} and "
+            f"safe_mm {cell.heights.safe_mm:g}",
+            where="servo.table",
+        )
+    if (value := value_mm(cell)) > COARSEST_VALUE_MM:
+        raise Error(
+            f"one value changes the height by {value:.2g} mm, outside the range [0, {COARSEST_VALUE_MM:g}] mm: depths "
+            "would be off by half of it",
+            where="servo.table",
+        )
+    if cell.heights.clearance_mm < 2 * value:
+        raise Error(
+            f"clearance_mm {cell.heights.clearance_mm:g} is outside the range [{2 * value:.2g}, "
+            f"{cell.heights.safe_mm:g}] mm: one value of the servo changes the height by {value:.2g} mm",
+            where="heights.clearance_mm",
+        )
+
+
+def _check_paint(cell: Cell) -> None:
+    names = [station.name for station in cell.stations]
+    for number, station in enumerate(cell.stations, 1):
+        where = f"station {number}"
+        if names.index(station.name) != number - 1:
+            raise Error(f"the name {station.name!r} is given twice", where=where)
+        _check_heights_of(station, cell, where)
+        for colour in station.colours:
+            if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
+                raise Error(f"colour {colour[:24]!r} is not written as #rrggbb", where=where)
+        if station.by_hand and (station.depth_mm or station.wipe_mm):
+            raise Error("a person dips here: depth_mm and wipe_mm have no meaning", where=where)
+        if (
+            not station.by_hand
+            and not station.depth_mm
+            and station.name != getattr(cell.reload, "wash", None)
+        ):
+            raise Error("depth_mm 0 takes no paint", where=where)
+    if cell.stations and not cell.reload:
+        raise Error("stations need a table reload that says when to visit them", where="reload")
+    if not cell.reload:
+        return
+    if cell.reload.when not in RELOADS:
+        raise Error(f"{cell.reload.when!r} is none of {', '.join(RELOADS)}", where="reload.when")
+    if not cell.stations:
+        raise Error("there is no station to reload at", where="reload")
+    if cell.reload.when == "length" and not cell.reload.every_mm > 2 * cell.reload.backtrack_mm:
+        raise Error(
+            f"every_mm {cell.reload.every_mm:g} must be more than twice backtrack_mm {cell.reload.backtrack_mm:g}",
+            where="reload.every_mm",
+        )
+    if cell.reload.wash and cell.reload.wash not in names:
+        raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash")
+
+
+def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
+    if station.by_hand:
+        if cell.servo:
+            raise Error("a servo's brush falls while the program waits: by_hand cannot be", where=where)
+        return
+    top = cell.heights.safe_mm - cell.heights.clearance_mm
+    if not station.surface_mm <= station.rim_mm <= top:
+        raise Error(
+            f"rim_mm {station.rim_mm:g} is outside the range [{station.surface_mm:g}, {top:g}] mm, from the paint's "
+            f"surface to clearance_mm below the safe height",
+            where=where,
+        )
+    bottom = station.surface_mm - station.depth_mm
+    if bottom < cell.heights.lowest_mm:
+        raise Error(f"it dips to {bottom:g} mm, below lowest_mm {cell.heights.lowest_mm:g}", where=where)
+    for point in station.wipe_mm:
+        if not station.rim_mm <= point[2] <= cell.heights.safe_mm:
+            raise Error(
+                f"a wipe at {point[2]:g} mm is outside the range [{station.rim_mm:g}, {cell.heights.safe_mm:g}] mm, "
+                f"from the rim to the safe height",
+                where=where,
+            )
+
+
+USUAL = (  # (key, least, greatest, what is unusual beyond them)
+    ("heights.safe_mm", 2.0, 200.0, "clips, vessels and drops of paint stand higher; or the way up is long"),
+    ("heights.lowest_mm", -50.0, -0.5, "few brushes bend so far; or nothing is painted"),
+    ("speeds.travel_mm_s", 1.0, 1000.0, "few machines are so fast or slow"),
+    ("speeds.approach_mm_s", 1.0, 200.0, "the tool comes down on the paper with it"),
+    ("speeds.press_mm_s", 0.5, 100.0, "the brush is pressed down with it"),
+    ("speeds.paint_mm_s", 1.0, 500.0, "bristles whip or dry at such a speed"),
+    (
+        "speeds.acceleration_mm_s2",
+        10.0,
+        10000.0,
+        "few machines accelerate so; the estimate of time hangs on it",
+    ),
+    ("paper.flatness_mm", 0.0, 2.0, "half a millimetre already changes the width of a thin line"),
+    ("workspace.margin_mm", 5.0, 500.0, "the tool leads the brush by its lag, and goes no further for paint"),
+    ("servo.step_mm", 0.0, 0.5, "the depth is off by half of it"),
+    ("reload.every_mm", 20.0, 1e5, "paint of one dip lasts for less or more"),
+)
+
+
+def remarks(cell: Cell) -> list[tuple[str, str]]:
+    """(key, sentence) for what is odd, and yet may be meant so."""
+    found = []
+    for key, least, greatest, why in USUAL:
+        table, _, name = key.partition(".")
+        value = getattr(getattr(cell, table), name, None)
+        if value is not None and not least <= value <= greatest:
+            found.append((key, f"{value:g} is outside the usual range [{least:g}, {greatest:g}]: {why}"))
+    if cell.servo and (value := value_mm(cell)) > 0.1:
+        found.append(
+            ("servo.table", f"one value changes the height by {value:.2g} mm: depths are off by half of it")
+        )
+    if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
+        found.append(
+            (
+                "tool.tcp_mm",
+                f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm",
+            )
+        )
+    if cell.paper.example:
+        found.append(("paper", "its place is an example: teach yours (brushsvg cell new --taught ...)"))
+    return found + _corner(cell)
+
+
+def _corner(cell: Cell) -> list[tuple[str, str]]:
+    """The sheet's corner may be out of reach, where nothing is painted near it."""
+    corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
+    sentences = astray(corner, robot_from_paper(cell), replace(cell, servo=None))
+    return [("workspace", f"over the sheet's lower left corner {said}") for said in sentences]

@@ -1,0 +1,106 @@
+"""Frames in space: the paper's in the robot's, from a pose or from points that were taught. Arrays are (4, 4)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import Error
+
+LEAST_TAUGHT_MM = 20.0  # closer points turn a touch of 0.2 mm into half a degree
+
+
+def frame_of_pose(origin_mm, rotation_deg) -> np.ndarray:
+    """Origin and rotation about the fixed x, then y, then z axis [degrees]: Rz Ry Rx."""
+    frame = np.eye(4)
+    frame[:3, :3] = rotation(rotation_deg)
+    frame[:3, 3] = origin_mm
+    return frame
+
+
+def rotation(rotation_deg) -> np.ndarray:
+    """(3, 3) Rz Ry Rx of angles about the fixed axes x, y, z [degrees]; right angles are exact."""
+    turned = np.eye(3)
+    for axis, angle in enumerate(np.asarray(rotation_deg, dtype=float)):
+        quarter = angle % 360 / 90
+        c, s = (
+            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][int(quarter) % 4]
+            if quarter == int(quarter)
+            else (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+        )
+        j, k = (axis + 1) % 3, (axis + 2) % 3
+        about = np.eye(3)
+        about[j, j], about[j, k], about[k, j], about[k, k] = c, -s, s, c
+        turned = about @ turned
+    return turned
+
+
+def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
+    """From the origin, a point along x, a point on the side of positive y, perhaps one more to try the plane.
+
+    Error for points too close together or on one line, and when the last lies more than flatness_mm off the
+    plane of the others.
+    """
+    points = np.asarray(points_mm, dtype=float)
+    origin, along_x, beside = points[:3]
+    x, y = along_x - origin, beside - origin
+    for name, side in (("second", x), ("third", y)):
+        if np.linalg.norm(side) < LEAST_TAUGHT_MM:
+            raise Error(
+                f"the {name} point lies {np.linalg.norm(side):.1f} mm from the first, less than {LEAST_TAUGHT_MM:g} mm"
+            )
+    x /= np.linalg.norm(x)
+    across = y - x * (x @ y)
+    if np.linalg.norm(across) < LEAST_TAUGHT_MM:
+        raise Error(
+            f"the third point lies {np.linalg.norm(across):.1f} mm beside the line of the other two, "
+            f"less than {LEAST_TAUGHT_MM:g} mm"
+        )
+    frame = np.eye(4)
+    frame[:3, 0] = x
+    frame[:3, 1] = across / np.linalg.norm(across)
+    frame[:3, 2] = np.cross(frame[:3, 0], frame[:3, 1])
+    frame[:3, 3] = origin
+    for point in points[3:]:
+        off_mm = abs(frame[:3, 2] @ (point - origin))
+        if off_mm > flatness_mm:
+            raise Error(
+                f"the fourth point lies {off_mm:.2f} mm off the plane of the other three, outside the range "
+                f"[0, {flatness_mm:g}] mm of flatness_mm: the paper is not flat, or a point was taught wrongly"
+            )
+    return frame
+
+
+def normal_tilt_deg(frame: np.ndarray) -> float:
+    """Angle between the frame's z axis and that of the frame it is given in."""
+    return float(np.degrees(np.arctan2(np.hypot(frame[0, 2], frame[1, 2]), frame[2, 2])))
+
+
+def moved(frame: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(n, 3) points of the frame, in the frame that it is given in."""
+    return points @ frame[:3, :3].T + frame[:3, 3]
+
+
+def is_upright(frame: np.ndarray) -> bool:
+    """Whether a circle on the paper is one in the x-y plane of the frame it is given in."""
+    return bool(np.allclose(frame[:3, 2], (0, 0, 1), atol=1e-9))
+
+
+def rotation_vector(turned: np.ndarray) -> np.ndarray:
+    """(3,) axis times angle [rad] of a rotation (3, 3), angle in [0, pi]: by its quaternion, whose largest part
+    is found first (Shepperd), so that half a turn, at which a tool points down, is as exact as any other."""
+    squares = np.array([1 + turned.trace(), *(1 + 2 * turned.diagonal() - turned.trace())])
+    largest = int(squares.argmax())
+    m = turned
+    skew = np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
+    if largest == 0:
+        quaternion = np.array([squares[0], *skew])
+    else:
+        axis = largest - 1
+        quaternion = np.array([skew[axis], *(m[axis] + m[:, axis])])
+        quaternion[largest] = squares[largest]
+    quaternion /= np.linalg.norm(quaternion)
+    if quaternion[0] < 0:
+        quaternion = -quaternion
+    sine = np.linalg.norm(quaternion[1:])
+    angle = 2 * np.arctan2(sine, quaternion[0])
+    return quaternion[1:] / sine * angle if sine > 0 else np.zeros(3)

@@ -1,0 +1,74 @@
+"""What the header of a program says: how it was made, for whom, how long it takes."""
+
+from __future__ import annotations
+
+from ..units import clock
+from .motion import Program, duration_s, painting_mm
+from .posts import POSTS
+from .program import WHOLE_JOB, Job
+
+
+def header_of(title: str, brush: str, plan, notes, made: Program, job: Job) -> tuple[str, ...]:
+    """The header of a program made of a plan in loads; its passes before the first one of the job are only counted."""
+    return (
+        f"title: {title}",
+        f"brush: {brush}, {len(plan.passes)} strokes",
+        _sheet_line(plan.sheet_mm),
+        *notes,
+        *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
+        *about(made, job),
+        f"length: {painting_mm(made):.0f} mm on the paper",
+    )
+
+
+def border_header(
+    title: str, brush: str, count: int, sheet_mm, notes, around_mm, made: Program, job: Job
+) -> tuple[str, ...]:
+    """The header of an air run round (left, bottom, right, top) [mm] of a job of so many strokes."""
+    left, bottom, right, top = around_mm
+    return (
+        f"title: {title}",
+        f"brush: {brush}, {count} strokes",
+        _sheet_line(sheet_mm),
+        *notes,
+        f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
+        *about(made, job),
+    )
+
+
+def height_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
+    """The header of strokes from the highest to the lowest height [mm], a step apart."""
+    return (
+        "title: how high the paper lies",
+        f"brush: {brush}, {sum(1 for _ in made.sections())} strokes",
+        _sheet_line(sheet_mm),
+        "heights: {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
+        *about(made),
+    )
+
+
+def _sheet_line(sheet_mm) -> str:
+    return "sheet: {:g} x {:g} mm".format(*sheet_mm)
+
+
+def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
+    """Lines of a header that every program has: machine, frame, time."""
+    lines = [
+        f"cell: {made.cell.name}, {made.cell.language}",
+        _frame_line(made),
+        f"time: about {clock(duration_s(made))}",
+    ]
+    if job.z_offset_mm:
+        lines.append(f"paper: {job.z_offset_mm:+.10g} mm against the cell's")
+    if made.cell.paper.example:
+        lines.append("caution: the paper's place is the example of the cell file; teach yours")
+    return lines
+
+
+def _frame_line(made: Program) -> str:
+    paper = made.cell.paper
+    at_origin = not (paper.taught_mm or any(paper.origin_mm) or any(paper.rotation_deg))
+    if at_origin or not POSTS[made.cell.language].in_robot_frame:
+        return "frame: the sheet's lower left corner, mm; z 0 touches"
+    x, y, z = made.robot_from_frame[:3, 3]
+    return f"frame: the machine's, mm; sheet's corner at {x:.1f} {y:.1f} {z:.1f}"

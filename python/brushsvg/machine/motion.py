@@ -1,0 +1,173 @@
+"""What a robot does, step by step with its meaning: the words that posts put into a robot's language."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .cell import Cell
+from .frames import is_upright, moved
+
+SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A circle in the x-y plane; turn is 1 counter-clockwise, -1 clockwise."""
+
+    centre_mm: tuple[float, float]
+    turn: int
+
+
+@dataclass(frozen=True)
+class Move:
+    """Straight lines through points_mm (n, 3), at one speed; or, with arc, the circle that they lie on.
+
+    meaning: travel (at safe height), approach (down to the clearance), land (down to the first pose), paint (along the
+    poses), lift (up to the clearance), retract (up to safe height), dip (into the paint and out), wipe, look (slowly,
+    at safe height).
+    blends_mm: (n,) how far before each point the robot may begin to turn to the next; None: not at all.
+    """
+
+    meaning: str
+    points_mm: np.ndarray
+    speed_mm_s: float
+    arc: Arc | None = None
+    blends_mm: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Wait:
+    """Stand still for so long; seconds None: until a person, who is told the message, lets the program go on."""
+
+    seconds: float | None
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """Steps that belong together, under a title: one stroke, one visit to the paint."""
+
+    title: str
+    steps: tuple[Move | Wait, ...]
+
+    @property
+    def name(self) -> str:
+        """Of the stroke or the station."""
+        return self.title.partition(": ")[2] or self.title
+
+    @property
+    def moves(self) -> tuple[Move, ...]:
+        return tuple(step for step in self.steps if isinstance(step, Move))
+
+
+@dataclass(frozen=True)
+class Program:
+    """header: lines for the reader, each beginning with a word of ours. sections() yields them one by one: a page of
+    strokes is never held twice. robot_from_frame: (4, 4), the frame of all points, in the robot's. rise_mm: how high
+    the tool is over everything, where it goes first; rise_in_robot_mm: the same in the robot's frame."""
+
+    header: tuple[str, ...]
+    cell: Cell
+    robot_from_frame: np.ndarray
+    sections: Callable[[], Iterator[Section]]
+    rise_mm: float
+    rise_in_robot_mm: float
+
+
+def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
+    """The height, in the frame that the paper's frame is given in, of the safe height's highest place [mm]."""
+    margin = cell.workspace.margin_mm
+    x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
+    corners = np.array([(a, b, cell.heights.safe_mm) for a in x for b in y])
+    return float(moved(frame, corners)[:, 2].max())
+
+
+def in_robot_frame(program: Program) -> Program:
+    """The same program with points in the robot's own frame; arcs on paper that leans become lines."""
+    frame = program.robot_from_frame
+    if np.array_equal(frame, np.eye(4)):
+        return program
+
+    def sections() -> Iterator[Section]:
+        for section in program.sections():
+            yield Section(section.title, tuple(_turned(step, frame) for step in section.steps))
+
+    return replace(program, robot_from_frame=np.eye(4), sections=sections, rise_mm=program.rise_in_robot_mm)
+
+
+def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
+    if isinstance(step, Wait):
+        return step
+    arc = step.arc
+    if arc is not None:
+        centre = moved(frame, np.array([[*arc.centre_mm, 0.0]]))[0]
+        arc = Arc((float(centre[0]), float(centre[1])), arc.turn) if is_upright(frame) else None
+    return replace(step, points_mm=moved(frame, step.points_mm), arc=arc)
+
+
+def via(points_mm: np.ndarray) -> np.ndarray:
+    """Of the points of a circle that follow its first one, the one that tells how it goes."""
+    return points_mm[(len(points_mm) - 1) // 2]
+
+
+def duration_s(program: Program) -> float:
+    """Time for the whole program: each move starts and ends at rest, with the cell's acceleration."""
+    total_s, here = 0.0, None
+    for step in (step for section in program.sections() for step in section.steps):
+        if isinstance(step, Wait):
+            total_s += step.seconds or 0.0
+            continue
+        total_s += time_of_way_s(float(distances(step, here)[-1]), step.speed_mm_s, program.cell)
+        here = step.points_mm[-1]
+    return total_s
+
+
+def painting_mm(program: Program) -> float:
+    """Length of the tool's path on the paper, circles as they are run."""
+    total_mm, here = 0.0, None
+    for move in (move for section in program.sections() for move in section.moves):
+        total_mm += float(distances(move, here)[-1]) if move.meaning == "paint" else 0.0
+        here = move.points_mm[-1]
+    return total_mm
+
+
+def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
+    """From rest to rest: v rises at the acceleration, stays, falls; a short way never reaches the speed."""
+    a = cell.speeds.acceleration_mm_s2
+    return (
+        length_mm / speed_mm_s + speed_mm_s / a
+        if length_mm > speed_mm_s**2 / a
+        else 2 * (length_mm / a) ** 0.5
+    )
+
+
+def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
+    """(n,) path [mm] from where the tool is (the first point, where that is not known) to each point of the move."""
+    if (
+        len(move.points_mm) == 1 and here is not None and move.arc is None
+    ):  # most moves by far: no arrays for them
+        return np.array([math.dist(here, move.points_mm[0])])
+    path = np.vstack([move.points_mm[:1] if here is None else here[None], move.points_mm])
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    if move.arc is not None:
+        radius = np.linalg.norm(path[:, :2] - move.arc.centre_mm, axis=1).mean()
+        steps = 2 * radius * np.arcsin(np.clip(steps / (2 * radius), 0, 1))
+    return np.cumsum(steps)
+
+
+def times_s(along_mm: np.ndarray, length_mm: float, speed_mm_s: float, cell: Cell) -> np.ndarray:
+    """When a move of a length, from rest to rest, has come so far: v rises at the acceleration, stays, falls."""
+    a, v = cell.speeds.acceleration_mm_s2, speed_mm_s
+    ramp_mm = min(v * v / (2 * a), length_mm / 2)
+    peak = np.sqrt(2 * a * ramp_mm)
+    if peak == 0:
+        return np.zeros_like(along_mm)
+    rising = np.sqrt(2 * np.clip(along_mm, 0, ramp_mm) / a)
+    steady = np.clip(along_mm - ramp_mm, 0, length_mm - 2 * ramp_mm) / peak
+    left_mm = np.clip(length_mm - along_mm, 0, ramp_mm)
+    falling = peak / a - np.sqrt(2 * left_mm / a)
+    return rising + steady + falling

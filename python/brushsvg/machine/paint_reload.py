@@ -1,0 +1,113 @@
+"""When the brush fetches paint: which stations are visited before which stroke, and where a long one is interrupted."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error
+from .cell import Cell, Station
+
+
+def in_loads(plan, brush, cell: Cell):
+    """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
+
+    The same plan for cells that do not count the length, and for strokes whose setting reload is false.
+    """
+    if not cell.reload or cell.reload.when != "length":
+        return plan
+    every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
+    passes = []
+    for a_pass in plan.passes:
+        whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
+        parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+        passes += parts
+    if len(passes) == len(plan.passes):
+        return plan
+    return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, plan.extra)
+
+
+def too_long(plan, brush, cell: Cell) -> list[tuple[str, str]]:
+    """(stroke, sentence) for parts that are longer than a load of paint lasts, unless they may not be cut."""
+    if not cell.reload or cell.reload.when != "length":
+        return []
+    every_mm, deepest_mm = cell.reload.every_mm, brush.depth_range_mm[1]
+    last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the lift comes back over its own mark
+    sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
+    return [
+        (a_pass.stroke, f"{length_mm:.0f} {sentence} {every_mm:g}] mm of a load of paint")
+        for a_pass in plan.passes
+        if (length_mm := painted_mm(a_pass)) > last_mm and _asked(a_pass) is not False
+    ]
+
+
+def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
+    """For each pass of a plan in loads the stations to visit before it; () for a cell without paint.
+
+    Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
+    cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
+    without. Error for a colour that no station serves.
+    """
+    if not cell.reload:
+        return ()
+    found, last, used_mm = [], None, 0.0
+    for number, a_pass in enumerate(plan.passes, 1):
+        station = _station_for(a_pass, cell)
+        length_mm = painted_mm(a_pass)
+        changed = last is not None and _station_for(last, cell) != station
+        wash = [each for each in cell.stations if changed and each.name == cell.reload.wash]
+        fetch = (
+            last is None
+            or changed
+            or number == first_stroke
+            or _is_due(a_pass, last, used_mm + length_mm, cell)
+        )
+        found.append((*wash, station) if fetch else ())
+        used_mm = length_mm + (0.0 if fetch else used_mm)
+        last = a_pass
+    return tuple(found)
+
+
+def painted_mm(a_pass) -> float:
+    """Length of the TCP's path on the paper [mm]."""
+    return float(np.linalg.norm(np.diff(np.asarray(a_pass.poses_mm), axis=0), axis=1).sum())
+
+
+def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
+    if is_later_part(a_pass):
+        return True
+    asked = _asked(a_pass)
+    if asked is not None:
+        return asked
+    if cell.reload.when == "stroke":
+        return True
+    if cell.reload.when == "layer":
+        return a_pass.layer != last.layer
+    return used_mm > cell.reload.every_mm
+
+
+def is_later_part(a_pass) -> bool:
+    """Whether a pass of a plan in loads goes on with the stroke that the pass before it paints."""
+    return a_pass.origin.load > 1
+
+
+def _asked(a_pass) -> bool | None:
+    return json.loads(a_pass.settings).get("reload")
+
+
+def _station_for(a_pass, cell: Cell) -> Station:
+    colour = a_pass.colour.lower()
+    stations = [station for station in cell.stations if station.name != cell.reload.wash]
+    for station in stations:
+        if colour in [each.lower() for each in station.colours]:
+            return station
+    for station in stations:
+        if not station.colours:
+            return station
+    served = ", ".join(colour for station in stations for colour in station.colours)
+    raise Error(
+        f"no station of cell {cell.name} has paint of colour {colour or 'none'}; there are {served}",
+        a_pass.stroke,
+    )

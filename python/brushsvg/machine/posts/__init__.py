@@ -1,0 +1,56 @@
+"""One robot language per file: moves -> text. POSTS names them all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from ..motion import Program
+
+
+class Post(NamedTuple):
+    """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
+
+    in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
+    circles_by_pose: a circle is told by a pose on its way; else by its centre.
+    """
+
+    title: str
+    extensions: tuple[str, ...]
+    write: Callable[[Program], Iterator[str]]
+    in_robot_frame: bool = True
+    circles_by_pose: bool = False
+
+
+def _linuxcnc(program: Program) -> Iterator[str]:
+    from .gcode import linuxcnc  # loaded for who writes, not for who only asks what can be written
+
+    return linuxcnc(program)
+
+
+def _grbl(program: Program) -> Iterator[str]:
+    from .gcode import grbl
+
+    return grbl(program)
+
+
+def _grbl_servo(program: Program) -> Iterator[str]:
+    from .gcode_servo import grbl_servo
+
+    return grbl_servo(program)
+
+
+def _urscript(program: Program) -> Iterator[str]:
+    from .urscript import urscript
+
+    return urscript(program)
+
+
+GCODE = (".ngc", ".gcode", ".nc")
+POSTS = {  # by the language a cell names
+    "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
+    "grbl": Post("G-code for grbl", GCODE, _grbl),
+    "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, True),
+}

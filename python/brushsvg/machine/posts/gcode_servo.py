@@ -1,0 +1,119 @@
+"""Moves -> G-code for grbl machines whose brush hangs on a servo: M3 S... sets a value instead of a height."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Iterator
+
+import numpy as np
+
+from ..cell import Servo
+from ..motion import Move, Program, Wait
+from .gcode import MODES, grbl_comment, wait
+from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
+
+SERVO_END = "end: the brush is held up"
+TOUCHING = (
+    "land",
+    "paint",
+    "lift",
+    "dip",
+    "wipe",
+)  # here the lift goes as slowly as it is told; in the air at once
+
+
+def grbl_servo(program: Program) -> Iterator[str]:
+    """Heights become values of the servo's table, held along each line; a line is split where the height
+    changes by more than the servo's step. The machine must run in grbl's laser mode ($32=1), in which a new S
+    takes effect with the move that it stands in and does not stop it. There grbl switches the output off wherever
+    the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
+    to the last, and the program ends without M2, the brush held up."""
+    servo, decimals = program.cell.servo, program.cell.decimals
+    yield "".join(grbl_comment(line) for line in program.header)
+    yield grbl_comment("note: set $32=1, so that S changes along with the moves")
+    yield f"{MODES}\n"
+    feed = f"F{feed_mm_min(program.cell.speeds.travel_mm_s):.1f}\n"
+    yield f"G1 {feed}"
+    here, value = None, 0
+    for section in program.sections():
+        if here is None:  # up before going anywhere
+            here = np.array([0.0, 0.0, program.rise_mm])
+            value = int(value_at(servo, here[2]))
+            yield f"M3 S{value}\n"
+            yield f"G4 P{number(servo.settle_s, 3)}\n" if servo.settle_s else ""
+        yield "\n" + grbl_comment(section.title)
+        for step in section.steps:
+            if isinstance(step, Wait):
+                yield wait(step, grbl_comment)
+                continue
+            wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
+            if wanted != feed:
+                yield wanted
+                feed = wanted
+            value = yield from _lines(step, here, value, servo, decimals)
+            here = step.points_mm[-1]
+    yield "\n" + grbl_comment(SERVO_END)
+
+
+def value_at(servo: Servo, height_mm):
+    """The servo's value for a height, or for each of an array."""
+    heights, values = zip(*sorted(servo.table), strict=True)
+    return np.rint(np.interp(height_mm, heights, values)).astype(int)
+
+
+def height_at(servo: Servo, value: float) -> float:
+    """The height that a value gives."""
+    values, heights = zip(*sorted((value, height) for height, value in servo.table), strict=True)
+    return float(np.interp(value, values, heights))
+
+
+def _lines(
+    move: Move, here: np.ndarray, value: int, servo: Servo, decimals: int
+) -> Generator[str, None, int]:
+    """A move's lines, and the value that the servo has afterwards; value: that before."""
+    path = np.vstack([here, move.points_mm])
+    still = np.abs(np.diff(path[:, :2], axis=0)).max(axis=1) < 0.5 * 10.0**-decimals
+    for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
+        if not still[run[0]]:
+            value = yield from _ways(path[run[0] : run[-1] + 2], servo, decimals)
+            continue
+        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
+        for k in run:
+            value = yield from _lift(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
+    return value
+
+
+def _lift(
+    from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
+) -> Generator[str, None, int]:
+    """The lift alone: step by step, waiting as long as the way takes at the speed, then until the servo rests. The way
+    is that between the values, which are whole: after a line it begins where its last part was held."""
+    feed_mm_s = feed_mm_min(speed_mm_s) / 60
+    count = max(1, int(np.ceil(abs(to_mm - from_mm) / step_mm - 1e-9)))
+    has_moved = False
+    for k in range(1, count + 1):
+        before, value = value, int(value_at(servo, from_mm + (to_mm - from_mm) * k / count))
+        if value == before:
+            continue
+        way_mm = abs(height_at(servo, value) - height_at(servo, before))
+        yield f"M3 S{value}\nG4 P{number(math.ceil(1e3 * way_mm / feed_mm_s) / 1e3, 3)}\n"
+        has_moved = True
+    if servo.settle_s and has_moved:
+        yield f"G4 P{number(servo.settle_s, 3)}\n"
+    return value
+
+
+def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Generator[str, None, int]:
+    """Straight lines, each in parts on which the height is the one half way along the part; the last part's value."""
+    pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
+    for first in range(0, len(path) - 1, ROWS_AT_ONCE):
+        part = path[first : first + ROWS_AT_ONCE + 1]
+        way = np.diff(part, axis=0)
+        counts = np.maximum(1, np.ceil(np.abs(way[:, 2]) / servo.step_mm - 1e-9)).astype(int)
+        which = np.repeat(np.arange(len(way)), counts)
+        number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+        ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
+        heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
+        values = value_at(servo, heights)
+        yield from rows(pattern, np.column_stack([ends, values]), decimals)
+    return int(values[-1])

@@ -1,0 +1,93 @@
+"""Moves -> URScript for Universal Robots: metres, rotation vectors, the paper as a plane of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..frames import frame_of_pose, rotation, rotation_vector
+from ..motion import Move, Program, Wait, via
+from .text import number, plain, rows
+
+LINE_LIMIT = 100
+LEAST_BLEND_M = 5e-6  # what would be written as less is no blend
+M = 1e-3
+
+
+def urscript(program: Program) -> Iterator[str]:
+    """A program that can be run from the pendant or sent to the robot. The points are those of the paper's plane:
+    to teach the paper anew, only the line that sets it has to change."""
+    decimals = program.cell.decimals + 3
+    tool = program.cell.tool
+    tcp = frame_of_pose(np.array(tool.tcp_mm), tool.rotation_deg)
+    down = np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, tool.spin_deg))  # the tool's z into the paper
+    acceleration = number(program.cell.speeds.acceleration_mm_s2 * M, 4)
+    yield "def brushsvg():\n"
+    yield "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
+    yield f"  set_tcp({_pose(tcp, decimals)})\n"
+    yield f"  paper = {_pose(program.robot_from_frame, decimals)}\n"
+    yield "  def on_paper(x, y, z):\n"
+    yield f"    return pose_trans(paper, p[x, y, z, {_vector(down, decimals)}])\n"
+    yield "  end\n"
+    risen = False
+    for section in program.sections():
+        yield f"\n  # {plain(section.title, LINE_LIMIT - 4)}\n"
+        for step in section.steps:
+            if isinstance(step, Wait):
+                yield _wait(step)
+                continue
+            if not risen:  # straight up before going anywhere
+                yield from _rise(program.rise_mm, step.speed_mm_s, acceleration, decimals)
+                risen = True
+            yield from _lines(step, acceleration, decimals)
+    yield "end\n"
+    yield "brushsvg()\n"
+
+
+def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> Iterator[str]:
+    height = number(height_mm * M, decimals)
+    yield "  here = pose_trans(pose_inv(paper), get_actual_tcp_pose())\n"
+    yield f"  if here[2] < {height}:\n"
+    yield f"    movel(pose_trans(paper, p[here[0], here[1], {height}, here[3], here[4], here[5]]), "
+    yield f"a={acceleration}, v={number(min(speed_mm_s, 50.0) * M, 4)})\n"
+    yield "  end\n"
+
+
+def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
+    speed = number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
+    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
+    if move.arc is not None:
+        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]]) * M
+        yield from rows(
+            f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
+        )
+        return
+    points = move.points_mm * M
+    if move.blends_mm is None or len(points) == 1:
+        yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points, decimals)
+        return
+    blends = move.blends_mm[:-1, None] * M
+    blends = np.where(blends < LEAST_BLEND_M, 0.0, blends)
+    # movep keeps the speed of the tool; the last one stops, since what follows may turn back, which movep cannot
+    values = np.hstack([points[:-1], blends])
+    yield from rows(f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals)
+    yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
+
+
+def _wait(step: Wait) -> str:
+    if step.seconds is None:
+        return f'  popup("{plain(step.message, 60).translate(_QUIET)}", "brushsvg", False, False, blocking=True)\n'
+    return f"  sleep({number(step.seconds, 3)})\n"
+
+
+_QUIET = {ord('"'): "'", ord("\\"): "/"}
+
+
+def _pose(frame: np.ndarray, decimals: int) -> str:
+    place = ", ".join(number(value * M, decimals) for value in frame[:3, 3])
+    return f"p[{place}, {_vector(frame[:3, :3], decimals)}]"
+
+
+def _vector(turned: np.ndarray, decimals: int) -> str:
+    return ", ".join(number(value, decimals) for value in rotation_vector(turned))

@@ -1,0 +1,168 @@
+"""What forbids to run a plan on a machine: limits, the sheet, corners that are cut, rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error
+from .cell import Cell, robot_from_paper
+from .corner_blending import blend_radii, blended
+from .limits import beyond_edges
+from .program import WHOLE_JOB, Job, forbidden
+from .rounding import as_written
+
+DEFAULT_TOLERANCE_MM = 0.05
+
+
+def problems(
+    plan, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB
+) -> list[tuple[str, str]]:
+    """(stroke, sentence) for everything that forbids to run the plan on the robot; empty when all is well."""
+    found = forbidden(plan, brush, cell, job) + off_sheet(marks, brush, plan.sheet_mm)
+    return found or shifted_by_blends(plan, brush, cell, tolerance_mm)
+
+
+def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
+    """The cell, cutting corners by at most a fifth of a plan's tolerance: they must not use it up."""
+    cut_mm = min(cell.blending.tolerance_mm, tolerance_mm / 5)
+    return replace(cell, blending=replace(cell.blending, tolerance_mm=cut_mm))
+
+
+def check_rounding(cell: Cell, tolerance_mm: float) -> None:
+    """Error where the cell's decimals alone move places by more than a fifth of a plan's tolerance."""
+    rounded_mm = 0.5 * 10.0**-cell.decimals
+    if rounded_mm > tolerance_mm / 5:
+        raise Error(
+            f"{cell.decimals} decimals of cell {cell.name} round places by up to {rounded_mm:g} mm, outside the "
+            f"range [0, {tolerance_mm / 5:g}] mm, a fifth of the tolerance",
+            where="decimals",
+        )
+
+
+def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
+    """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
+    found = []
+    for trace in marks.passes:
+        bounds_mm = _core.painted_bounds(trace, brush)
+        if not np.isfinite(bounds_mm).all():
+            continue  # nothing touches the paper
+        found += [
+            (trace.stroke, f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet")
+            for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
+            if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
+        ]
+    return found
+
+
+def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of all paint. Error when nothing touches the paper."""
+    bounds = np.array([_core.painted_bounds(trace, brush) for trace in marks.passes]).reshape(-1, 4)
+    bounds = bounds[np.isfinite(bounds).all(axis=1)]
+    if not len(bounds):
+        raise Error("nothing touches the paper: there is no border")
+    return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
+
+
+def shifted_by_blends(plan, brush, cell: Cell, tolerance_mm: float) -> list[tuple[str, str]]:
+    """(stroke, sentence) where cutting corners as the cell does moves the mark by more than the tolerance.
+
+    The path as it is run is simulated, and where the brush is taut its widest section compared with the plan's.
+    """
+    if not cell.blending.tolerance_mm:
+        return []
+    # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
+    rows_mm = min(tolerance_mm / 10, ROWS_MM)
+    found = []
+    told = [_with_circles_that_are_told(a_pass, cell) for a_pass in plan.passes]
+    for first, last in _groups(plan.passes):
+        runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
+        pairs = zip(plan.passes[first:last], runs, strict=True)
+        cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
+        both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
+        traces = _core.simulate(
+            _core.Plan(sheet_mm=plan.sheet_mm, passes=both), brush, rows_mm, for_outlines=False
+        ).passes
+        for (a_pass, _, at), meant, run in zip(cut, traces[: len(cut)], traces[len(cut) :], strict=True):
+            shift_mm = _largest_shift_mm(meant, run, at, brush)
+            if shift_mm > tolerance_mm:
+                sentence = (
+                    f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
+                    f"mark by {shift_mm:.3g} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance"
+                )
+                found.append((a_pass.stroke, sentence))
+    return found
+
+
+ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
+
+
+POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
+
+
+def _with_circles_that_are_told(a_pass, cell: Cell):
+    if not a_pass.arcs:
+        return a_pass
+    arcs = as_written(a_pass, cell, robot_from_paper(cell)).arcs
+    return _core.Pass(a_pass.stroke, a_pass.poses_mm, a_pass.speed_mm_s, arcs=arcs)
+
+
+def _groups(passes) -> Iterator[tuple[int, int]]:
+    """First and last of passes that are handled at once."""
+    first, poses = 0, 0
+    for number, a_pass in enumerate(passes):
+        if poses and poses + len(a_pass.poses_mm) > POSES_AT_ONCE:
+            yield first, number
+            first, poses = number, 0
+        poses += len(a_pass.poses_mm)
+    yield first, len(passes)
+
+
+def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[tuple]:
+    """Each pass with its corners cut, and the pose that each point of its path belongs to, as a fractional index.
+
+    radii_of: from poses (n, 3) and arcs to how far each corner is cut, see blend_radii.
+    """
+    starts = np.cumsum([0, *(len(a_pass.poses_mm) for a_pass in passes)]).tolist()
+    poses = np.vstack([a_pass.poses_mm for a_pass in passes])
+    arcs = [
+        _core.Arc(arc.first + start, arc.last + start, arc.centre_mm, arc.direction)
+        for a_pass, start in zip(passes, starts[:-1], strict=True)
+        for arc in a_pass.arcs
+    ]
+    radii = radii_of(poses, arcs)
+    radii[starts[:-1]] = radii[[start - 1 for start in starts[1:]]] = 0.0  # no path goes on in the next
+    path, at, points = blended(poses, radii, arcs)
+    runs = []
+    for a_pass, start, end in zip(passes, starts[:-1], starts[1:], strict=True):
+        first, last = points[start, 0], points[end - 1, 1] + 1
+        rows = points[start:end] - first
+        arcs = [
+            _core.Arc(rows[arc.first, 1], rows[arc.last, 0], arc.centre_mm, arc.direction)
+            for arc in a_pass.arcs
+        ]
+        run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs)
+        runs.append((run, at[first:last] - start))
+    return runs
+
+
+def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
+    """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
+    ran, planned = _under_way(run), _under_way(meant)
+    taut = np.asarray(run.taut, dtype=bool)[ran]
+    if not taut.any():
+        return 0.0
+    pose = np.interp(np.asarray(run.pose)[ran][taut], np.arange(len(at)), at)
+    widest = _core.widest_points(meant, brush)[planned]
+    there = np.column_stack([np.interp(pose, np.asarray(meant.pose)[planned], axis) for axis in widest.T])
+    return float(np.linalg.norm(_core.widest_points(run, brush)[ran][taut] - there, axis=1).max())
+
+
+def _under_way(trace) -> slice:
+    """The rows from where the brush was set down to where it is lifted: all rows of a landing or lift on the spot are
+    of one pose, by which no place can be found."""
+    pose = np.asarray(trace.pose)
+    return slice(int(np.searchsorted(pose, pose[0], "right")) - 1, int(np.searchsorted(pose, pose[-1])) + 1)

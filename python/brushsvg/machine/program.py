@@ -1,0 +1,170 @@
+"""Plan + Cell -> what the robot does, move by move with its meaning, every limit checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import Error
+from .cell import Cell, Station, robot_from_paper
+from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
+from .limits import broken_limits, height_astray, walked_astray
+from .motion import Arc, Move, Program, Section, Wait, rise_over
+from .posts import POSTS
+from .posts.text import told_apart
+from .rounding import Written, as_written
+
+PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
+
+
+@dataclass(frozen=True)
+class Job:
+    """How a plan is run: the paper so much higher than the cell says, from which stroke on.
+
+    visits: for each pass the stations to visit before it; () for a brush that is loaded once.
+    """
+
+    z_offset_mm: float = 0.0
+    first_stroke: int = 1
+    visits: tuple[tuple[Station, ...], ...] = ()
+
+
+WHOLE_JOB = Job()
+
+
+def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
+    """Moves for every pass of the plan, in order. Error, naming stroke and range, where a limit is broken.
+
+    brush: asked for nothing but its name and how fast it may go.
+    """
+    for where, sentence in forbidden(plan, brush, cell, job):
+        raise Error(sentence, where=where)
+    if not 1 <= job.first_stroke <= len(plan.passes):
+        raise Error(f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job")
+    return unchecked_program(plan, brush, cell, header, job)
+
+
+def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[tuple[str, str]]:
+    """(stroke or station, sentence) for each limit that is broken anywhere on the way of the whole job, whichever
+    stroke it begins with, or on that of a visit to any station; empty when the robot may run it."""
+    found = broken_limits(plan, brush, cell)
+    if not all(np.isfinite(a_pass.poses_mm).all() for a_pass in plan.passes):
+        return found
+    made = unchecked_program(plan, brush, cell, (), replace(job, first_stroke=1))
+    found += astray_in(made, plan.sheet_mm)
+    for station in cell.stations:
+        found += walked_astray([visit(station, brush, cell)], made.robot_from_frame, cell, plan.sheet_mm)
+    return list(dict.fromkeys(found))
+
+
+def astray_in(made: Program, sheet_mm) -> list[tuple[str, str]]:
+    """The sentences for a program's ways, its rise before the first move included."""
+    found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
+    post = POSTS.get(made.cell.language)
+    if post and post.in_robot_frame:  # else it rises to the safe height over the paper
+        found += [("", said) for said in height_astray(made.rise_in_robot_mm, made.cell)]
+    return found
+
+
+def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
+    """The same for who only asks how long it takes or wants to see it: limits are not looked at."""
+
+    frame = robot_from_paper(cell, job.z_offset_mm)
+
+    def sections() -> Iterator[Section]:
+        count = len(plan.passes)
+        for number, a_pass in enumerate(plan.passes, 1):
+            if number < job.first_stroke:
+                continue
+            visits = job.visits[number - 1] if job.visits else ()
+            yield from (visit(station, brush, cell) for station in visits)
+            moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
+            yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
+
+    return Program(header, cell, frame, sections, cell.heights.safe_mm, rise_over(cell, plan.sheet_mm, frame))
+
+
+def over(point, height_mm: float) -> np.ndarray:
+    """(1, 3) the place above a point."""
+    return np.array([[point[0], point[1], height_mm]], dtype=float)
+
+
+def approach_mm_s(brush, cell: Cell) -> float:
+    """In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit."""
+    return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
+
+
+def names_of_stations(cell: Cell) -> dict[Station, str]:
+    """What a program calls each: no two alike."""
+    names = told_apart([station.name for station in cell.stations])
+    return dict(zip(cell.stations, names, strict=True))
+
+
+def visit(station: Station, brush, cell: Cell) -> Section:
+    """To the paint and back up to safe height; a person does the rest where the station is served by hand."""
+    name = names_of_stations(cell).get(station, station.name)
+    safe, speeds = cell.heights.safe_mm, cell.speeds
+    steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
+    if station.by_hand:
+        return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
+    # a vessel may stand lower than the paper, under which nothing is fast
+    rim = max(station.rim_mm, 0.0) + cell.heights.clearance_mm
+    press_mm_s = min(speeds.press_mm_s, speeds.paint_mm_s, brush.max_speed_mm_s)
+    steps += [
+        Move("approach", over(station.place_mm, rim), approach_mm_s(brush, cell)),
+        Move("dip", over(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),
+    ]
+    steps += [Wait(station.hold_s)] if station.hold_s else []
+    steps.append(Move("dip", over(station.place_mm, rim), press_mm_s))
+    steps += [Wait(station.drip_s)] if station.drip_s else []
+    last = station.place_mm
+    if station.wipe_mm:
+        steps.append(Move("wipe", np.array(station.wipe_mm, dtype=float), press_mm_s))
+        last = station.wipe_mm[-1]
+        if last[2] < rim:
+            steps.append(Move("dip", over(last, rim), press_mm_s))
+    steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
+    return Section(f"paint: {name}", tuple(steps))
+
+
+def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    if len(poses) == 0:
+        return ()
+    start, end = poses[0], poses[-1]
+    heights, speeds = cell.heights, cell.speeds
+    # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
+    press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
+    return (
+        Move("travel", over(start, heights.safe_mm), speeds.travel_mm_s),
+        Move("approach", over(start, heights.clearance_mm), approach_mm_s(brush, cell)),
+        Move("land", poses[:1], press_mm_s),
+        *_painting(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
+        Move("lift", over(end, heights.clearance_mm), press_mm_s),
+        Move("retract", over(end, heights.safe_mm), speeds.travel_mm_s),
+    )
+
+
+def _painting(
+    poses: np.ndarray, written: Written, paint_mm_s: float, press_mm_s: float, cell: Cell
+) -> Iterator[Move]:
+    """From the first pose on, straight up and down as slowly as a landing, along arcs where the plan has them."""
+    arcs, steps = written.arcs, np.diff(written.poses_mm, axis=0)
+    kinds = np.full(len(steps), PLAIN)
+    kinds[on_the_spot(steps, written.sideways_mm)] = ON_THE_SPOT
+    for number, arc in enumerate(arcs):
+        kinds[arc.first : arc.last] = number
+    new_run = np.diff(kinds) != 0
+    radii = None
+    if cell.blending.radius_mm:
+        radii = blend_radii(written.poses_mm, cell.blending, arcs)
+        new_run |= turns_rad(written.poses_mm, arcs)[1:-1] > SHARP_RAD
+    for run in np.split(np.arange(len(steps)), np.flatnonzero(new_run) + 1):
+        if not len(run):
+            continue
+        kind = kinds[run[0]]
+        arc = Arc(tuple(arcs[kind].centre_mm), arcs[kind].direction) if kind >= 0 else None
+        speed = press_mm_s if kind == ON_THE_SPOT else paint_mm_s
+        yield Move("paint", poses[run + 1], speed, arc, None if radii is None else radii[run + 1])

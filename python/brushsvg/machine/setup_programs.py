@@ -1,0 +1,129 @@
+"""Programs before the first stroke: where will it be painted, and how high does the paper lie."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..errors import Error
+from .cell import Cell, robot_from_paper
+from .motion import Move, Program, Section, Wait, rise_over
+from .program import approach_mm_s, astray_in, over
+
+CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
+SPEED_MM_S = 15.0
+STROKE_MM = 12.0
+LANE_MM = 6.0
+LONG_EVERY = 5  # every fifth stroke is half as long again, to count by
+LONGER = 1.5
+
+
+def around(bounds_mm) -> tuple[float, float, float, float]:
+    """(left, bottom, right, top) as a header can say it: outwards to whole hundredths of a millimetre."""
+    left, bottom, right, top = bounds_mm
+    out = [math.floor(side * 100 + 1e-6) / 100 for side in (left, bottom, -right, -top)]
+    return (out[0], out[1], -out[2], -out[3])
+
+
+def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+    """An air run: at safe height round (left, bottom, right, top) [mm] of what will be painted, corner by corner.
+
+    Error when it leaves the workspace.
+    """
+    left, bottom, right, top = around_mm
+    height = cell.heights.safe_mm
+    corners = np.array(
+        [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)], dtype=float
+    )
+    path = np.column_stack([corners, np.full(len(corners), height)])
+
+    def sections() -> Iterator[Section]:
+        start = Move("travel", path[:1], cell.speeds.travel_mm_s)
+        slow_mm_s = approach_mm_s(brush, cell)
+        steps = [
+            step
+            for corner in path[1:]
+            for step in (Wait(CORNER_WAIT_S), Move("look", corner[None], slow_mm_s))
+        ]
+        yield Section("border of the job, at safe height", (start, *steps))
+
+    frame = robot_from_paper(cell, z_offset_mm)
+    made = Program((), cell, frame, sections, height, rise_over(cell, sheet_mm, frame))
+    return _refuse_astray(made, sheet_mm)
+
+
+def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
+    """Short strokes side by side, each step_mm deeper than the one before, from highest_mm over the paper to
+    lowest_mm, as the cell believes it to lie: the first that leaves paint tells the paper's true height.
+
+    Error when they do not fit on the sheet or go deeper than brush or cell allow.
+    """
+    heights = strokes_at(highest_mm, lowest_mm, step_mm)
+    if lowest_mm < cell.heights.lowest_mm or -lowest_mm > brush.depth_range_mm[1]:
+        least = max(cell.heights.lowest_mm, -brush.depth_range_mm[1])
+        raise Error(
+            f"height {lowest_mm:g} mm is outside the range [{least:g}, {highest_mm:g}] mm of brush and cell"
+        )
+    starts = _lanes(len(heights), sheet_mm)
+    safe, speeds = cell.heights.safe_mm, cell.speeds
+    clearance = max(cell.heights.clearance_mm, highest_mm + 0.5)
+    if clearance > safe:
+        raise Error(
+            f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height"
+        )
+    speed = min(brush.max_speed_mm_s, speeds.paint_mm_s, SPEED_MM_S)
+    press = min(speeds.press_mm_s, speed)
+    steps = []
+    for number, (height, (x, y)) in enumerate(zip(heights, starts, strict=True)):
+        length = STROKE_MM * (LONGER if number % LONG_EVERY == 0 else 1.0)
+        first, last = np.array([[x, y, height]]), np.array([[x + length, y, height]])
+        steps.append(
+            (
+                Move("travel", over(first[0], safe), speeds.travel_mm_s),
+                Move("approach", over(first[0], clearance), approach_mm_s(brush, cell)),
+                Move("land", first, press),
+                Move("paint", last, speed),
+                Move("lift", over(last[0], clearance), press),
+                Move("retract", over(last[0], safe), speeds.travel_mm_s),
+            )
+        )
+
+    def sections() -> Iterator[Section]:
+        for number, (height, each) in enumerate(zip(heights, steps, strict=True), 1):
+            yield Section(
+                f"stroke {number} of {len(heights)}: first to paint means --z-offset {height:.2f}", each
+            )
+
+    frame = robot_from_paper(cell)
+    made = Program((), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame))
+    return _refuse_astray(made, sheet_mm)
+
+
+def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
+    """Heights [mm] of the strokes, from above down. Error for a step that makes less than 2 or more than 100."""
+    count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
+    if not 2 <= count <= 100:
+        raise Error(
+            f"from {highest_mm:g} to {lowest_mm:g} mm by {step_mm:g} mm are {count} strokes, not 2 to 100"
+        )
+    return highest_mm - step_mm * np.arange(count)
+
+
+def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
+    """Where each stroke starts: from the sheet's top down, then in the next column."""
+    width, height = sheet_mm
+    rows = int((height - 2 * LANE_MM) // LANE_MM) + 1
+    pitch = STROKE_MM * LONGER + LANE_MM
+    columns = int((width - LANE_MM) // pitch)
+    if rows * columns < count:
+        room = max(rows * columns, 0)
+        raise Error(f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}")
+    return [(LANE_MM + pitch * (k // rows), height - LANE_MM * (1 + k % rows)) for k in range(count)]
+
+
+def _refuse_astray(made: Program, sheet_mm) -> Program:
+    for _, sentence in astray_in(made, sheet_mm):
+        raise Error(sentence)
+    return made

@@ -1,0 +1,103 @@
+"""A plan to the text that a machine runs: paint fetched, header written, file encoded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from .. import _core
+from ..errors import Error
+from ..files import write_files
+from .cell import Cell
+from .cell_file import cell_names, find_cell, parse_cell, write_cell
+from .header_lines import header_of
+from .motion import Program, duration_s, in_robot_frame
+from .paint_reload import in_loads, visits
+from .posts import POSTS, Post
+from .preflight import DEFAULT_TOLERANCE_MM, POSES_AT_ONCE, as_exact_as, problems
+from .program import WHOLE_JOB, Job, program, unchecked_program
+
+
+def post_for(suffix: str, cell: Cell) -> Post:
+    """How the cell's language is written. Error when it cannot be, or not in a file of that extension."""
+    post = POSTS.get(cell.language)
+    if post is None:
+        raise Error(
+            f"no program can be written in {cell.language!r}, the language of cell {cell.name}; "
+            f"known: {', '.join(POSTS)}",
+            where="language",
+        )
+    if suffix not in post.extensions:
+        other = cells_for(suffix)
+        raise Error(
+            f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
+            f"{post.title}, which cell {cell.name} speaks"
+            + (f"; for {suffix} give --cell {' or '.join(other)}" if other else "")
+        )
+    return post
+
+
+def cells_for(suffix: str) -> list[str]:
+    """Names of the cells that come along whose programs have this extension."""
+    languages = {name for name, post in POSTS.items() if suffix in post.extensions}
+    return [name for name in cell_names() if find_cell(name).language in languages]
+
+
+def encode(
+    suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None, job: Job = WHOLE_JOB
+) -> bytes | Iterator[str]:
+    """The plan as the bytes of a plan.json or a program in the cell's language, in pieces, by the file's extension.
+
+    Error for any other extension, and for a program where a limit of brush or cell is broken.
+    """
+    if suffix == ".json":
+        return _core.write_plan(plan).encode()
+    cell = cell or find_cell()
+    post = post_for(suffix, cell)
+    plan = in_loads(plan, brush, cell)
+    job = replace(job, visits=visits(plan, cell, job.first_stroke))
+    made = _held(program(plan, brush, cell, (), job), plan)
+    header = header_of(title or "untitled", brush.name, plan, notes, made, job)
+    return text_of(post, replace(made, header=header))
+
+
+def _held(made: Program, plan) -> Program:
+    """The program with its sections made once, where that is little: they are walked for the time and for the text."""
+    if sum(len(a_pass.poses_mm) for a_pass in plan.passes) > POSES_AT_ONCE:
+        return made
+    sections = tuple(made.sections())
+    return replace(made, sections=lambda: iter(sections))
+
+
+def text_of(post: Post, made: Program) -> Iterator[str]:
+    """The program in a robot's language, in pieces."""
+    return post.write(in_robot_frame(made) if post.in_robot_frame else made)
+
+
+def whole_program(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
+    """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
+    job = replace(job, visits=visits(plan, cell, job.first_stroke))
+    return unchecked_program(plan, brush, cell, (), job)
+
+
+def time_s(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+    """Estimated time of the plan, paint included; limits are not looked at."""
+    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell, job))
+
+
+def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
+    """Write a plan as plan.json or a program in the cell's language, by the extension of path.
+
+    Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
+    """
+    if not isinstance(cell, Cell | None):
+        raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
+    # a cell made by hand must be one that a file may hold: each key within its range
+    cell = parse_cell(write_cell(cell)) if cell else find_cell()
+    cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
+    suffix = Path(path).suffix.lower()
+    for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
+        raise Error(sentence, where=where)
+    write_files({path: encode(suffix, plan, brush, title, cell=cell)})

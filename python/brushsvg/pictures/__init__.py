@@ -1,0 +1,1 @@
+"""Marks, drawings and programs to look at."""

@@ -1,0 +1,111 @@
+"""What is written of prepared work: header lines, pictures, pages, reports."""
+
+from __future__ import annotations
+
+from .. import _core
+from ..errors import Error
+from ..evaluation import report
+from ..evaluation.uncertainty import uncertainty
+from ..machine.cell import Cell
+from ..machine.writer import time_s, whole_program
+from ..pictures.animation import animation
+from ..pictures.marks_svg import marks_svg, misses_svg
+from ..pictures.timeline import timeline
+from .preparation import Work
+
+SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
+
+
+def notes(work: Work) -> tuple[str, ...]:
+    """Lines for a program's header: how it was made, and how much there is to know about it."""
+    options = work.options
+    lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
+    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}"
+    damaged = sum(notice.damaged for notice in work.notices)
+    count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
+    return (made, count) if work.strokes is not None else (count,)
+
+
+def picture(suffix: str, work: Work, marks, band=None) -> bytes:
+    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
+    uncertainty.Band to draw around them."""
+    if suffix == ".json":
+        return _core.write_marks(marks).encode()
+    colours = [a_pass.colour for a_pass in work.plan.passes]
+    if suffix == ".svg":
+        how = "" if work.strokes is None else f", {work.options.compensation}"
+        made = f"{work.plan.brush}{how}"
+        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made, band)
+        return text.encode()
+    from ..pictures import marks_png  # brings OpenCV, which the others do not need
+
+    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band)
+
+
+def misses_picture(suffix: str, work: Work, marks) -> bytes:
+    """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
+    outlines. Error for a plan, which does not say what was wanted."""
+    if work.strokes is None:
+        raise Error("a plan does not say what was wanted: give the drawing")
+    if suffix == ".svg":
+        wanted = report.wanted_rings(work.strokes)
+        return misses_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+    from ..pictures import marks_png
+
+    px_per_mm = min(20.0, marks_png.PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
+    window = (0.0, 0.0, *work.plan.sheet_mm)
+    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    return marks_png.misses_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
+
+
+def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
+    """An HTML page that plays tool and paint over time, speed times as fast at first. marks: with outlines."""
+    moves = timeline(whole_program(work.plan, work.brush, cell), marks)
+    wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
+
+
+def report_text(suffix: str, *measured, **told) -> str:
+    """The report as text (.txt) or JSON (.json); the rest as for `reported`."""
+    return report.as_text(suffix, reported(*measured, **told))
+
+
+def reported(
+    work: Work,
+    marks,
+    cell: Cell,
+    warnings=None,
+    forbidden=(),
+    drawn=None,
+    seconds=None,
+    advice="",
+) -> report.Report:
+    """The figures of a work. warnings: (where, sentence), None for those of the work; forbidden:
+    those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
+    that is known better than from the plan; advice: on the size."""
+    known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
+    is_drawing = work.strokes is not None
+    rows, total = report.measure(
+        work.plan,
+        marks,
+        work.brush,
+        work.strokes,
+        work.options.tolerance_mm,
+        drawn,
+        work.options.compensation,
+    )
+    return report.Report(
+        title=work.title,
+        brush=work.plan.brush,
+        compensation=work.options.compensation if is_drawing else "",
+        tolerance_mm=work.options.tolerance_mm if is_drawing else None,
+        strokes=rows,
+        total=total,
+        time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
+        warnings=tuple(known),
+        refused=tuple((notice.where, notice.sentence) for notice in work.refused),
+        forbidden=tuple(forbidden),
+        sure=uncertainty(work.plan, work.brush, marks),
+        groups=report.groups(marks, work.brush, work.strokes),
+        advice=advice,
+    )

@@ -1,0 +1,51 @@
+"""A plan to the marks that it will paint."""
+
+from __future__ import annotations
+
+import os
+
+from .. import _core
+from .preparation import Work
+
+
+def predict(work: Work, outlines: bool = True, stage=lambda text: None, whole: bool = True):
+    """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
+
+    progress = _counted(stage, "simulated")
+    marks = _core.simulate(work.plan, work.brush, progress=progress)
+    if not outlines:
+        return marks
+    return outlined(marks, work.brush, stage) if whole else _outlined_apart(marks, work.brush, stage)
+
+
+def outlined(marks, brush, stage=lambda text: None):
+    """The marks with their rings traced."""
+    _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
+    return marks
+
+
+def _outlined_apart(marks, brush, stage):
+    """The marks with the rings of each pass alone, which is all that a picture needs, on all processors."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    def one(trace):
+        alone = _core.Marks()
+        alone.passes = [trace]
+        _core.trace_outlines(alone, brush)
+        return alone.passes[0]
+
+    count = _counted(stage, "outlined")
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        done = []
+        for trace in pool.map(one, marks.passes):
+            done.append(trace)
+            count(len(done), len(marks.passes))
+    finally:
+        pool.shutdown(cancel_futures=True)  # Ctrl-C waits for the strokes at hand, no longer
+    marks.passes = done
+    return marks
+
+
+def _counted(stage, doing: str):
+    return lambda now, all_: stage(f"{doing} {now} of {all_} strokes")

@@ -1,0 +1,247 @@
+"""A file to its plan: read, strokes found, brought within reach, compensated."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from .. import _core, drawing
+from ..brush.library import find_brush
+from ..drawing import layout
+from ..drawing.design import Notice
+from ..errors import Error
+from ..machine.cell import Cell
+from ..machine.paint_reload import in_loads as in_loads_of
+from ..machine.paint_reload import is_later_part
+from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, problems
+from ..machine.program import Job
+from ..planning import travel_order
+from ..planning.refinement import refined
+from ..strokes.extraction import strokes as strokes_of
+from ..strokes.width_limits import within_reach
+from .json_files import read_plan
+
+DEFAULT_BRUSH = "round-6"
+
+
+@dataclass(frozen=True)
+class Options:
+    """What may be chosen. brush None: round-6, or the one a plan names; the rest has no effect on a plan."""
+
+    brush: object | None = None
+    reading: drawing.ReadOptions = drawing.AS_DRAWN
+    layout: layout.Layout = layout.AS_DRAWN
+    compensation: str = "closed"
+    lag_mm: float | None = None
+    tolerance_mm: float = DEFAULT_TOLERANCE_MM
+    speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
+    paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
+    wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
+    cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
+    z_offset_mm: float = 0.0  # of the paper, against the cell's
+
+
+@dataclass(frozen=True)
+class Work:
+    """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
+
+    misses: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
+    """
+
+    title: str
+    brush: object
+    plan: object
+    strokes: list | None
+    misses: tuple
+    options: Options
+    notices: tuple[Notice, ...]
+    refused: tuple[Notice, ...] = ()
+    left_out: tuple = ()  # the strokes that were refused, as they were wanted
+    drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
+
+
+def prepare(
+    path: str | os.PathLike, options: Options = Options(), stage=lambda text: None, partly: bool = False
+) -> Work:
+    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted; partly: strokes
+    that are refused are left out."""
+    if Path(path).suffix.lower() == ".json":
+        return _prepare_plan(path, options)
+    stage("reading")
+    brush = options.brush or find_brush(DEFAULT_BRUSH)
+    design = layout.arrange(drawing.read_drawing(path, options.reading), options.layout)
+    stage("finding strokes")
+    strokes, notices = strokes_of(design, options.paths_as)
+    refused, left_out, drawn = [], [], tuple(strokes)
+    if partly and options.wide == "refuse":
+        strokes, _, refused, left_out = _sorted_out(
+            strokes, strokes, lambda some: within_reach(some, brush, options.wide)
+        )
+    painted, strokes, clamped = within_reach(strokes, brush, options.wide)
+    notices += clamped
+    compensated = _way(brush, design.sheet_mm, options, stage)
+    try:
+        done = compensated(painted)
+    except Error:
+        if not partly:
+            raise
+        painted, strokes, why, which = _sorted_out(painted, strokes, compensated)
+        refused += why
+        left_out += which
+        done = compensated(painted)
+    plan, misses, moved = done.plan, done.misses, [False] * len(painted)
+    if options.compensation == "refined":
+        better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
+        plan.passes, misses, moved = better.passes, better.misses, better.moved
+    plan = _with_speeds(plan, strokes)
+    notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
+    notices += _other_brushes(strokes, brush)
+    if options.compensation in ("closed", "refined"):
+        notices += _misses(painted, misses, moved, brush, options.tolerance_mm)
+    return Work(
+        design.title,
+        brush,
+        plan,
+        strokes,
+        tuple(misses),
+        options,
+        tuple(notices),
+        tuple(refused),
+        tuple(left_out),
+        drawn,
+    )
+
+
+def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
+    """What compensates strokes, by default as the options ask for, or in closed form where that is to be refined."""
+    first = "closed" if options.compensation == "refined" else options.compensation
+
+    def compensated(some, method=first):
+        return _core.compensate(
+            some,
+            brush,
+            sheet_mm,
+            method,
+            options.tolerance_mm,
+            options.lag_mm,
+            options.speed_mm_s,
+            progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
+        )
+
+    return compensated
+
+
+def _forbidden(brush, options: Options):
+    """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
+    if options.cell is None:
+        return None
+    cell, job = as_exact_as(options.cell, options.tolerance_mm), Job(options.z_offset_mm)
+
+    def sentences(plan) -> list:
+        return problems(plan, brush, _core.simulate(plan, brush), cell, options.tolerance_mm, job)
+
+    return sentences
+
+
+def _sorted_out(painted, wanted, step):
+    """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
+    each is tried alone."""
+    sound, refused, left_out = [], [], []
+    for pair in zip(painted, wanted, strict=True):
+        try:
+            step(pair[:1])
+        except Error as error:
+            refused.append(Notice(pair[0].id, str(error)))
+            left_out.append(pair[1])
+        else:
+            sound.append(pair)
+    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
+
+
+def _widths(warnings, may_advise: bool) -> list[Notice]:
+    advice = "; --width MM gives all strokes one width"
+    return [
+        Notice(where, said + advice * (may_advise and said.endswith("was measured")))
+        for where, said in warnings
+    ]
+
+
+def _with_speeds(plan, strokes):
+    """The plan with the speeds that the drawing's settings ask for."""
+    speeds = [json.loads(stroke.settings).get("speed_mm_s") for stroke in strokes]
+    if any(speeds):
+        for a_pass, speed in zip(plan.passes, speeds, strict=True):
+            a_pass.speed_mm_s = speed or a_pass.speed_mm_s
+    return plan
+
+
+def _other_brushes(strokes, brush) -> list[Notice]:
+    asked = ((stroke.id, json.loads(stroke.settings).get("brush", brush.name)) for stroke in strokes)
+    return [
+        Notice(name, f"the drawing asks for brush {other}, all is painted with {brush.name}")
+        for name, other in asked
+        if other != brush.name
+    ]
+
+
+def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
+    """Where a mark's middle is off its line: moved, as refinement does on purpose, where it is beside the stroke."""
+    found = []
+    for stroke, miss, is_moved in zip(painted, misses, moved, strict=True):
+        half_mm = brush.half_width(brush.paint_depth_mm)
+        if brush.width_follows_depth():
+            half_mm = max(half for _, half in stroke.half_width)
+        if miss.largest_mm <= half_mm if is_moved else miss.within_tolerance:
+            continue
+        bound = f"half its width {half_mm:.3g} mm" if is_moved else f"tolerance {tolerance_mm:g} mm"
+        sentence = (
+            f"the widest point stays up to {miss.largest_mm:.3g} mm off the middle line, {bound}, "
+            f"near x {miss.at_mm[0]:.1f}, y {miss.at_mm[1]:.1f} mm"
+        )
+        turns = ": it turns too sharply there for the brush"
+        found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place))
+    return found
+
+
+def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
+    plan = read_plan(path)
+    brush = options.brush or find_brush(plan.brush)
+    notices = []
+    if brush.name != plan.brush:
+        notices.append(Notice("brush", f"the plan was made for brush {plan.brush}, not for {brush.name}"))
+    elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
+        notices.append(Notice("brush_sha256", f"the plan was made with another file of brush {brush.name}"))
+    return Work("", brush, plan, None, (), options, tuple(notices))
+
+
+def in_loads(work: Work, cell: Cell) -> Work:
+    """The work as the cell paints it: strokes longer than a load of paint in parts. Fit to be looked at, not measured:
+    strokes and misses are those of the whole drawing."""
+    return replace(work, plan=in_loads_of(work.plan, work.brush, cell))
+
+
+def whole_strokes(work: Work, loads) -> list:
+    """For each pass of the work's plan in loads the stroke that it paints whole; None for the parts of one."""
+    whole, left = [], iter(work.strokes)
+    for a_pass in loads.passes:
+        if is_later_part(a_pass):
+            whole[-1:] = [None, None]
+        else:
+            whole.append(next(left))
+    return whole
+
+
+def nearest_first(work: Work) -> Work:
+    """The work with its strokes in the order of the shortest way from the end of one to the start of the next.
+
+    Only strokes that follow each other in one layer change places; none is painted backwards.
+    """
+    passes = work.plan.passes
+    order = travel_order.nearest_first(passes)
+    was = work.plan
+    plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
+    strokes = None if work.strokes is None else [work.strokes[k] for k in order]
+    misses = tuple(work.misses[k] for k in order) if work.misses else ()
+    return replace(work, plan=plan, strokes=strokes, misses=misses)

@@ -1,0 +1,1 @@
+"""What a plan needs beside compensation: refinement, order, size."""

@@ -1,0 +1,91 @@
+"""Refined passes where they are right to take: towards what a brush can reach, within a machine's limits, and no letter
+the worse for them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from .letters import worse
+
+# Of the brush's greatest half width, missing on the mean of a stroke. At 0.1 of it a bar's middle waves by 0.2 mm to
+# cover more of a shape that is too wide anyway, at 0.2 by 0.5 mm, at 2 it becomes a C. Letters that are too wide at
+# their crossings only stay below; without their outlines they would lose 0.007 of overlap.
+SPARED = 0.1
+
+
+@dataclass(frozen=True)
+class Refined:
+    """One of each per pass. moved: whether it is another pass than the one in closed form."""
+
+    passes: list
+    misses: list
+    moved: list[bool]
+
+
+def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=None) -> Refined:
+    """The refined passes of strokes, but the closed form's where those are forbidden, or paint a letter worse.
+
+    painted: strokes that the brush can paint; wanted: what they should become; closed: their compensation in closed
+    form; compensated: (strokes, method) to what _core.compensate returns; forbidden: a plan to the sentences that
+    forbid it.
+    """
+    aims = [towards_reach(*pair, brush) for pair in zip(painted, wanted, strict=True)]
+    done = compensated(aims, "refined")
+    passes, misses, moved = list(done.plan.passes), list(done.misses), [True] * len(painted)
+    fallback = list(zip(closed.plan.passes, closed.misses, strict=True))
+
+    def keep_closed(numbers):
+        for k in numbers:
+            passes[k], misses[k] = fallback[k]
+            moved[k] = False
+
+    def worse_of(groups):
+        return worse(passes, closed.plan.passes, wanted, brush, groups)
+
+    keep_closed(
+        k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)
+    )
+    if forbidden:
+        keep_closed(_forbidden(passes, closed.plan, moved, forbidden))
+    if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
+        keep_closed(worse_of(redirected))  # they were judged by what they aimed at
+    keep_closed(worse_of(_core.touching(wanted)))
+    return Refined(passes, misses, moved)
+
+
+def towards_reach(painted, wanted, brush):
+    """What refinement is to paint of a stroke: where that is far too wide, not the outline it was found in. All of the
+    shape beside the paint would pull the stroke's line to it."""
+    if not painted.wanted_mm or not brush.width_follows_depth():
+        return painted
+    greatest = brush.half_width_range_mm()[1]
+    half = np.interp(np.linspace(0, 1, 101), *np.array(wanted.half_width).T)
+    if np.maximum(half - greatest, 0).mean() <= SPARED * greatest:
+        return painted
+    return _core.Stroke(
+        painted.origin,
+        painted.middle_mm,
+        painted.closed,
+        painted.half_width,
+        painted.layer,
+        painted.colour,
+        painted.settings,
+    )
+
+
+def _forbidden(passes: list, closed, moved: list[bool], forbidden) -> list[int]:
+    """Numbers of refined passes that may not be run as they are, while less forbids those in closed form."""
+
+    def sentences(*some) -> list:
+        return forbidden(_core.Plan(closed.brush, closed.brush_sha256, closed.sheet_mm, list(some)))
+
+    if not sentences(*passes):
+        return []
+    return [
+        k
+        for k, (mine, other) in enumerate(zip(passes, closed.passes, strict=True))
+        if moved[k] and (broken := sentences(mine)) and len(sentences(other)) < len(broken)
+    ]

@@ -1,0 +1,1 @@
+"""A drawing to the strokes that paint it."""

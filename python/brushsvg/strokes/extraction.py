@@ -1,0 +1,182 @@
+"""Design to strokes: lines as they are drawn, filled shapes as a brush would paint them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..drawing.design import Design, Element, Notice, SubPath
+from ..errors import Error
+
+if TYPE_CHECKING:
+    from .._core import Stroke
+
+WAYS = ("stroke", "outline")
+# What a fill must show beside the stroke along it, of the stroke's own area, to make a shape of a line.
+_SHOWS = 0.01
+
+
+@dataclass(frozen=True)
+class _Line:
+    """One stroke to be: cubics (n, 4, 2), half widths [(fraction, mm)], rings of the outline it came from, if any."""
+
+    cubics: object
+    half_width: list[tuple[float, float]]
+    closed: bool
+    wanted_mm: list
+
+
+def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], list[Notice]]:
+    """Strokes in document order, [mm], paper frame, and what was noticed on the way.
+
+    A path with a stroke alone is the line drawn, in its direction. A filled path is a shape, with a stroke around it
+    a shape grown by half of that: its strokes are found, in the direction and order of writing, and carry their part of
+    the shape. paths_as: "stroke", fills count as none; "outline", strokes count as none and every path is the outline
+    of a shape; None: as drawn.
+
+    A stroke is called by its element's id, id/1, id/2 ... if there are several, strokeN if there is no id, N counting
+    the elements without one from 1. The setting `order` moves strokes, smaller ones first; `passes` repeats a stroke as
+    id#2, id#3 ...
+
+    Error if nothing is left to paint.
+    """
+    found, empty, notices = [], [], []
+    for element in design.elements:
+        try:
+            lines = _lines(element, paths_as)
+        except Error as beyond:
+            notices.append(Notice(element.id or "filled", f"{beyond}: left out"))
+            continue
+        if lines:
+            found.append((element, lines))
+        else:
+            empty.append(element)
+    notices += _left_out(empty, paths_as)
+    if not found:
+        where, sentence = (notices[-1].where, notices[-1].sentence) if notices else ("", "it is empty")
+        sentence = f"there is nothing to paint: {sentence}"
+        if told := next(iter(design.notices), None):
+            sentence += f"; for example {told.where}: {told.sentence}"
+        raise Error(sentence, where=where)
+    names, renamed = _names([(element, len(lines)) for element, lines in found])
+    made = [
+        (element.settings.get("order", 0), stroke)
+        for (element, lines), own in zip(found, names, strict=True)
+        for stroke in _of_element(element, own, lines)
+    ]
+    return [stroke for _, stroke in sorted(made, key=lambda pair: pair[0])], [*renamed, *notices]
+
+
+def _left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
+    if not elements:
+        return []
+    first = next((element.id for element in elements if element.id), "filled")
+    what = "has no stroke" if paths_as == "stroke" else "holds no area"
+    others = (
+        f", nor do {len(elements) - 1} others"
+        if len(elements) > 2
+        else ", nor does another" * (len(elements) - 1)
+    )
+    why = "; --as stroke counts fills as none" if paths_as == "stroke" else ""
+    return [Notice(first, f"its outline {what}{others}: left out{why}")]
+
+
+def _lines(element: Element, paths_as: str | None) -> list[_Line]:
+    """What becomes of an element; nothing if it leaves no mark."""
+    if paths_as == "stroke" and not element.is_stroked:
+        return []
+    if paths_as == "stroke" or (paths_as is None and not element.fill_rule):
+        return [_drawn(element, subpath) for subpath in element.subpaths]
+    lines = _of_shape(element, grown=paths_as is None)
+    return [_drawn(element, subpath) for subpath in element.subpaths] if lines is None else lines
+
+
+def _of_shape(element: Element, grown: bool) -> list[_Line] | None:
+    """Lines of a filled shape; None where its stroke alone shows."""
+    from .. import _core
+    from .skeleton import filled, outline_strokes
+
+    rings = filled(element)
+    if grown and element.is_stroked:
+        drawn = [_drawn(element, subpath) for subpath in element.subpaths]
+        marks = [
+            _core.wanted_outline(
+                _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02
+            )
+            for line in drawn
+        ]
+        own = _core.unite([ring for mark in marks for ring in mark])
+        both = _core.unite([*own, *rings])
+        if _core.area(both) - _core.area(own) <= _SHOWS * _core.area(own):
+            return None
+        rings = both
+    return [
+        _Line(each.middle_mm, each.half_width, each.closed, each.wanted_mm) for each in outline_strokes(rings)
+    ]
+
+
+def _drawn(element: Element, subpath: SubPath) -> _Line:
+    if subpath.widths is None:
+        half_width = [(0.0, element.stroke_width_mm / 2)]
+    else:
+        half_width = [(at, width / 2) for at, width in subpath.widths.tolist()]
+    return _Line(subpath.cubics, half_width, subpath.closed, [])
+
+
+def _of_element(element: Element, name: str, lines: list[_Line]):
+    from .._core import Stroke, StrokeId
+
+    settings = json.dumps(element.settings, sort_keys=True)
+    for part, line in zip(_parts(len(lines)), lines, strict=True):
+        for repeat in range(1, element.settings.get("passes", 1) + 1):
+            stroke = Stroke(
+                id=StrokeId(name, part, repeat),
+                middle_mm=line.cubics.reshape(-1, 8),
+                closed=line.closed,
+                half_width=line.half_width,
+                layer=element.layer,
+                colour=element.colour,
+                settings=settings,
+            )
+            stroke.wanted_mm = line.wanted_mm
+            yield stroke
+
+
+def _names(elements: list[tuple[Element, int]]) -> tuple[list[str], list[Notice]]:
+    """What each element is called, given with the number of its strokes: no two strokes have one name, and the first
+    to claim one keeps it."""
+    nominal, anonymous = [], 0
+    for element, _ in elements:
+        anonymous += not element.id
+        nominal.append(element.id or f"stroke{anonymous}")
+    reserved = set(nominal)
+    taken: set[str] = set()
+    last_suffix: dict[str, int] = {}
+    result: list[str] = []
+    notices: list[Notice] = []
+    for (element, count), base in zip(elements, nominal, strict=True):
+        name, names = base, _all_names(element, base, count)
+        suffix = last_suffix.get(base, 1)
+        while not taken.isdisjoint((name, *names)) or (name != base and name in reserved):
+            suffix += 1
+            name = f"{base}-{suffix}"
+            names = _all_names(element, name, count)
+        if name != base:
+            last_suffix[base] = suffix
+            notices.append(Notice(base, f"the name {base!r} is taken: this one is called {name!r}"))
+        taken.update((name, *names))
+        result.append(name)
+    return result, notices
+
+
+def _all_names(element: Element, name: str, count: int) -> list[str]:
+    from .._core import StrokeId
+
+    repeats = range(1, element.settings.get("passes", 1) + 1)
+    return [StrokeId(name, part, repeat).name for part in _parts(count) for repeat in repeats]
+
+
+def _parts(count: int) -> range:
+    """Numbers of an element's strokes: 0 for the only one."""
+    return range(1) if count == 1 else range(1, count + 1)

@@ -1,0 +1,133 @@
+"""Shapes wider than the brush filled in several passes: beside the middle lines where that covers them, else along
+their outlines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from .. import _core
+from .contour_fill import contour_passes, painted, region, unpainted
+from .offset_passes import Line, clamped, passes_beside
+
+# More of the shape covered along its outline is worth the direction of writing, which middle lines have.
+_BETTER = 0.01
+_MOST_STROKES = 500
+_SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
+
+
+@dataclass(frozen=True)
+class Filling:
+    """What fills one shape. passes: for the number of each stroke that is wider than the brush, the lines to paint in
+    its place, none where those of another do; meant: of what they become, the first's line and rings; unpainted: share
+    of the shape; gap_mm: width of the widest gap."""
+
+    passes: dict[int, list[Line]]
+    meant: dict[int, tuple[Line, list[np.ndarray]]]
+    unpainted: float
+    gap_mm: float
+
+    @property
+    def shows(self) -> bool:
+        """Whether something is left that one sees."""
+        return self.unpainted > _SHOWN_SHARE or self.gap_mm > _SHOWN_GAP_MM
+
+    @property
+    def count(self) -> int:
+        return sum(map(len, self.passes.values()))
+
+
+def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[Filling]:
+    """How to fill the shapes that strokes wider than the brush, given by their numbers, are of; those that no lettering
+    has are left out."""
+    found, beyond = [], set(wider)
+    for shape, members in _shapes(strokes, wider):
+        if len(members) > _MOST_STROKES:
+            continue
+        wide = {k: strokes[k] for k in members if k in beyond}
+        narrow = [strokes[k] for k in members if k not in beyond]
+        found.append(_filling(shape, wide, narrow, least, greatest))
+    return found
+
+
+def _filling(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> Filling:
+    beside = {
+        k: [clamped(stroke, least, greatest), *passes_beside(stroke, greatest)] for k, stroke in wide.items()
+    }
+    meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
+    along_middles = _tried(shape, beside, meant, narrow)
+    if not (lines := contour_passes(shape, list(wide.values()), narrow, least, greatest)):
+        return along_middles
+    first, *others = wide
+    part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
+    passes = {first: lines, **{k: [] for k in others}}
+    along_outline = _tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow)
+    return along_outline if _is_better(along_outline, along_middles) else along_middles
+
+
+def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
+    """What the first of the lines is meant to paint of a part: its own discs, and what those of all lines leave."""
+    whole = region(part)
+    share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
+    polygons = [
+        one for one in shapely.get_parts(shapely.orient_polygons(share)) if one.geom_type == "Polygon"
+    ]
+    return _core.unite(
+        [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
+    )
+
+
+def _is_better(one: Filling, other: Filling) -> bool:
+    if one.unpainted >= other.unpainted:
+        return False
+    mends = other.gap_mm > _SHOWN_GAP_MM and one.gap_mm < other.gap_mm
+    return one.count <= other.count or mends or other.unpainted - one.unpainted > _BETTER
+
+
+def _tried(shape, passes, meant, narrow: list) -> Filling:
+    left = unpainted(shape, [*narrow, *(line for lines in passes.values() for line in lines)])
+    return Filling(passes, meant, left.area / shape.area, _gap_mm(left))
+
+
+def _gap_mm(left) -> float:
+    parts = [part for part in shapely.get_parts(left) if part.area > 0.1]
+    largest = sorted(parts, key=lambda part: -part.area)[:20]
+    return max((2 * shapely.maximum_inscribed_circle(part, 0.05).length for part in largest), default=0.0)
+
+
+def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
+    """Shapes with strokes that are wider than the brush, and the numbers of all of their strokes."""
+    elements: dict[tuple, list[int]] = {}
+    for k, stroke in enumerate(strokes):
+        if stroke.wanted_mm:
+            elements.setdefault(_element(stroke), []).append(k)
+    found = []
+    wide = set(wider)
+    for element in dict.fromkeys(_element(strokes[k]) for k in wider):
+        numbers = elements[element]
+        shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
+        members: list[list[int]] = [[] for _ in shapes]
+        for k, home in zip(numbers, _homes(shapes, [strokes[k] for k in numbers]), strict=True):
+            members[home].append(k)
+        if all(members):  # else a stroke paints in two of them
+            found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
+    return found
+
+
+def _homes(shapes, strokes: list) -> list[int]:
+    """For each stroke the shape that has most of its part: shapes may meet where strokes begin."""
+    if len(shapes) == 1:
+        return [0] * len(strokes)
+    tree, homes = shapely.STRtree(shapes), []
+    for stroke in strokes:
+        part = region(_core.unite(stroke.wanted_mm))
+        near = tree.query(part)
+        homes.append(int(near[np.argmax(shapely.area(shapely.intersection(shapes[near], part)))]))
+    return homes
+
+
+def _element(stroke) -> tuple[str, int]:
+    """What strokes that share a shape have in common: their element, and which of the times that it is painted."""
+    return stroke.origin.element, stroke.origin.repeat

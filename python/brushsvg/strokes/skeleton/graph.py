@@ -1,0 +1,126 @@
+"""Medial axis to pieces: branches joined by their straightest continuation where they meet.
+
+A piece is a line that a brush could follow: (k, 3) rows of x, y, half width [mm]. It ends where the outline ends, where
+it meets another line, or at a corner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .bridges import bridge, find_corners, stub
+from .junctions import Arm, Crossing, crossings_of
+
+
+@dataclass
+class Piece:
+    """line: see above; ends: the crossing at either end, None at a free one; branches: what it is made of, those inside
+    crossings too; inside: stretches of the line that lie in crossings; through: crossings on its way; closed: the last
+    point is the first again."""
+
+    line: np.ndarray
+    ends: tuple[int | None, int | None]
+    branches: list[int]
+    inside: list[np.ndarray] = field(default_factory=list)
+    through: list[int] = field(default_factory=list)
+    closed: bool = False
+
+
+@dataclass
+class Skeleton:
+    pieces: list[Piece]
+    crossings: list[Crossing]
+    dabs: np.ndarray  # (k, 3)
+    parts: list[list[np.ndarray]]  # of the shape, per branch
+
+
+def skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -> Skeleton:
+    """Pieces of a shape; nodes and branches as _core.medial_axis(rings, ...) returns them."""
+    lines = [branch.line for branch in branches]
+    ends = [(branch.start, branch.end) for branch in branches]
+    degree = np.bincount(np.array(ends, int).ravel(), minlength=len(nodes))
+    crossings, arms = crossings_of(nodes, lines, ends, degree)
+    find_corners(crossings, rings)
+    used: set[int] = {b for crossing in crossings for b in crossing.inner}
+    pieces = []
+    for arm in arms:  # first those that begin somewhere, then rings
+        if arm.branch not in used and arm.mate is None:
+            pieces.append(_follow(arm, used, crossings))
+    meets = {arm.branch for arm in arms}
+    for number, line in enumerate(lines):
+        if number not in used and number not in meets:
+            used.add(number)
+            is_ring = ends[number][0] == ends[number][1]
+            pieces.append(Piece(line, (None, None), [number], closed=is_ring))
+    for arm in arms:
+        if arm.branch not in used and arm.other is None:
+            pieces.append(_follow(arm, used, crossings, from_free_end=True))
+    for arm in arms:
+        if arm.branch not in used:
+            pieces.append(_ring(arm, used, crossings))
+    _give_away(crossings, pieces, lines)
+    return Skeleton(pieces, crossings, nodes[degree == 0, :3], [branch.part for branch in branches])
+
+
+def _give_away(crossings: list[Crossing], pieces: list[Piece], lines: list[np.ndarray]) -> None:
+    """What lies inside of a crossing through which nothing runs goes to a line that ends there; if there is none, the
+    longest branch inside is one."""
+    passed = {number for piece in pieces for number in piece.through}
+    ending = {number: piece for piece in reversed(pieces) for number in piece.ends if number is not None}
+    for number, crossing in enumerate(crossings):
+        if not crossing.inner or number in passed:
+            continue
+        found = ending.get(number)
+        if found is None:
+            longest = max(crossing.inner, key=lambda branch: len(lines[branch]))
+            found = Piece(lines[longest], (None, None), [])
+            pieces.append(found)
+        found.branches.extend(crossing.inner)
+
+
+def _follow(arm: Arm, used: set[int], crossings, from_free_end: bool = False) -> Piece:
+    """From an unmated arm, or from the free end of a branch, through crossings to the other end."""
+    used.add(arm.branch)
+    if from_free_end:
+        first, here, inside = None, arm, []
+        rows = [arm.line[arm.out :][::-1]]
+    else:
+        first, here, inside = arm.crossing, arm.other, [stub(arm, crossings[arm.crossing])]
+        rows = [inside[0], _along(arm)]
+    branches, through = [arm.branch], []
+    while here is not None:
+        if here.mate is None:
+            inside.append(stub(here, crossings[here.crossing])[::-1])
+            return Piece(np.vstack([*rows, inside[-1]]), (first, here.crossing), branches, inside, through)
+        inside.append(bridge(here, here.mate))
+        through.append(here.crossing)
+        branches += [*crossings[here.crossing].inner, here.mate.branch]
+        here = here.mate
+        used.add(here.branch)
+        rows += [inside[-1], _along(here)]
+        here = here.other
+    return Piece(np.vstack(rows), (first, None), branches, inside, through)
+
+
+def _ring(arm: Arm, used: set[int], crossings: list[Crossing]) -> Piece:
+    rows, branches, inside, through, here = [], [], [], [], arm
+    while True:
+        used.add(here.branch)
+        end = here.other
+        inside.append(bridge(end, end.mate))
+        through.append(end.crossing)
+        branches += [here.branch, *crossings[end.crossing].inner]
+        rows += [_along(here), inside[-1]]
+        here = end.mate
+        if here is arm:
+            return Piece(np.vstack([*rows, rows[0][:1]]), (None, None), branches, inside, through, True)
+
+
+def _along(arm: Arm) -> np.ndarray:
+    """The arm's line outside of the crossings at its ends; where they leave nothing of it, a point."""
+    last = len(arm.line) - (arm.other.out if arm.other else 0)
+    if last > arm.out:
+        return arm.line[arm.out : last]
+    return arm.line[min((arm.out + last) // 2, len(arm.line) - 1)][None]

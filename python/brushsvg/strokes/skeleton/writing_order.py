@@ -1,0 +1,183 @@
+"""How one writes: which way a line runs, which lines are one stroke, what comes first."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from heapq import heappop, heappush
+from itertools import pairwise, permutations, product
+
+import numpy as np
+
+from .graph import Piece, Skeleton
+
+# Lines run towards this direction: down, and to the right where they lie flatter than 30 degrees.
+TOWARDS = np.array([np.cos(np.radians(-60)), np.sin(np.radians(-60))])
+# Strokes are set down wide and lifted thin: what a taper counts for beside the direction.
+TAPER = 0.27
+# A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
+# of its own: a flick.
+FLICK, FLICK_SHARE = 7.0, 0.6
+
+# Which comes first.
+UPPER_LEFT_FIRST = np.array([1.0, -1.0])
+# Of parts in a line of writing: with more a dot would come before the letter left of it, with less the roof of a
+# Chinese character after what stands below.
+HIGHER = 0.5
+# Lines of which one is so much flatter are a bar and what crosses it.
+FLATTER_RAD = np.radians(30)
+
+
+def directed(piece: Piece) -> Piece:
+    """The piece as one would paint it."""
+    if piece.closed:
+        return _ring(piece)
+    return piece if willing(piece.line) >= 0 else reversed_(piece)
+
+
+def willing(line: np.ndarray) -> float:
+    """How gladly one paints it this way, in [-1, 1]; negative: the other way round."""
+    chord = line[-1, :2] - line[0, :2]
+    length = max(np.hypot(*chord), 1e-9)
+    n = max(len(line) // 3, 1)
+    head, tail = line[:n, 2].mean(), line[-n:, 2].mean()
+    return float(chord @ TOWARDS / length + TAPER * (head - tail) / max(head, tail, 1e-9))
+
+
+def reversed_(piece: Piece) -> Piece:
+    return replace(piece, line=piece.line[::-1], ends=piece.ends[::-1])
+
+
+def _ring(piece: Piece) -> Piece:
+    """Counter-clockwise, from the top, a little to the right."""
+    line = piece.line[:-1]
+    x, y = line[:, 0], line[:, 1]
+    if (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() < 0:
+        line = line[::-1]
+    first = int(np.argmax(line[:, :2] @ (0.3, 1.0)))
+    line = np.roll(line, -first, axis=0)
+    return replace(piece, line=np.vstack([line, line[:1]]))
+
+
+def length_mm(line: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
+
+
+def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
+    """Pieces in their directions, those that a corner joins in one list: where one ends and the next begins there, or
+    where one is but a flick."""
+    chains = {k: [directed(piece)] for k, piece in enumerate(pieces)}
+    lengths = [length_mm(piece.line) for piece in pieces]
+    at_crossing: dict[int | None, set[int]] = {}
+    for k, piece in enumerate(pieces):
+        for crossing in piece.ends:
+            at_crossing.setdefault(crossing, set()).add(k)
+    for number, crossing in enumerate(skeleton.crossings):
+        if not crossing.is_corner:
+            continue
+        near = sorted(at_crossing.get(number, ()))
+        here = [(k, side) for k in near for side in (0, 1) if _end(chains[k], side) == number]
+        if len(here) != 2 or here[0][0] == here[1][0]:
+            continue
+        (i, side_i), (j, side_j) = here
+        if side_i == side_j:  # both begin or both end here
+            turned = _flick(chains, lengths, i, j)
+            if turned is None:
+                continue
+            chains[turned] = [reversed_(piece) for piece in reversed(chains[turned])]
+            side_i = side_i if turned == j else 1 - side_i
+        first, second = (i, j) if side_i == 1 else (j, i)
+        at_crossing[_end(chains[second], 1)].add(first)
+        at_crossing[_end(chains[second], 1)].discard(second)
+        chains[first] += chains.pop(second)
+        lengths[first] += lengths[second]
+    return list(chains.values())
+
+
+def _end(chain: list[Piece], side: int) -> int | None:
+    return chain[0].ends[0] if side == 0 else chain[-1].ends[1]
+
+
+def _flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j: int) -> int | None:
+    """Which of two that meet at a corner is but the flick of the other: short, with a free end."""
+    short, long = sorted((i, j), key=lambda k: (lengths[k], k))
+    if len(chains[short]) > 1 or None not in chains[short][0].ends:
+        return None
+    widest = chains[short][0].line[:, 2].max()
+    return short if lengths[short] < min(FLICK * widest, FLICK_SHARE * lengths[long]) else None
+
+
+def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
+    """From the upper left to the lower right by their centres; but see _earlier."""
+    lines = [np.vstack([piece.line[:, :2] for piece in chain]) for chain in chains]
+    centres = np.array([_centre(line) for line in lines])
+    by_centre = (centres @ UPPER_LEFT_FIRST).argsort(kind="stable").tolist()
+    place = {k: place for place, k in enumerate(by_centre)}
+    earlier = _earlier(chains, lines, centres)
+    later: dict[int, list[int]] = {}
+    for k, before in enumerate(earlier):
+        for other in before:
+            later.setdefault(other, []).append(k)
+    ready = [place[k] for k in by_centre if not earlier[k]]
+    painted: dict[int, None] = {}
+    rest = iter(by_centre)
+    while len(painted) < len(chains):
+        # where each waits for another, the first of them
+        k = by_centre[heappop(ready)] if ready else next(k for k in rest if k not in painted)
+        if k in painted:
+            continue
+        painted[k] = None
+        for other in later.get(k, ()):
+            earlier[other].discard(k)
+            if not earlier[other]:
+                heappush(ready, place[other])
+    return [chains[k] for k in painted]
+
+
+def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray) -> list[set[int]]:
+    """For each chain those that are painted before it: of two that begin at one place the one that leads farther to the
+    left, a stem before its bowl; of two that cross the flatter one; and what it begins on, unless that lies to its
+    right, a bowl before the stem behind it."""
+    begin, pass_ = defaultdict(list), defaultdict(list)
+    for k, chain in enumerate(chains):
+        begin[chain[0].ends[0]].append(k)
+        for crossing in {crossing for piece in chain for crossing in piece.through}:
+            pass_[crossing].append(k)
+    begin.pop(None, None)
+    steep = [float(np.arctan2(*np.abs(line[-1] - line[0])[::-1])) for line in lines]
+    to_right = [
+        float(np.arctan2(c[0] - line[0, 0], line[0, 1] - c[1]))
+        for c, line in zip(centres, lines, strict=True)
+    ]
+    earlier: list[set[int]] = [set() for _ in chains]
+    for crossing in begin.keys() | pass_.keys():
+        fanned = sorted(begin[crossing], key=to_right.__getitem__)
+        for one, two in pairwise(fanned):
+            earlier[two].add(one)
+        for one, two in permutations(pass_[crossing], 2):
+            if steep[one] < steep[two] - FLATTER_RAD:
+                earlier[two].add(one)
+        for host, guest in product(pass_[crossing], begin[crossing]):
+            if host != guest and centres[host, 0] <= centres[guest, 0]:
+                earlier[guest].add(host)
+    return earlier
+
+
+def _centre(line: np.ndarray) -> np.ndarray:
+    steps = np.hypot(*np.diff(line, axis=0).T)
+    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=steps) if steps.sum() > 0 else line[0]
+
+
+def in_rows(boxes: np.ndarray) -> list[int]:
+    """Order of things with bounds (n, 4) x0, y0, x1, y1: as lines of text are read, in a line from the left, what lies
+    higher rather first."""
+    rows: list[list[int]] = []
+    floor = np.inf
+    for k in (-boxes[:, 3]).argsort(kind="stable").tolist():
+        if boxes[k, 3] <= floor:
+            rows.append([])
+            floor = boxes[k, 1]
+        rows[-1].append(k)
+        floor = min(floor, boxes[k, 1])
+    across = (boxes[:, 0] + boxes[:, 2]) - HIGHER * (boxes[:, 1] + boxes[:, 3])
+    return [k for row in rows for k in sorted(row, key=lambda k: across[k])]

@@ -1,0 +1,104 @@
+"""Strokes found in outlines, made such that a brush can paint them: wider or narrower than it, they are not."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..drawing.design import Notice
+from ..errors import Error
+from .offset_passes import clamped
+
+WIDE = ("clamp", "passes", "refuse")
+
+
+def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list, list[Notice]]:
+    """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
+
+    Only strokes that carry an outline are changed: widths that were drawn as such are refused when the plan is made.
+    wide: "clamp", the nearest width; "passes", several passes, called id, id~2, id~3 ..., which fill the shape that is
+    wider than the brush and stay in it; "refuse", Error naming stroke, width and range.
+    """
+    if not brush.width_follows_depth():
+        return strokes, strokes, []
+    least, greatest = brush.half_width_range_mm()
+    reach = f"[{2 * least:.3g}, {2 * greatest:.3g}] mm of brush {brush.name}"
+    beyond = {k: _beyond(stroke, least, greatest) for k, stroke in enumerate(strokes)}
+    if wide == "refuse":
+        for stroke, (_, worst) in ((strokes[k], found) for k, found in beyond.items() if found):
+            sentence = f"width {2 * worst:.3g} mm of its outline is outside the range {reach}"
+            raise Error(sentence, where=stroke.id, value=2 * worst, range=(2 * least, 2 * greatest))
+    wider = [k for k, found in beyond.items() if found and found[1] > greatest]
+    filled = _filled(strokes, wider, least, greatest) if wide == "passes" and wider else {}
+    painted, wanted, notices = [], [], []
+    for k, stroke in enumerate(strokes):
+        made, meant, how = filled.get(k) or ([stroke], [stroke], "")
+        if beyond[k]:
+            count, worst = beyond[k]
+            if k not in filled:
+                made, how = [_clamped(stroke, least, greatest)], "painted at the nearest"
+            if wide == "clamp" and worst > greatest:
+                how += "; --wide passes fills it"
+            notices.append(Notice(stroke.id, f"{count} {2 * worst:.3g} mm, outside the range {reach}: {how}"))
+        painted += made
+        wanted += meant
+    return painted, wanted, notices
+
+
+def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
+    """How many widths of an outline are out of reach, in words, and half the worst."""
+    halves = np.array([half for _, half in stroke.half_width])
+    off = (halves < least - 1e-9) | (halves > greatest + 1e-9)
+    if not stroke.wanted_mm or not off.any():
+        return None
+    worst = halves.max() if halves.max() > greatest + 1e-9 else halves.min()
+    if len(off) == 1:
+        return "the width of its outline,", worst
+    return f"{off.sum()} of {len(off)} widths of its outline, up to", worst
+
+
+def _filled(strokes: list, wider: list[int], least: float, greatest: float) -> dict[int, tuple]:
+    """For each stroke that is wider than the brush (passes, what they should become, how in words)."""
+    from .multipass_fill import fillings  # with shapely, which is slow to load
+
+    done = {}
+    for filling in fillings(strokes, wider, least, greatest):
+        first = min(filling.passes)
+        left_over = _left_over(filling)
+        for k in filling.passes:
+            passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
+            meant = []
+            if passes:
+                line, rings = filling.meant[k]
+                meant = [_like(strokes[k], line), *passes[1:]]
+                meant[0].wanted_mm = rings
+            done[k] = (passes, meant, _how(passes) + left_over * (k == first))
+    return done
+
+
+def _how(passes: list) -> str:
+    if not passes:
+        return "painted in the passes of its shape's first stroke"
+    return f"painted in {len(passes)} passes" if len(passes) > 1 else "painted in one pass"
+
+
+def _left_over(filling) -> str:
+    if not filling.shows:
+        return ""
+    share = f"{100 * filling.unpainted:.2g} % of the shape"
+    return f"; {share} stay unpainted, with gaps up to {filling.gap_mm:.2g} mm wide"
+
+
+def _like(stroke, line, lane: int = 1):
+    of = stroke.origin
+    name = _core.StrokeId(of.element, of.part, of.repeat, lane)
+    return _core.Stroke(
+        name, line.middle_mm, line.closed, line.half_width, stroke.layer, stroke.colour, stroke.settings
+    )
+
+
+def _clamped(stroke, least: float, greatest: float):
+    """The stroke with its widths cut to the range."""
+    made = _like(stroke, clamped(stroke, least, greatest))
+    made.wanted_mm = stroke.wanted_mm
+    return made

@@ -1,0 +1,1 @@
+"""A program back to a plan, held against what it should be."""

@@ -1,0 +1,303 @@
+"""A program that was read, held line by line against what brushsvg would write for the same moves."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+
+from .. import _core
+from ..machine.cell import Cell, value_mm
+from ..machine.header_lines import header_of
+from ..machine.motion import Program
+from ..machine.posts import POSTS
+from ..machine.program import Job, unchecked_program
+from ..machine.writer import text_of
+from .readback import Act, Readback, read_program
+from .simulate_program import Ran
+
+
+def again(
+    ran: Ran,
+    brush,
+    cell: Cell,
+    z_offset_mm: float,
+    first_stroke: int = 1,
+    told: Told | None = None,
+    speeds_mm_s: list[float] | None = None,
+) -> Program | None:
+    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch. Without
+    a header, unless its words are told. speeds_mm_s: of the strokes, where it is known how they were meant.
+    """
+    if not ran.visits or len(ran.visits) != len(ran.plan.passes):
+        return None
+    before = first_stroke - 1
+    passes = ran.plan.passes
+    if cell.servo:
+        passes = [_without(*each) for each in zip(passes, ran.lines, strict=True)]
+    if speeds_mm_s:
+        passes = [
+            _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs)
+            for each, speed in zip(passes, speeds_mm_s, strict=True)
+        ]
+    plan = SimpleNamespace(sheet_mm=ran.plan.sheet_mm, passes=[None] * before + list(passes))
+    job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
+    made = unchecked_program(plan, brush, cell, (), job)
+    if told is None:
+        return made
+    return replace(made, header=header_of(told.title, brush.name, plan, told.notes, made, job))
+
+
+@dataclass(frozen=True)
+class Told:
+    """What of a header stands in no line of the program."""
+
+    title: str
+    notes: tuple[str, ...]
+
+
+def _without(a_pass, lines: np.ndarray):
+    """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone."""
+    poses = np.asarray(a_pass.poses_mm)[np.r_[lines[1:] != lines[:-1], True]]
+    poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
+    steps = np.diff(poses, axis=0)
+    still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
+    inner = np.zeros(len(poses), dtype=bool)
+    inner[1:-1] = still[:-1] & still[1:] & (rising[:-1] == rising[1:])
+    return _core.Pass(a_pass.stroke, poses[~inner], a_pass.speed_mm_s)
+
+
+def differing_line(
+    text: str, read: Readback, program: Program, cell: Cell, knows_speeds: bool = True
+) -> str | None:
+    """A sentence on the first line that does something else than what brushsvg would write; None where there is none.
+
+    However the numbers are written, places may be off by what a brush does not show, feeds may be lower, and what does
+    nothing may be missing or stand twice. Of a servo's ways in paint, whose heights were rounded to whole values, only
+    the ends are looked at. knows_speeds: those of the program are what was meant, not what was read.
+    """
+    theirs_text = "".join(text_of(POSTS[cell.language], program))
+    again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
+    circles = any(act.kind == "circle" for act in again.acts)
+    if lost := sorted(
+        (again.modes or set()) - (read.modes or set()) - ({"G80"} if circles else {"G80", "G17", "G91.1"})
+    ):
+        return f"{lost[0]} is missing before the first move"
+    ours, theirs = _with_header_sorted(read.acts), _with_header_sorted(again.acts)
+    if cell.servo:
+        ours, theirs = _folded(ours), _folded(theirs)
+    like = _Alike(cell, knows_speeds)
+    here: tuple = ()
+    i, k = 0, 0
+    while i < len(ours) or k < len(theirs):
+        a = ours[i] if i < len(ours) else None
+        b = theirs[k] if k < len(theirs) else None
+        if a and b and like.is_same(a, b):
+            i, k, here = i + 1, k + 1, a.place or here
+        elif a and like.is_idle(a, here):
+            i += 1
+        elif b and like.is_idle(b, here):
+            k += 1
+        elif a and b and like.is_on_the_way(a, here, b) and like.is_slow(a, b):
+            i, here = i + 1, a.place
+        elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b):
+            k += 1
+        else:
+            return _differs(text.splitlines(), theirs_text.splitlines(), a, b, like)
+    return None
+
+
+def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, like: _Alike) -> str:
+    line, expected = (lines[act.line - 1] if act else "" for lines, act in ((ours, a), (theirs, b)))
+    if not a:
+        return f"the line {expected.strip()[:60]!r} is missing at the end"
+    if (
+        b
+        and a.at_most
+        and b.at_most
+        and a.at_most[0] > b.at_most[0] + FASTER
+        and math.isfinite(a.at_most[0])
+        and like.is_same(a._replace(at_most=b.at_most), b)
+    ):
+        speeds = f"runs at {a.at_most[0]:.1f} mm/s: for these strokes and this cell brushsvg would write"
+        return f"line {a.line}: {line.strip()[:60]!r} {speeds} {b.at_most[0]:.1f} mm/s"
+    if b and a.kind == b.kind == "move" and not a.text and a.place == b.place and a.same != b.same:
+        corners = next((line for line in theirs if line.startswith("G6")), "nothing")
+        return f"line {a.line}: corners are cut by up to {a.same[0]:g} mm, brushsvg would write {corners!r}"
+    at = next((n for n, (x, y) in enumerate(zip(line, expected, strict=False)) if x != y), len(line))
+    found, wanted = _near(line, at), _near(expected, at)
+    instead = f"brushsvg would write {wanted!r}" if b else "nothing should follow"
+    return f"line {a.line}: {found!r}: for these strokes and this cell {instead}"
+
+
+def _near(line: str, place: int) -> str:
+    """60 letters of a line, from its beginning where that holds the place."""
+    first = max(0, place - 30) if place > 50 else 0
+    return ("..." if first else "") + line.strip()[first : first + 60]
+
+
+_TOLD = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =")
+
+
+def _with_header_sorted(acts: list[Act]) -> list[Act]:
+    """The acts, what a header says and sets in the order of first words, and nothing twice."""
+    is_told = [bool(_TOLD.match(act.text)) for act in acts]
+    first = next((k for k, told in enumerate(is_told) if told), len(acts))
+    last = next((k for k in range(first, len(acts)) if not is_told[k]), len(acts))
+    header = {act.text: act for act in acts[first:last]}
+    return (
+        acts[:first] + sorted(header.values(), key=lambda act: act.text.partition(":")[0][:8]) + acts[last:]
+    )
+
+
+def _folded(acts: list[Act]) -> list[Act]:
+    """A servo's acts: ways in paint that follow each other as the last one, lifts one way with their waits as the last
+    with the sum."""
+    out: list[Act] = []
+    value, rises, place = 0.0, 0.0, ()
+    up = next((act.same[0] for act in acts if act.kind == "lift"), None)
+    for act in acts:
+        last = out[-1] if out else None
+        if act.kind == "way":
+            if (act.place, act.same[0]) == (place, value):
+                continue
+            value, place = act.same[0], act.place
+            if last and last.kind == "way" and up not in (value, last.same[0]):
+                out[-1] = act._replace(at_most=(max(act.at_most[0], last.at_most[0]),))
+                continue
+        elif act.kind in ("lift", "wait"):
+            change = act.same[0] - value if act.kind == "lift" else 0.0
+            waited_s = 0.0 if act.kind == "lift" else act.same[0]
+            value += change
+            if last and last.kind == "lift" and change * rises >= 0:
+                rises = change or rises
+                out[-1] = act._replace(kind="lift", same=(value, last.same[1] + waited_s))
+                continue
+            rises = change
+            act = act._replace(kind="lift", same=(value, waited_s))
+        out.append(act)
+    return out
+
+
+_NUMBER = re.compile(r"-?\d*\.\d+|-?\d+")
+NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, and the last digit of what is written
+WAITS_S = 0.0031
+LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits, and which part of it
+FASTER = 0.011  # mm/s, of what is written in steps of 0.01
+DIGITS = 10.5  # of the last decimal: what a statement loses with it
+TILTED_RAD = 1.05e-3  # about a brush's tip, which stays where it is
+# what rounded poses make of a blend, which hangs on the angle between two moves: mm, or a part of it; and the part for
+# each mm of rounding, where few decimals turn moves of a millimetre by more than such an angle
+LEAST_BLEND_MM, BLENDS, BLENDS_PER_MM = 1e-2, 0.05, 2e2
+
+
+class _Alike:
+    """Whether one act does what another does, on a machine."""
+
+    def __init__(self, cell: Cell, knows_speeds: bool):
+        self.near_mm = max(NEAR_MM, 3.1 * 10.0**-cell.decimals)
+        self.blends = max(BLENDS, BLENDS_PER_MM * 10.0**-cell.decimals)
+        self.is_servo, self.knows_speeds = bool(cell.servo), knows_speeds
+        if (
+            cell.servo
+        ):  # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
+            self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
+            rows = np.diff(np.array(cell.servo.table), axis=0)
+            self.step_values = 1 + cell.servo.step_mm * np.abs(rows[:, 1] / rows[:, 0]).max()
+
+    def is_same(self, a: Act, b: Act) -> bool:
+        if a.kind != b.kind or not self._is_near(a.place, b.place) or not self.is_slow(a, b):
+            return False
+        if a.kind == "text":
+            return a.text == b.text or self._says_same(a.text, b.text)
+        if a.kind == "move" and a.text != "movel":  # how much of its corners is cut: by G64 P, by a blend
+            slack = max(LEAST_BLEND_MM, self.blends * b.same[0]) if a.text else self.near_mm / 2
+            is_cut = a.same[0] > 0 or bool(a.text)
+            return a.text == b.text and (a.same == b.same or (is_cut and a.same[0] <= b.same[0] + slack))
+        return a.text == b.text and all(
+            found == wanted or abs(found - wanted) <= slack
+            for found, wanted, slack in zip(a.same, b.same, self._slacks(b), strict=True)
+        )
+
+    def is_slow(self, a: Act, b: Act) -> bool:
+        """No faster than another, which may be rapid."""
+        slacks = (FASTER, *(0.01 * most for most in b.at_most[1:]))
+        return len(a.at_most) == len(b.at_most) and all(
+            found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)
+        )
+
+    def is_idle(self, act: Act, here: tuple) -> bool:
+        """Goes to where the tool is."""
+        return act.kind == "move" and act.place == here
+
+    def is_on_the_way(self, act: Act, here: tuple, to: Act) -> bool:
+        """Whether a straight move ends on another one that begins here: with or without it, the way is the same."""
+        if {act.kind, to.kind} != {"move"} or act.text != to.text or act.same != to.same or not here:
+            return False
+        start, point, end = (np.array(place) for place in (here, act.place, to.place))
+        if not np.isfinite([start, point, end]).all():
+            return False
+        way = end - start
+        length = np.linalg.norm(way)
+        if length < self.near_mm:
+            return False
+        along = (point - start) @ way / length
+        off = np.linalg.norm(point - start - along * way / length)
+        return bool(0 <= along <= length and off <= self.near_mm / 2)
+
+    def _is_near(self, found: tuple, wanted: tuple) -> bool:
+        """Places that were never named are the same."""
+        return len(found) == len(wanted) and all(
+            abs(x - y) <= self.near_mm or (math.isnan(x) and math.isnan(y))
+            for x, y in zip(found, wanted, strict=True)
+        )
+
+    def _slacks(self, act: Act) -> tuple:
+        if act.kind == "wait":
+            return (WAITS_S,)
+        if act.kind == "lift":
+            return (1, max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s)
+        if act.kind == "way":
+            return (self.step_values,)
+        if act.kind == "circle":
+            return (self.near_mm,) * len(act.same)
+        return (1e-4,)
+
+    def _says_same(self, found: str, wanted: str) -> bool:
+        """Time and length in a header, and the numbers of a statement."""
+        if (about := _ABOUT.fullmatch(found)) and (asked := _ABOUT.fullmatch(wanted)):
+            return _nearly(about, asked, 0.25 if self.is_servo else 0.01, self.knows_speeds)
+        if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
+            return False
+        tilts = 3 if wanted.startswith(("set_tcp", "return")) else 0
+        numbers = list(zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True))
+        return all(
+            abs(float(x) - float(y))
+            <= (
+                TILTED_RAD
+                if k >= len(numbers) - tilts
+                else DIGITS * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
+            )
+            for k, (x, y) in enumerate(numbers)
+        )
+
+
+_ABOUT = re.compile(
+    r"\((?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)"
+)
+
+
+def _nearly(found: re.Match, asked: re.Match, part: float, knows_speeds: bool) -> bool:
+    """Whether two times, or two lengths, are the same up to a part of them and two of their last unit; a time may be
+    shorter than what is read, where feeds may have been lowered."""
+    if (found[4] is None) != (asked[4] is None):
+        return False
+    seconds = [
+        sum(int(each[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1))) for each in (found, asked)
+    ]
+    value, wanted = (int(found[4]), int(asked[4])) if asked[4] else seconds
+    slack = max(60 if asked[1] else 5 if part > 0.1 else 2, part * wanted)
+    return value <= wanted + slack and (value >= wanted - slack or not (asked[4] or knows_speeds))

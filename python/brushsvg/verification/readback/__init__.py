@@ -1,0 +1,122 @@
+"""Programs read back, as we write them and no further: what a machine would do, step by step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from ...errors import Error
+
+if TYPE_CHECKING:
+    from ...machine.cell import Cell
+
+
+class Step(NamedTuple):
+    """One move to a point [mm], in the frame of the program; NaN is a coordinate that was never named.
+
+    line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
+    blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
+    frame of the program, which is the paper's where there is one.
+    """
+
+    line: int
+    rapid: bool
+    x: float
+    y: float
+    z: float
+    speed_mm_s: float
+    blend_mm: float = 0.0
+    centre: tuple[float, float, int] | None = None
+    via: tuple = ()
+
+
+class Act(NamedTuple):
+    """What a line of a program does or says, however it is written.
+
+    line: of the file, from 1; kind: move, circle, way (a servo's move), lift (of a servo), wait or text, which says
+    something, or is a statement; place: where it goes [mm]; at_most: its speed [mm/s] and acceleration [mm/s^2], where
+    it tells them; same: other numbers. Of a rapid move the speed is inf.
+    """
+
+    line: int
+    kind: str
+    text: str = ""
+    place: tuple = ()
+    at_most: tuple = ()
+    same: tuple = ()
+
+
+@dataclass
+class ReadSection:
+    """What stands under one of our comments, in a line of the file, from 1."""
+
+    title: str
+    line: int = 0
+    steps: list[Step] = field(default_factory=list)
+
+
+@dataclass
+class Readback:
+    """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
+    it first moves.
+
+    in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
+    """
+
+    sections: list[ReadSection] = field(default_factory=list)
+    joint_mm: float = 0.0
+    in_paper_frame: bool = False
+    paper: tuple[float, ...] = ()
+    acts: list[Act] = field(default_factory=list)
+    modes: frozenset[str] | None = None
+
+    def section(self) -> ReadSection:
+        """The one being read."""
+        if not self.sections:
+            self.sections.append(ReadSection(""))
+        return self.sections[-1]
+
+    def comment(self, number: int, text: str) -> None:
+        """Perhaps the title of a section. Error for one that LinuxCNC acts on."""
+        if re.match(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", text, re.IGNORECASE):
+            raise Error(f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on")
+        if text.startswith(("stroke ", "paint: ", "border ")):
+            self.sections.append(ReadSection(text, number))
+        if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks
+            self.acts.append(Act(number, "text", f"({text})"))
+
+
+def read_program(text: str, suffix: str, cell: Cell) -> Readback:
+    """What a program of the cell's language does. Error with the line for what brushsvg would not have written."""
+    from ...machine.posts import POSTS
+
+    post = POSTS.get(cell.language)
+    if post is None or suffix not in post.extensions:
+        speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
+        raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}")
+    if odd := re.search(r"[^\n -~]", text):
+        number = text.count("\n", 0, odd.start()) + 1
+        raise Error(f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text")
+    return _READERS[cell.language](text, cell)
+
+
+def _gcode(text: str, cell: Cell) -> Readback:
+    from .gcode import read_gcode
+
+    return read_gcode(text, cell)
+
+
+def _urscript(text: str, cell: Cell) -> Readback:
+    from .urscript import read_urscript
+
+    return read_urscript(text)
+
+
+_READERS: dict[str, Callable[[str, Cell], Readback]] = {
+    "linuxcnc": _gcode,
+    "grbl": _gcode,
+    "grbl-servo": _gcode,
+    "urscript": _urscript,
+}

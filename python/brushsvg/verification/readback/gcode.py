@@ -1,0 +1,237 @@
+"""G-code as brushsvg writes it, read back: straight moves, circles, dwells, stops, a servo's values."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from ...errors import Error
+from ...machine.cell import Cell, value_mm
+from ...machine.posts.gcode import comment, grbl_comment
+from ...machine.posts.gcode_servo import SERVO_END, height_at
+from . import Act, Readback, Step
+
+_COMMENT = re.compile(r"\(([^()]*)\)")
+_CODE = re.compile(r"(?:[A-Z]-?(?:\d+\.?\d*|\.\d+)(?: |$))+")
+_WORD = re.compile(r"([A-Z])(-?(?:\d+\.?\d*|\.\d+))")
+WAYS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF"}  # and the words that they may have
+INSTEAD = {
+    "G18": ["G17"],
+    "G19": ["G17"],
+    "G90.1": ["G91.1"],
+    "G61": ["G64"],
+    "G64": ["G61"],
+}  # what ends what holds
+MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61", "G18", "G19", "G90.1"}
+ALONE = {
+    "G0",
+    "G1",
+    "G2",
+    "G3",
+    "G4",
+    "G64",
+    "G61",
+    "M0",
+    "M2",
+    "M3",
+    "M5",
+}  # no other word of command beside them
+ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
+STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
+NEEDED = {"G21": "millimetres", "G90": "absolute places"}
+
+
+def read_gcode(text: str, cell: Cell) -> Readback:
+    """The program as steps. Error with the line for words that brushsvg does not write, or a missing G21, G90, M2."""
+    return _Reader(cell).read(text)
+
+
+class _Reader:
+    def __init__(self, cell: Cell):
+        self.out = Readback()
+        self.comment = comment if cell.language == "linuxcnc" else grbl_comment
+        self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
+        self.words |= {"G4": "P", "G64": "P", "": "F"} | (
+            {"M3": "S", "G1": "XYSF"} if cell.servo else {"M5": ""}
+        )
+        self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
+        self.motion = ""
+        self.value = math.nan  # of the servo
+        self.unit_mm = 10.0**-cell.decimals
+        self.servo = cell.servo
+        # between two values, and two parts of a way, no more than this is written at once
+        self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
+        # and a lift alone begins half a step before where the way ended
+        self.lift_mm = self.jump_mm + (0.5 * cell.servo.step_mm if cell.servo else 0.0)
+        self.lift: tuple[int, float, float] | None = (
+            None  # which step, how far, how long it has been waited for
+        )
+        self.at = {axis: math.nan for axis in "XYZ"}
+        self.feed_mm_s = 0.0
+        self.rapid_mm_s = cell.speeds.travel_mm_s
+        self.seen: set[str] = set()
+        self.ended = False
+
+    def read(self, text: str) -> Readback:
+        for number, line in enumerate(text.splitlines(), 1):
+            if line and self.ended:
+                raise Error(f"line {number}: {line[:40]!r} stands behind the end of the program")
+            if said := _COMMENT.fullmatch(line):
+                self._comment(number, line, said[1])
+                self.ended = bool(self.servo) and said[1] == SERVO_END
+            elif line:
+                self._line(number, line)
+        for mode, meaning in NEEDED.items():
+            if mode not in self.seen:
+                raise Error(f"{mode} is missing: nothing says that its numbers are {meaning}")
+        if not self.ended:
+            end = f"({SERVO_END})" if self.servo else "M2"
+            raise Error(f"{end} is missing: the program has no end, or half of it was lost")
+        return self.out
+
+    def _line(self, number: int, line: str) -> None:
+        if not _CODE.fullmatch(line):
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+        words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
+        codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
+        if codes == ["M30"] and not self.servo:
+            codes = ["M2"]  # what both end
+        if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= ALONE | MODES | set(NEEDED):
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+        values = {letter: value for letter, value in words if letter not in "GM"}
+        first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
+        if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
+            first = "M3"  # which holds
+        if values and first in STANDING and self.motion in ("G0", "G1"):
+            first = self.motion  # which goes on beside a mode
+        if first not in self.words:
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+        if len(values) + len(set(codes)) != len(words) or not set(values) <= set(self.words[first]):
+            raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
+        if first == "G64" and "G21" not in self.seen:
+            raise Error(
+                f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres"
+            )
+        if values and first != "G64" and self.out.modes is None:
+            self.out.modes = frozenset(self.seen)
+        if first not in ("G4", "M3", ""):
+            self.lift = None
+        if first in WAYS or not first:
+            self._move(number, line, first, values)
+        elif first == "G64":
+            self.out.joint_mm = values.get("P", math.inf)
+        elif first == "M3":
+            self._lift(number, values)
+        elif first == "G4":
+            self._wait(number, line, values.get("P", -1.0))
+        elif first in ("M0", "M2"):
+            self.out.acts.append(Act(number, "text", first))
+            self.ended = first == "M2"
+        if "G61" in codes:
+            self.out.joint_mm = 0.0
+        if "G80" in codes:
+            self.motion = ""
+        self.seen -= {mode for code in codes for mode in INSTEAD.get(code, ())}
+        self.seen |= set(codes)
+
+    def _comment(self, number: int, line: str, said: str) -> None:
+        """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
+        if (plain := self.comment(said).rstrip("\n")) != line:
+            raise Error(f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}")
+        sections = len(self.out.sections)
+        self.out.comment(number, said)
+        if len(self.out.sections) > sections:
+            self.lift = None  # what is waited for belongs to another section
+
+    def _wait(self, number: int, line: str, seconds: float) -> None:
+        if seconds < 0:
+            raise Error(f"line {number}: {line[:40]!r} does not say how long")
+        self.out.acts.append(Act(number, "wait", same=(seconds,)))
+        if self.lift:
+            self._waited(seconds)
+
+    def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
+        if "F" in values:
+            if not values["F"] > 0:
+                raise Error(f"line {number}: {line[:40]!r} is no feed")
+            self.feed_mm_s = values["F"] / 60
+        if not code:
+            if set(values) - {"F"}:
+                raise Error(f"line {number}: {line[:40]!r} does not say how to go there")
+            return
+        self.motion = code
+        places = {axis: values[axis] for axis in "XYZ" if axis in values}
+        if not places and "S" not in values:
+            return
+        if self.servo and "S" in values:
+            self.value = values["S"]
+            places["Z"] = self._height(number, values["S"])
+            # the value takes effect with the move: the lift first, then the way at that height
+            change_mm = abs(places["Z"] - self.at["Z"])
+            if change_mm > 1e-9:
+                speed = math.inf if change_mm > self.jump_mm else None
+                self._go(number, False, {"Z": places["Z"]}, None, speed)
+        centre = None
+        if code in ("G2", "G3"):
+            if not self.for_circles <= self.seen:
+                raise Error(
+                    f"line {number}: {line[:40]!r} stands where {' '.join(sorted(self.for_circles))} does not hold"
+                )
+            if not {"X", "Y", "I", "J"} <= set(values) or math.isnan(self.at["X"]):
+                raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre")
+            turn = 1 if code == "G3" else -1
+            centre = (self.at["X"] + values["I"], self.at["Y"] + values["J"], turn)
+            radii = [
+                math.dist(centre[:2], end)
+                for end in ((self.at["X"], self.at["Y"]), (values["X"], values["Y"]))
+            ]
+            if abs(radii[0] - radii[1]) > max(ROUND_MM, 4 * self.unit_mm):
+                raise Error(
+                    f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre"
+                )
+        if code != "G0" and not self.feed_mm_s > 0:
+            raise Error(f"line {number}: {line[:40]!r} has no feed")
+        self._go(number, code == "G0", places, centre)
+        x, y, z = self.at.values()
+        speed = math.inf if code == "G0" else self.feed_mm_s
+        if self.servo:
+            self.out.acts.append(Act(number, "way", "", (x, y), (speed,), (self.value,)))
+        elif centre:
+            self.out.acts.append(Act(number, "circle", code, (x, y, z), (speed,), centre[:2]))
+        else:
+            self.out.acts.append(Act(number, "move", "", (x, y, z), (speed,), (self.out.joint_mm,)))
+
+    def _go(self, number: int, rapid: bool, places: dict[str, float], centre, speed=None) -> None:
+        self.at |= places
+        if speed is None:
+            speed = self.rapid_mm_s if rapid else self.feed_mm_s
+        step = Step(number, rapid, self.at["X"], self.at["Y"], self.at["Z"], speed, 0.0, centre)
+        self.out.section().steps.append(step)
+
+    def _lift(self, number: int, values: dict[str, float]) -> None:
+        """At once, if nothing is waited for afterwards, or too far for one step."""
+        self.value = values.get("S", self.value)
+        before, height = self.at["Z"], self._height(number, self.value)
+        if height == before:
+            return  # the value that holds
+        self.lift = None
+        self._go(number, False, {"Z": height}, None, math.inf)
+        self.out.acts.append(Act(number, "lift", same=(self.value,)))
+        if not abs(height - before) > self.lift_mm:
+            self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
+
+    def _waited(self, seconds: float) -> None:
+        """So long after the lift alone: as fast as the feed says, or faster where that is too short."""
+        at, way_mm, before_s = self.lift
+        waited_s = before_s + seconds
+        speed = max(way_mm / waited_s, self.feed_mm_s) if waited_s > 0 else math.inf
+        steps = self.out.section().steps
+        steps[at] = steps[at]._replace(speed_mm_s=speed)
+        self.lift = at, way_mm, waited_s
+
+    def _height(self, number: int, value: float) -> float:
+        known = [row[1] for row in self.servo.table]
+        low, high = round(min(known)), round(max(known))
+        if not low <= value <= high:
+            raise Error(f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo")
+        return height_at(self.servo, value)

@@ -1,0 +1,101 @@
+"""The header of a program of ours: what it says of how the program was made."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ...errors import Error
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a program's header says of how it was made; tolerance_mm None: it does not say.
+
+    strokes: how many the job has; notes: the lines that tell how it was planned, as they are written.
+    border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
+    that find the paper; None for programs that paint.
+    """
+
+    title: str
+    brush: str
+    cell: str
+    sheet_mm: tuple[float, float] | None
+    z_offset_mm: float
+    first_stroke: int
+    nearest_first: bool
+    compensation: str
+    tolerance_mm: float | None
+    lag_mm: float | None
+    strokes: int = 0
+    notes: tuple[str, ...] = ()
+    border_mm: tuple[float, ...] | None = None
+    heights_mm: tuple[float, ...] | None = None
+
+
+def made(text: str) -> Made:
+    """Error when the header is not one of ours, or one of its numbers is damaged."""
+    header = _header_of(text)
+    if not {"title", "brush", "cell"} <= set(header):
+        raise Error("its header does not name title, brush and cell: brushsvg did not write this program")
+    sheet = _said(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
+    paper = _said(header, "paper", r"(\S+) mm against the cell's", (-20.0, 20.0))
+    resumed = _said(header, "resumed", r"from stroke (\d+)", (1, 1e6))
+    border = _said(header, "border", r"(\S+) to (\S+) mm, (\S+) to (\S+) mm", (-1e5, 1e6))
+    heights = _said(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
+    how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
+    tolerance = _said(header, "compensation", r"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?", (1e-5, 10.0))
+    has_lag = ", lag " in header.get("compensation", "")
+    lag = _said(header, "compensation", r".*, lag (\S+) mm", (0.0, 1000.0)) if has_lag else None
+    if how is None:
+        raise _damaged("compensation", header["compensation"])
+    _said(header, "warnings", r"(\d+)(?:, \d+ of them damaged geometry)?", (0, 1e6))
+    if header.get("order", "nearest first") != "nearest first":
+        raise _damaged("order", header["order"])
+    strokes = re.search(r", (\d{1,7}) strokes$", header["brush"])
+    return Made(
+        title=header["title"],
+        brush=header["brush"].rpartition(", ")[0] or header["brush"],
+        cell=header["cell"].rpartition(", ")[0],
+        sheet_mm=(sheet[0], sheet[1]) if sheet else None,
+        z_offset_mm=paper[0] if paper else 0.0,
+        first_stroke=int(resumed[0]) if resumed else 1,
+        nearest_first="order" in header,
+        compensation=how[1],
+        tolerance_mm=tolerance[0] if tolerance else None,
+        lag_mm=lag[0] if lag else None,
+        strokes=int(strokes[1]) if strokes else 0,
+        notes=tuple(
+            f"{word}: {header[word]}" for word in ("compensation", "warnings", "order") if word in header
+        ),
+        border_mm=(border[0], border[2], border[1], border[3]) if border else None,
+        heights_mm=tuple(heights) if heights else None,
+    )
+
+
+def _said(header: dict[str, str], word: str, pattern: str, bounds: tuple[float, float]) -> list[float] | None:
+    """The numbers of a line of the header; None where it is not there."""
+    if word not in header:
+        return None
+    found = re.fullmatch(pattern, header[word])
+    try:
+        numbers = [float(text) for text in found.groups()]
+    except (AttributeError, ValueError):
+        raise _damaged(word, header[word]) from None
+    for value in numbers:
+        if not bounds[0] <= value <= bounds[1]:
+            raise Error(
+                f"{word} in its header: {value:g} is outside the range [{bounds[0]:g}, {bounds[1]:g}]"
+            )
+    return numbers
+
+
+def _damaged(word: str, said: str) -> Error:
+    return Error(f"its header is damaged: ({word}: {said[:50]}) is not what brushsvg writes there")
+
+
+def _header_of(text: str) -> dict[str, str]:
+    """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
+    lines = (re.fullmatch(r"\((\w+): (.*)\)|  # (\w+): (.*)", line) for line in text.splitlines()[:100])
+    header = {found[1] or found[3]: found[2] or found[4] for found in lines if found}
+    return {word: rest for word, rest in header.items() if rest is not None}

@@ -1,0 +1,95 @@
+"""URScript as brushsvg writes it, read back."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ...errors import Error
+from . import Act, Readback, Step
+
+_N = r"-?\d*\.\d+"
+_POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
+_MOVE = re.compile(rf"(movel|movep)\({_POINT}, a=({_N}), v=({_N})(?:, r=({_N}))?\)")
+_CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=0\.0+, mode=1\)")
+_PAPER = re.compile(rf"paper = p\[({_N}(?:, {_N}){{5}})\]")
+_SLEEP = re.compile(r"sleep\((\d*\.\d+)\)")
+_RISE = re.compile(
+    rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\)), "
+    rf"a=({_N}), v=({_N})\)"
+)
+_OTHER = re.compile(  # the frame around the moves
+    rf"def brushsvg\(\):|end|brushsvg\(\)|set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|def on_paper\(x, y, z\):"
+    rf"|return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)"
+    r"|here = pose_trans\(pose_inv\(paper\), get_actual_tcp_pose\(\)\)"
+    rf"|if here\[2\] < {_N}:"
+    r'|popup\("[^"\\]*", "brushsvg", False, False, blocking=True\)'
+)
+
+
+def read_urscript(text: str) -> Readback:
+    """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
+    out = Readback(in_paper_frame=True)
+    lines = [
+        (number, line.lstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
+    ]
+    for number, line in lines:
+        if line.startswith("# ") and out.acts:
+            out.comment(number, line[2:])
+        elif found := _MOVE.fullmatch(line):
+            x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
+            _is_run(number, line, a, v)
+            if r < 0:
+                raise Error(f"line {number}: {line[:60]!r} has a negative blend")
+            out.section().steps.append(Step(number, False, x, y, z, v, r))
+            out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
+        elif found := _CIRCLE.fullmatch(line):
+            *points, a, v = (float(value) * 1e3 for value in found.groups())
+            _is_run(number, line, a, v)
+            _circle(out, number, np.array([*points, v]))
+            out.acts.append(Act(number, "circle", "", tuple(points[3:]), (v, a), tuple(points[:3])))
+        elif found := _SLEEP.fullmatch(line):
+            out.acts.append(Act(number, "wait", same=(float(found[1]),)))
+        elif found := _RISE.fullmatch(line):
+            a, v = (float(value) * 1e3 for value in found.groups()[1:])
+            _is_run(number, line, a, v)
+            out.acts.append(Act(number, "text", found[1], (), (v, a)))
+        elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
+            out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
+            out.acts.append(Act(number, "text", line))
+        else:
+            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes")
+    if not out.paper:
+        raise Error("the line that sets the paper is missing")
+    code = [line for _, line in lines if not line.startswith("# ")]
+    if code[-2:] != ["end", "brushsvg()"] or lines[-1][1] != code[-1]:
+        raise Error("the last lines are missing: half of the program was lost")
+    return out
+
+
+def _is_run(number: int, line: str, acceleration: float, speed: float) -> None:
+    if not (acceleration > 0 and speed > 0):
+        raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration")
+
+
+def _circle(out: Readback, number: int, values: np.ndarray) -> None:
+    """Through a point to a point: its centre is as far from both as from where the tool is."""
+    steps = out.section().steps
+    if not steps:
+        raise Error(f"line {number}: a circle from nowhere")
+    via, end, speed = values[:3], values[3:6], values[6]
+    start = np.array([steps[-1].x, steps[-1].y])
+    to_via, to_end = via[:2] - start, end[:2] - start
+    cross = to_via[0] * to_end[1] - to_via[1] * to_end[0]
+    if abs(cross) < 1e-9:
+        raise Error(f"line {number}: the three points of the circle lie on one line")
+    square_via, square_end = to_via @ to_via, to_end @ to_end
+    centre = start + np.array(
+        [
+            to_end[1] * square_via - to_via[1] * square_end,
+            to_via[0] * square_end - to_end[0] * square_via,
+        ]
+    ) / (2 * cross)
+    turn = 1 if cross > 0 else -1
+    steps.append(Step(number, False, *end, speed, 0.0, (float(centre[0]), float(centre[1]), turn), (via,)))

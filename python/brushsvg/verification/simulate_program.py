@@ -1,0 +1,287 @@
+"""The last look before a machine moves: a program read back, simulated as it is run, and held against the limits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error
+from ..machine.cell import Blending, Cell, robot_from_paper, value_mm
+from ..machine.corner_blending import blend_radii
+from ..machine.frames import moved
+from ..machine.limits import astray, astray_between, broken_limits, height_astray
+from ..machine.move_extents import ways
+from ..machine.posts.text import NAMED, spelled
+from ..machine.preflight import as_run, off_sheet
+from ..machine.program import names_of_stations
+from .readback import Readback, ReadSection
+
+TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
+CHORD_RAD = 0.02
+Problems = list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a program paints: its passes as they are programmed and as they are run, with corners cut.
+
+    problems: (stroke, sentence) for each thing that must not be; visits: for each stroke the stations that are visited
+    before it; lines: for each pass the line of the program that leads to each pose.
+    """
+
+    plan: object
+    marks: object
+    problems: Problems
+    visits: tuple
+    lines: tuple
+
+
+def slack_mm(cell: Cell) -> float:
+    """How far the heights of a program may be off by rounding alone: its decimals, or a servo's whole values."""
+    return max(TOUCH_MM, 1.1 * 10.0**-cell.decimals) + (value_mm(cell) / 2 if cell.servo else 0.0)
+
+
+def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
+    """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
+    problems: Problems = []
+    meant, cut, lines = [], [], []
+    slack = slack_mm(cell)
+    for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
+        name = _name(section)
+        problems += [(name, sentence) for sentence in said]
+        stroke = _stroke(section)
+        found = list(_touches(track, slack))
+        if stroke and len(found) != 1:
+            times = f"{len(found)} times, not once" if found else "never"
+            problems.append((name, f"the brush touches the paper {times}"))
+        elif found and not stroke and not section.title.startswith("paint: "):
+            line = section.steps[track.step[found[0].start]].line
+            problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
+        for on in found if stroke else ():
+            poses, radii, speed, arcs = _pass(section, track, on, cell)
+            deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
+            just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
+            poses[just_over, 2] = -deepest_mm
+            joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
+            meant.append(_core.Pass(name, poses, speed, arcs=arcs))
+            cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
+            lines.append(np.array([section.steps[number].line for number in track.step[on]]))
+    plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
+    marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
+    problems += broken_limits(plan, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
+    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines))
+
+
+def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
+    """A sentence where strokes are missing, too many or in another order: all from the first to the count-th follow."""
+    number = first_stroke - 1
+    for section in read.sections:
+        if found := _stroke(section):
+            number += 1
+            if (int(found[1]), int(found[2])) != (number, count):
+                told = f"line {section.line}: stroke {found[1]} of {found[2]}"
+                return [(_name(section), f"{told} stands where stroke {number} of {count} should")]
+    left = f"stroke {count} is" if number == count - 1 else f"strokes {number + 1} to {count} are"
+    return [("", f"{left} missing at the end")] if number < count else []
+
+
+def walked(
+    read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, paper_mm: float = 0.0
+) -> Iterator[tuple[ReadSection, Track, list[str]]]:
+    """Each section with its way in the paper's frame and a sentence for whatever on it is careless or astray.
+
+    paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
+    """
+    frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
+    here = None
+    for section in read.sections:
+        track = _track(section, frame, here)
+        said = [*_careless(section, track, brush, cell, here, paper_mm)]
+        yield section, track, said + _astray(section, track, here, cell, sheet_mm, z_offset_mm)
+        here = track.points[-1] if len(track.points) else here
+
+
+def _rounded(cell: Cell) -> Cell:
+    """The cell with limits that what was rounded keeps, too."""
+    heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack_mm(cell))
+    return replace(cell, heights=heights)
+
+
+def _astray(
+    section: ReadSection, track: Track, here: np.ndarray | None, cell: Cell, sheet_mm, z_offset_mm: float
+) -> list[str]:
+    """Sentences for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
+    slack, points = slack_mm(cell), track.points
+    said = []
+    for step in section.steps:  # without a place: from wherever the tool is, straight up to here
+        if np.isnan(step.x + step.y) and not np.isnan(step.z):
+            said += height_astray(step.z, cell, slack)
+    if not len(points):
+        return said
+    frame = robot_from_paper(cell, z_offset_mm)
+    if here is not None:
+        said += astray_between(here, points[0], frame, cell, slack)
+    circles = []
+    for number in [k for k, centre in enumerate(track.centres) if centre is not None]:
+        on = np.flatnonzero(track.step == number)
+        start = points[on[0] - 1] if on[0] else here
+        circles.append((start, points[on[-1]], track.centres[number]))
+    return said + astray(ways([points], circles), frame, cell, sheet_mm, slack)
+
+
+def _visits(read: Readback, cell: Cell) -> tuple:
+    """For each stroke's section the stations that the program visits before it."""
+    by_title = {_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()}
+    found, waiting = [], []
+    for section in read.sections:
+        if section.title.startswith("paint: "):
+            if (title := _title(section.title)) not in by_title:
+                name = _name(section)
+                raise Error(
+                    f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits"
+                )
+            waiting.append(by_title[title])
+        elif _stroke(section):
+            found.append(tuple(waiting))
+            waiting = []
+    return tuple(found)
+
+
+def _title(text: str) -> str:
+    """As much of a title as stands in a program of any language."""
+    return spelled(text)[: len("paint: ") + NAMED]
+
+
+@dataclass(frozen=True)
+class Track:
+    """The steps of a section in the paper's frame; circles as chords. step: which step each point belongs to."""
+
+    points: np.ndarray
+    step: np.ndarray
+    centres: list
+
+
+def _stroke(section: ReadSection) -> re.Match | None:
+    """Its number, if it is that of a stroke."""
+    return re.match(r"stroke (\d{1,6}) of (\d{1,7}): ", section.title)
+
+
+def _name(section: ReadSection) -> str:
+    before, colon, name = section.title.partition(": ")
+    return name if colon else before
+
+
+def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:
+    steps, back = section.steps, np.linalg.inv(frame)
+    ends = moved(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
+    known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the others go straight up, wherever the tool is
+    centres: list = [None] * len(steps)
+    points, owner = [ends[:0]], [known[:0]]
+    done = 0
+    for at, number in enumerate(known):
+        step = steps[number]
+        last = ends[known[at - 1]] if at else here
+        if step.centre is None or last is None:
+            continue
+        middle = moved(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
+        centres[number] = (*middle.tolist(), step.centre[2])
+        between = list(step.via) or chords(last, ends[number], centres[number])
+        points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
+        owner += [known[done:at], np.full(len(between), number)]
+        done = at
+    return Track(np.vstack([*points, ends[known[done:]]]), np.concatenate([*owner, known[done:]]), centres)
+
+
+def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> list[np.ndarray]:
+    """Points of a circle between its ends, CHORD_RAD apart."""
+    x, y, turn = centre
+    first, last = np.arctan2(start[1] - y, start[0] - x), np.arctan2(end[1] - y, end[0] - x)
+    sweep = (last - first) * turn % (2 * np.pi) * turn
+    radius = np.hypot(end[0] - x, end[1] - y)
+    count = int(np.ceil(abs(sweep) / CHORD_RAD))
+    angles = first + sweep * np.arange(1, count) / max(count, 1)
+    heights = np.linspace(start[2], end[2], count + 1)[1:-1]
+    return [
+        np.array([x + radius * np.cos(angle), y + radius * np.sin(angle), z])
+        for angle, z in zip(angles, heights, strict=True)
+    ]
+
+
+def _touches(track: Track, slack: float) -> Iterator[slice]:
+    """Of the points, those of each time that the brush is on the paper."""
+    edges = np.flatnonzero(np.diff(np.r_[False, track.points[:, 2] <= slack, False]))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        yield slice(int(first), int(last))
+
+
+def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
+    """Poses, blends, speed and arcs of one touch."""
+    poses = track.points[on].copy()
+    poses[:, 2] = np.minimum(poses[:, 2], 0.0)
+    owner = track.step[on]
+    steps = [section.steps[number] for number in owner]
+    is_end = np.r_[np.diff(owner) != 0, True]
+    radii = np.where(is_end, [step.blend_mm for step in steps], 0.0)
+    speeds = [step.speed_mm_s for step in steps[1:] or steps if np.isfinite(step.speed_mm_s)]
+    # a stroke is landed no faster than it is painted
+    landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
+    speed = max(speeds, default=0.0)
+    # on paper that leans straight down is straight down only up to rounding: the slower feed tells what was meant
+    sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
+    slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
+    for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
+        poses[k + 1, :2] = poses[k, :2]
+    arcs = _arcs(owner, track.centres)
+    for arc in arcs:  # at one depth, but for what is rounding
+        on_arc = poses[arc.first : arc.last + 1, 2]
+        if np.ptp(on_arc) <= slack_mm(cell):
+            on_arc[:] = on_arc.min()
+    return poses, radii, max(speed, landed_mm_s), arcs
+
+
+def _arcs(owner: np.ndarray, centres: list) -> list:
+    """The circles among the poses."""
+    rows = []
+    for number in dict.fromkeys(owner.tolist()):
+        on = np.flatnonzero(owner == number)
+        if centres[number] is not None and on[0] > 0:
+            x, y, turn = centres[number]
+            rows.append(_core.Arc(int(on[0]) - 1, int(on[-1]), (x, y), turn))
+    return rows
+
+
+def _careless(
+    section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
+) -> Iterator[str]:
+    """Sentences for what is fast while it touches, or goes sideways too low in the air."""
+    if not len(track.points):
+        return
+    slack, safe = slack_mm(cell), cell.heights.safe_mm
+    limit = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s)
+    steps = [section.steps[number] for number in track.step]
+    rapid = np.array([step.rapid for step in steps])
+    speed = np.array([step.speed_mm_s for step in steps])
+    before = np.vstack([track.points[:1] if here is None else here, track.points[:-1]])
+    low = np.minimum(before[:, 2], track.points[:, 2])
+    high = np.maximum(before[:, 2], track.points[:, 2])
+    sideways = np.abs(track.points[:, :2] - before[:, :2]).max(axis=1) > 2 * slack  # both ends were rounded
+    sideways[0] |= here is None
+    touches, is_low = low <= paper_mm + slack, low < safe - slack
+    careless = rapid & is_low & (touches | sideways)
+    fast = touches & ~rapid & (speed > limit + 1e-6)
+    travels = sideways & is_low & (high > paper_mm + slack) & (not section.title.startswith("paint: "))
+    for k in np.flatnonzero(careless | fast | travels):
+        line = f"line {steps[k].line}"
+        if careless[k]:
+            how = "while the brush touches" if touches[k] else f"at {low[k]:.2f} mm, below the safe height"
+            yield f"{line}: a rapid move {how}"
+        elif fast[k] and np.isinf(speed[k]):
+            yield f"{line}: the height changes by {high[k] - low[k]:.2f} mm at once while the brush touches"
+        elif fast[k]:
+            yield f"{line}: speed {speed[k]:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+        else:
+            yield f"{line}: the tool travels at {low[k]:.2f} mm, below the safe height {safe:g} mm"

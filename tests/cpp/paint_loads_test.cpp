@@ -1,0 +1,140 @@
+#include "brushsvg/paint_loads.hpp"
+
+#include <cmath>
+
+#include "brushsvg/compensate.hpp"
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/simulate.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+/// A wave, at constant depth or swelling, with a corner in its middle.
+Pass wave(const Brush& brush, double half_width0, double half_width1) {
+    Stroke stroke;
+    stroke.id = "wave";
+    stroke.middle_mm.resize(3, 8);
+    stroke.middle_mm << 20, 40, 40, 80, 60, 0, 80, 40,  //
+        80, 40, 90, 60, 100, 60, 110, 40,               //
+        110, 40, 110, 60, 110, 80, 110, 100;
+    stroke.half_width = {{0.0, half_width0}, {1.0, half_width1}};
+    return compensate(stroke, brush).pass;
+}
+
+Rings painted(const std::vector<Pass>& passes, const Brush& brush) {
+    Rings all;
+    for (const Pass& pass : passes)
+        for (const Ring& ring : outline(simulate(pass, brush), brush)) all.push_back(ring);
+    return unite(all);
+}
+
+double length(const Pass& pass) {
+    double sum = 0.0;
+    for (Eigen::Index i = 1; i < pass.poses_mm.rows(); ++i)
+        sum += (pass.poses_mm.row(i) - pass.poses_mm.row(i - 1)).norm();
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("no gap shows where a stroke was interrupted") {
+    const Brush brush = shipped("round-6");
+    for (const auto& [h0, h1] : {std::pair{1.5, 1.5}, std::pair{0.8, 2.5}, std::pair{3.0, 0.6}}) {
+        const Pass whole = wave(brush, h0, h1);
+        const Rings meant = painted({whole}, brush);
+        for (double every : {25.0, 40.0, 90.0}) {
+            const std::vector<Pass> parts = interrupted(whole, brush, {every, every, 5.0});
+            CHECK(parts.size() >= std::size_t(length(whole) / every));
+            const Rings found = painted(parts, brush);
+            CAPTURE(h0);
+            CAPTURE(every);
+            CHECK(found.size() == meant.size());
+            CHECK(overlap(found, meant) > 0.995);
+        }
+    }
+}
+
+TEST_CASE("parts are no longer than the paint lasts, named and complete") {
+    const Brush brush = shipped("round-6");
+    const Pass whole = wave(brush, 1.5, 1.5);
+    const std::vector<Pass> parts = interrupted(whole, brush, {15.0, 40.0, 5.0});
+    REQUIRE(parts.size() >= 4);
+    const double lift = 7.5;  // comes back over its own patch
+    CHECK(length(parts[0]) < 15.0 + lift);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (k > 0) CHECK(parts[k].stroke.name() == "wave+" + std::to_string(k + 1));
+        if (k > 0) CHECK(length(parts[k]) < 40.0 + lift);
+        CHECK(parts[k].poses_mm(0, 2) == 0.0);
+        CHECK(parts[k].poses_mm(parts[k].poses_mm.rows() - 1, 2) == 0.0);
+        CHECK(parts[k].speed_mm_s == whole.speed_mm_s);
+    }
+    CHECK(parts.front().stroke.name() == "wave");
+    CHECK(parts.back().poses_mm.bottomRows<1>() == whole.poses_mm.bottomRows<1>());
+}
+
+TEST_CASE("a paint that lasts leaves the pass as it is") {
+    const Brush brush = shipped("round-6");
+    const Pass whole = wave(brush, 1.5, 1.5);
+    const std::vector<Pass> parts = interrupted(whole, brush, {1000.0, 1000.0, 5.0});
+    REQUIRE(parts.size() == 1);
+    CHECK(parts[0].poses_mm == whole.poses_mm);
+}
+
+TEST_CASE("a straight line has places to stop at between its few poses") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "line";
+    stroke.middle_mm.resize(1, 8);
+    stroke.middle_mm << 20, 50, 140, 50, 260, 50, 380, 50;
+    for (const double h : {0.2, 1.5}) {  // at the first depth the brush has next to no patch
+        stroke.half_width = {{0.0, h}, {1.0, h}};
+        const Pass whole = compensate(stroke, brush).pass;
+        REQUIRE(whole.poses_mm.rows() < 20);
+        const std::vector<Pass> parts = interrupted(whole, brush, {100.0, 100.0, 5.0});
+        CHECK(parts.size() >= 4);
+        for (const Pass& part : parts) {
+            CHECK(length(part) < 100.0 + 7.0);
+            CHECK(part.poses_mm.rows() < 30);
+        }
+        for (const Pass& part : parts)  // the way between two poses that are one but for rounding points anywhere
+            for (Eigen::Index i = 1; i < part.poses_mm.rows(); ++i)
+                CHECK((part.poses_mm.row(i) - part.poses_mm.row(i - 1)).norm() > 1e-6);
+        const Rings found = painted(parts, brush);
+        CHECK(found.size() == 1);
+        CHECK(overlap(found, painted({whole}, brush)) > 0.995);
+    }
+}
+
+TEST_CASE("arcs stay whole in the part that holds them") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "v";
+    stroke.middle_mm.resize(2, 8);
+    stroke.middle_mm << 20, 80, 30, 60, 40, 40, 50, 20, 50, 20, 46, 40, 42, 60, 38, 80;
+    stroke.half_width = {{0.0, 1.5}, {1.0, 1.5}};
+    const Pass whole = compensate(stroke, brush).pass;
+    REQUIRE(whole.arcs.size() == 1);
+    const Rings meant = painted({whole}, brush);
+    for (double every = 20.0; every < 90.0; every += 3.0) {
+        const std::vector<Pass> parts = interrupted(whole, brush, {every, every, 4.0});
+        std::size_t arcs = 0;
+        for (const Pass& part : parts) {
+            for (std::size_t k = 0; k < part.arcs.size(); ++k) CHECK_NOTHROW(check_arc(part, k, ""));
+            arcs += part.arcs.size();
+        }
+        CHECK(arcs >= 1);
+        CHECK(overlap(painted(parts, brush), meant) > 0.99);
+    }
+}
+
+TEST_CASE("a paint that does not get on is refused") {
+    const Brush brush = shipped("round-6");
+    const Pass whole = wave(brush, 1.5, 1.5);
+    CHECK_THROWS_AS(interrupted(whole, brush, {10.0, 8.0, 5.0}), Error);
+    CHECK_THROWS_AS(interrupted(whole, brush, {-1.0, 80.0, 5.0}), Error);
+    CHECK_THROWS_AS(interrupted(whole, brush, {10.0, std::nan(""), 5.0}), Error);
+}

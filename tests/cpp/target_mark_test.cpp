@@ -1,0 +1,50 @@
+#include "brushsvg/target_mark.hpp"
+
+#include <doctest/doctest.h>
+
+#include "round6.hpp"
+
+using namespace brushsvg;
+using V = Eigen::Vector2d;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace
+
+TEST_CASE("the wanted mark of a straight stroke is a stadium, of a dot a disc, of a closed ring a ring") {
+    Stroke s;
+    s.id = "s";
+    s.middle_mm = polyline({V(0, 0), V(30, 0)});
+    s.half_width = {{0.0, 2.0}};
+    CHECK(area(wanted_outline(s)) == doctest::Approx(30 * 4 + kPi * 4).epsilon(2e-4));
+    s.middle_mm = polyline({V(3, 3), V(3, 3)});
+    CHECK(area(wanted_outline(s)) == doctest::Approx(kPi * 4).epsilon(2e-4));
+    s.middle_mm = polyline({V(0, 0), V(30, 0), V(30, 30), V(0, 30), V(0, 0)});
+    const Rings ring = wanted_outline(s);
+    REQUIRE(ring.size() == 2);
+    CHECK(area({ring[0]}) > 0.0);
+    CHECK(area({ring[1]}) == doctest::Approx(-26.0 * 26.0).epsilon(1e-4));
+}
+
+TEST_CASE("an outline that was drawn is wanted as it is") {
+    Stroke s;
+    Ring triangle(3, 2);
+    triangle << 0, 0, 4, 0, 0, 3;
+    s.wanted_mm = {triangle};
+    CHECK(wanted_outline(s)[0] == triangle);
+}
+
+TEST_CASE("pieces of the wanted mark cover it, as convex rings") {
+    Stroke s;
+    s.id = "s";
+    s.middle_mm = polyline({V(0, 0), V(30, 0), V(30, 20)});
+    s.half_width = {{0.0, 2.0}, {1.0, 1.0}};
+    const Rings pieces = wanted_pieces(s);
+    for (const Ring& piece : pieces) {
+        CHECK(area({piece}) > 0.0);
+        CHECK(area({convex_hull(piece)}) == doctest::Approx(area({piece})));
+    }
+    CHECK(overlap(unite(pieces), wanted_outline(s)) == doctest::Approx(1.0));
+}
