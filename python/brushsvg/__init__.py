@@ -42,6 +42,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .pictures.marks_svg import marks_svg
     from .pipeline.json_files import read_marks, read_plan
     from .strokes.extraction import strokes
+    from .strokes.path_objects import path_from_pass, path_from_stroke, stroke_from_path
     from .strokes.width_limits import within_reach
 
     __version__: str
@@ -52,6 +53,9 @@ _HOME = {
     "read_drawing": "drawing",
     "text_svg": "drawing.text",
     "strokes": "strokes.extraction",
+    "stroke_from_path": "strokes.path_objects",
+    "path_from_stroke": "strokes.path_objects",
+    "path_from_pass": "strokes.path_objects",
     "Cell": "machine.cell",
     "brush_names": "brush.library",
     "cell_names": "machine.cell_file",
@@ -112,11 +116,14 @@ __all__ = [
     "marks_png",
     "marks_svg",
     "overlap",
+    "path_from_pass",
+    "path_from_stroke",
     "read_cell",
     "read_drawing",
     "read_marks",
     "read_plan",
     "simulate",
+    "stroke_from_path",
     "strokes",
     "text_svg",
     "trace_outlines",

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from xml.etree import ElementTree
 
 from ..errors import Error
 from ..files import read_bytes
@@ -60,20 +62,38 @@ def settings_in(path: str | os.PathLike, alone: bool = False) -> dict:
 READERS = {".svg": _svg, ".svgz": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
 
 
-def read_drawing(path: str | os.PathLike, options: ReadOptions = AS_DRAWN) -> Design:
-    """The drawing in a file, its format chosen by extension.
+def read_drawing(path, options: ReadOptions = AS_DRAWN) -> Design:
+    """The drawing in a file, its format chosen by extension; or one that is open already.
 
-    Error if the file cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and
-    lenient is not asked for.
+    path: of the file; or an ezdxf document, or an SVG as an ElementTree or its root element: read as their files would
+    be. Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
+    is not asked for.
     """
-    extension = os.path.splitext(path)[1]
-    reader = READERS.get(extension.lower())
-    if reader is None:
-        known = ", ".join(READERS)
-        raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
-    design = reader(read_bytes(path), options)
+    reader, data = _opened(path)
+    design = reader(data, options)
     if not options.lenient:
         for notice in design.notices:
             if notice.damaged:
                 raise Error(notice.sentence, where=notice.where)
     return design
+
+
+def _opened(path) -> tuple:
+    """(Reader, bytes) of a file or of what was open already."""
+    if isinstance(path, str | os.PathLike):
+        extension = os.path.splitext(path)[1]
+        reader = READERS.get(extension.lower())
+        if reader is None:
+            known = ", ".join(READERS)
+            raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
+        return reader, read_bytes(path)
+    if hasattr(path, "modelspace"):
+        text = io.StringIO()
+        path.write(text)
+        return _dxf, text.getvalue().encode(path.output_encoding, errors="dxfreplace")
+    root = path.getroot() if hasattr(path, "getroot") else path
+    if ElementTree.iselement(root) and isinstance(root, ElementTree.Element):
+        return _svg, ElementTree.tostring(root)
+    raise Error(
+        f"a {type(path).__name__} is neither the path of a drawing nor an open one, an ezdxf document or an ElementTree"
+    )

@@ -1,0 +1,106 @@
+"""Strokes from paths that a program holds, and back: svgpathtools' Path, path data as text, cubics as an array."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import _core
+from ..drawing.svg.path_data import parse_path, snippet
+from ..drawing.svg.path_to_cubics import trace
+from ..errors import Error
+
+if TYPE_CHECKING:
+    import svgpathtools
+
+
+def stroke_from_path(
+    path, width_mm: float, id: str = "stroke1", page_height_mm: float | None = None
+) -> _core.Stroke:
+    """One stroke along a path, as wide as width_mm everywhere.
+
+    path: a svgpathtools.Path, SVG path data as text, or cubics as an array of shape (n, 4, 2), or (n, 4) complex, or
+    (n, 8); one unbroken line in mm, in painting direction. It lies in the paper's frame, y up; with page_height_mm its
+    y points down from the upper edge of a page of that height, as in SVG. Closed where path data end in Z, and where a
+    Path or an array ends where it began.
+
+    Error where the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not positive.
+    """
+    if not (np.isfinite(width_mm) and width_mm > 0):
+        raise Error(f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id)
+    if isinstance(path, str):
+        cubics, closed = _of_text(path, id)
+    elif hasattr(path, "d") and hasattr(path, "isclosed"):
+        cubics, _ = _of_text(path.d(), id)
+        closed = bool(len(path)) and path.isclosed()
+    else:
+        cubics = _of_array(path, id)
+        closed = (
+            len(cubics) > 0
+            and np.ptp(cubics.reshape(-1, 2), axis=0).any()
+            and _meets(cubics[-1, 3], cubics[0, 0])
+        )
+    if page_height_mm is not None:
+        cubics = cubics * (1.0, -1.0) + (0.0, page_height_mm)
+    half_mm = width_mm / 2
+    stroke = _core.Stroke(id, cubics.reshape(-1, 8), bool(closed), [(0.0, half_mm), (1.0, half_mm)])
+    _core.flatten(stroke, 1.0)  # refuses what no stroke can be
+    return stroke
+
+
+def path_from_stroke(stroke: _core.Stroke, page_height_mm: float | None = None) -> svgpathtools.Path:
+    """The middle line as a svgpathtools.Path of cubics [mm], y up, or down from the upper edge of a page."""
+    from svgpathtools import CubicBezier, Path
+
+    points = _complex(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), page_height_mm)
+    return Path(*(CubicBezier(*each) for each in points.tolist()))
+
+
+def path_from_pass(a_pass: _core.Pass, page_height_mm: float | None = None) -> svgpathtools.Path:
+    """The TCP's way over the paper as a svgpathtools.Path of lines [mm], y up, or down from the upper edge of a page.
+    Poses where the tool only rises or sinks add nothing to it."""
+    from svgpathtools import Line, Path
+
+    points = _complex(np.asarray(a_pass.poses_mm)[:, :2], page_height_mm).tolist()
+    return Path(*(Line(here, there) for here, there in itertools.pairwise(points) if here != there))
+
+
+def _complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
+    y = points[..., 1] if page_height_mm is None else page_height_mm - points[..., 1]
+    return points[..., 0] + 1j * y
+
+
+def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:
+    commands, damaged_at = parse_path(text)
+    if damaged_at is not None:
+        raise Error(f"the path data are damaged at {snippet(text, damaged_at)}", where=id)
+    line = trace(commands, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 1.0)
+    if line.beyond is not None:
+        raise Error(f"the path data go beyond 1e6 mm at {snippet(text, line.beyond)}", where=id)
+    if len(line.subpaths) != 1:
+        count = len(line.subpaths) or "no"
+        raise Error(f"the path has {count} unbroken lines: a stroke is one", where=id)
+    return line.subpaths[0].cubics, line.subpaths[0].closed
+
+
+def _of_array(path, id: str) -> np.ndarray:
+    try:
+        table = np.asarray(path)
+        if np.iscomplexobj(table):
+            table = np.stack([table.real, table.imag], axis=-1)
+        cubics = np.asarray(table, dtype=float).reshape(len(table), 4, 2)
+    except (TypeError, ValueError):
+        raise Error("cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)", where=id) from None
+    broken = [k for k in range(1, len(cubics)) if not _meets(cubics[k - 1, 3], cubics[k, 0])]
+    if broken:
+        raise Error(
+            f"cubic {broken[0] + 1} does not begin where the one before it ends: a stroke is one line",
+            where=id,
+        )
+    return cubics
+
+
+def _meets(end: np.ndarray, start: np.ndarray) -> bool:
+    return bool(np.abs(end - start).max() <= 1e-6)  # what rounding leaves of one point

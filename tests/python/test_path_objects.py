@@ -1,0 +1,123 @@
+"""Strokes from svgpathtools' paths, path data and arrays, and back; drawings that are open already."""
+
+import io
+import xml.etree.ElementTree as ET
+from xml.etree.ElementTree import ElementTree
+
+import ezdxf
+import numpy as np
+import pytest
+import svgpathtools
+
+import brushsvg
+
+DATA = "M10 20 L30 20 Q40 20 40 30 A 10 6 30 0 1 25 45 C 20 50 15 40 12 30"
+
+
+def sampled(path, count=400):
+    return np.array([path.point(t) for t in np.linspace(0, 1, count)])
+
+
+def away(points, others):
+    return np.abs(points[:, None] - others[None, :]).min(axis=1).max()
+
+
+@pytest.mark.parametrize("given", [svgpathtools.parse_path(DATA), DATA], ids=["Path", "text"])
+def test_a_path_becomes_the_stroke_that_svgpathtools_draws(given):
+    stroke = brushsvg.stroke_from_path(given, 3.0, id="s")
+    theirs = sampled(svgpathtools.parse_path(DATA), 20000)
+    ours = brushsvg.flatten(stroke, 0.001)[:, :2] @ (1, 1j)
+    assert away(ours, theirs) < 0.01
+    assert (stroke.id, stroke.closed, stroke.half_width) == ("s", False, ((0.0, 1.5), (1.0, 1.5)))
+
+
+def test_y_points_down_from_the_upper_edge_where_a_page_has_a_height():
+    up, down = (
+        brushsvg.stroke_from_path("M10 20 L30 25", 3.0, page_height_mm=height) for height in (None, 100.0)
+    )
+    assert np.allclose(np.asarray(up.middle_mm)[0, [0, 1, 6, 7]], (10, 20, 30, 25))
+    assert np.allclose(np.asarray(down.middle_mm)[0, [0, 1, 6, 7]], (10, 80, 30, 75))
+    back = brushsvg.path_from_stroke(down, page_height_mm=100.0)
+    assert (back.start, back.end) == (10 + 20j, 30 + 25j)
+
+
+@pytest.mark.parametrize("shape", [(1, 4, 2), (1, 8)])
+def test_arrays_are_cubics(shape):
+    cubics = np.array([[0, 0], [10, 0], [20, 10], [30, 10.0]])
+    stroke = brushsvg.stroke_from_path(cubics.reshape(shape), 2.0)
+    assert np.array_equal(np.asarray(stroke.middle_mm), cubics.reshape(1, 8))
+    as_complex = brushsvg.stroke_from_path((cubics @ (1, 1j)).reshape(1, 4), 2.0)
+    assert np.array_equal(as_complex.middle_mm, stroke.middle_mm)
+
+
+def test_what_ends_where_it_began_is_closed():
+    square = "M10 10 H30 V30 H10 "
+    assert brushsvg.stroke_from_path(square + "Z", 2.0).closed
+    assert not brushsvg.stroke_from_path(square, 2.0).closed
+    assert brushsvg.stroke_from_path(svgpathtools.parse_path(square + "Z"), 2.0).closed
+
+
+def test_a_stroke_of_a_path_is_painted_and_its_way_comes_back_as_one():
+    stroke = brushsvg.stroke_from_path("M30 40 C50 70 80 70 100 40", 4.0)
+    brush = brushsvg.find_brush("round-6")
+    done = brushsvg.compensate([stroke], brush, (140, 100))
+    way = brushsvg.path_from_pass(done.plan.passes[0])
+    poses = np.asarray(done.plan.passes[0].poses_mm)[:, :2] @ (1, 1j)
+    assert (way.start, way.end) == (poses[0], poses[-1])
+    assert way.length() == pytest.approx(np.abs(np.diff(poses)).sum())
+    assert brushsvg.path_from_stroke(stroke).d() == "M 30.0,40.0 C 50.0,70.0 80.0,70.0 100.0,40.0"
+
+
+@pytest.mark.parametrize(
+    ("path", "width_mm", "said"),
+    [
+        ("M0 0 L10 0 M20 0 L30 0", 2, "2 unbroken lines"),
+        ("", 2, "no unbroken lines"),
+        ("M0 0 L10 x", 2, "damaged at 'x'"),
+        ("M0 0 L1e9 0", 2, "beyond 1e6 mm"),
+        (svgpathtools.Path(), 2, "no unbroken lines"),
+        (svgpathtools.parse_path("M0 0 L10 0 M20 0 L30 0"), 2, "2 unbroken lines"),
+        (np.zeros((2, 3)), 2, "shape"),
+        (None, 2, "shape"),
+        (np.array([[0, 0, 1, 0, 2, 0, 3, 0], [4, 0, 5, 0, 6, 0, 7, 0]]), 2, "cubic 2 does not begin"),
+        (np.array([[0, 0, 1, 0, 2, 0, np.nan, 0]]), 2, "finite"),
+        (np.zeros((0, 8)), 2, "no middle line"),
+        ("M0 0 L10 0", 0, "outside the range (0"),
+        ("M0 0 L10 0", np.nan, "outside the range (0"),
+    ],
+)
+def test_what_is_no_stroke_is_refused(path, width_mm, said):
+    with pytest.raises(brushsvg.Error) as refused:
+        brushsvg.stroke_from_path(path, width_mm)
+    assert said in str(refused.value)
+
+
+def test_drawings_that_are_open_already_are_read_as_their_files_are(tmp_path):
+    text = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50"><path id="a" '
+    )
+    text += 'd="M10 20 C20 5 30 5 40 30" fill="none" stroke="#123456" stroke-width="3"/></svg>'
+    (tmp_path / "a.svg").write_text(text)
+    of_file = brushsvg.read_drawing(tmp_path / "a.svg")
+    tree = ElementTree(ET.fromstring(text))
+    for open_drawing in (tree, tree.getroot()):
+        ours = brushsvg.read_drawing(open_drawing)
+        assert ours.sheet_mm == of_file.sheet_mm
+        assert np.array_equal(ours.elements[0].subpaths[0].cubics, of_file.elements[0].subpaths[0].cubics)
+        assert ours.elements[0].colour == "#123456"
+
+
+def test_an_ezdxf_document_is_read_as_its_file_is(tmp_path):
+    document = ezdxf.new("R2010", units=4)
+    document.modelspace().add_lwpolyline([(0, 0, 1, 3, 0), (40, 10, 3, 1, 0.5), (60, 0, 1, 1, 0)])
+    document.saveas(tmp_path / "a.dxf")
+    of_file, ours = brushsvg.read_drawing(tmp_path / "a.dxf"), brushsvg.read_drawing(document)
+    assert ours.sheet_mm == of_file.sheet_mm and len(ours.elements) == len(of_file.elements)
+    for a, b in zip(ours.elements, of_file.elements, strict=True):
+        assert np.array_equal(a.subpaths[0].cubics, b.subpaths[0].cubics)
+
+
+def test_what_is_neither_file_nor_document_is_refused():
+    for wrong in (None, 3, io.BytesIO(b"x"), object()):
+        with pytest.raises(brushsvg.Error, match="neither the path of a drawing nor an open one"):
+            brushsvg.read_drawing(wrong)
