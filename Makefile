@@ -9,7 +9,7 @@ PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.
 VENV := .venv
 BIN := $(VENV)/bin
 SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev python3 python3-dev python3-venv
-TEST_PACKAGES := doctest-dev cppcheck clang
+TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
 .PHONY: plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench asan clean quick FORCE
@@ -86,8 +86,9 @@ lint: $(VENV)/.dev test-system
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io cpp examples benchmarks
 
 # Read by clang, which refuses what g++ lets pass (clang 14: captured structured bindings); nothing is compiled or run.
-clang-check: $(VENV)/.dev test-system
-	@includes="$$(printf -- '-Icpp/%s ' include io fit src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
+clang-check: $(VENV)/.dev
+	@$(call install,clang)
+	includes="$$(printf -- '-Icpp/%s ' include io fit/laws fit/marks fit/tracks refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
 	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
 	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
 
