@@ -161,15 +161,15 @@ PLANS = {
     ),
     "a pose of 1e7 mm": (
         lambda plan: plan["passes"][0]["poses_mm"][1].__setitem__(0, 1e7),
-        r"line: pose 1 lies at 1e\+07 mm, outside the range \[-1e6, 1e6\] mm",
+        r"passes\[0\]\.poses_mm\[1\]: pose 1 of stroke line has a coordinate of 10000000 mm, outside \[-1e6, 1e6\] mm",
     ),
     "a pose of 1e300 mm": (
         lambda plan: plan["passes"][0]["poses_mm"][1].__setitem__(0, 1e300),
-        r"line: pose 1 lies at 1e\+300 mm, outside the range \[-1e6, 1e6\] mm",
+        r"passes\[0\]\.poses_mm\[1\]: pose 1 of stroke line has a coordinate of 1e\+300 mm, outside \[-1e6, 1e6\] mm",
     ),
     "a depth of 1e300 mm": (
         lambda plan: plan["passes"][0]["poses_mm"][1].__setitem__(2, -1e300),
-        r"line: pose 1 lies at 1e\+300 mm, outside the range \[-1e6, 1e6\] mm",
+        r"passes\[0\]\.poses_mm\[1\]: pose 1 of stroke line has a coordinate of 1e\+300 mm, outside \[-1e6, 1e6\] mm",
     ),
     "too deep for the brush": (
         lambda plan: plan["passes"][0]["poses_mm"][1].__setitem__(2, -11.0),
