@@ -22,6 +22,7 @@ LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
 
 def read_bytes(path: str | os.PathLike) -> bytes:
     """What a file holds. Error, with the path in `file`, when it cannot be read."""
+    path = os.fspath(path)  # a number would be taken for an open file, and closed
     try:
         with open(path, "rb") as file:
             data = file.read(LARGEST_BYTES + 1)

@@ -350,3 +350,15 @@ def test_text_leaves_nothing_at_home(tmp_path):
     assert {(done.returncode, done.stderr) for done in runs} == {(0, b"")}
     assert runs[0].stdout == runs[1].stdout
     assert [path.name for path in tmp_path.iterdir()] == ["a.dxf"]
+
+
+@pytest.mark.parametrize("stack", ["A^x", "AA^A"])
+def test_a_stack_with_a_caret_is_one_with_or_without_a_blank(fonts, stack):
+    def letters(text):
+        document = in_boxes()
+        attributes = {"char_height": 7, "style": "Boxes", "insert": (10, 90)}
+        document.modelspace().add_mtext(f"A\\S{text};", attributes)
+        return [boxes(each) for each in read(document).elements]
+
+    assert letters(stack) == letters(stack.replace("^", "^ "))
+    assert len(letters(stack)) == 3  # what stands before, above and below

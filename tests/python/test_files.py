@@ -183,3 +183,11 @@ def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):
             read_bytes(path)
         assert (str(refusal.value), refusal.value.file) == (sentence, str(path))
         assert f"in {path}" in "".join(traceback.format_exception(refusal.value)), "whoever meets a traceback"
+
+
+def test_a_number_is_no_path_and_closes_nothing(tmp_path):
+    with open(tmp_path / "open", "w") as file:
+        for wrong in (file.fileno(), True, None, 3.5):
+            with pytest.raises(TypeError):
+                read_bytes(wrong)
+        file.write("still open")

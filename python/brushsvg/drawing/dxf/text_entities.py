@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 
 import numpy as np
@@ -87,6 +88,8 @@ class Letters:
         columns = mtext.columns
         if columns is not None and not 0 <= columns.count <= _MOST_COLUMNS:
             raise ValueError(f"it has {columns.count} columns")
+        for part in (mtext, *(columns.linked_columns if columns is not None else ())):
+            part.text = _STACK.sub(r"\1^ ", part.text)
         mtext.dxf.bg_fill = mtext.dxf.get("bg_fill", 0) & _FRAME
         height = mtext.dxf.char_height
         if not 0 < height < math.inf:
@@ -103,6 +106,11 @@ class Letters:
         if self._left < 0:
             where = name.partition("/")[0]
             raise Error(f"the drawing's text unfolds to more than {_MOST_LETTERS} letters", where=where)
+
+
+# "^" between the two numbers of a stack, as CAD programs write it: ezdxf takes it and the letter behind it for a
+# control character, unless that is a blank
+_STACK = re.compile(r"((?<!\\)(?:\\\\)*\\S[^;^]*)\^(?! )")
 
 
 class _Apart(ezdxf.addons.mtxpl.MTextExplode):
