@@ -458,7 +458,6 @@ UNWRITTEN = {
     ],
     "ur5e": [
         (r"\n", "\r\n"),
-        (r"\A", "# all is well\n"),
         (r"\Z", "# all is well\n"),
         (r"\Z", "brushsvg()\n"),
         (r"(?m)^  # stroke 2", "  #stroke 2"),
@@ -643,11 +642,15 @@ CHANGED = {
     ".nc": [
         (
             edited(r"(?m)^(M3 S(?!8).*\n)G4.*\n", r"\1", 0),
-            "the height changes by .* mm at once while the brush touches",
+            "for these strokes and this cell brushsvg would write 'G4",
         ),
         (
             edited(r"G4 P0\.0\d\d", "G4 P0.001", 0),
-            "mm/s while the brush touches, limit 25.0 mm/s",
+            "for these strokes and this cell brushsvg would write 'G4",
+        ),
+        (
+            edited(r"F\d+\.\d\n(G1 X\S+ Y\S+ S598\n)", r"F1500.0\n\1"),
+            "mm/s of the tip while the brush touches",
         ),
         (edited(r"(?m)^G4 P0\.150\n", "", 0), "for these strokes and this cell brushsvg would write 'G4"),
         (edited(r"(?m)^(M3 .*\n)((?:.*\n)*?)(\(stroke 2.*\n)", r"\2\1\3G4 P0.017\n"), "brushsvg would write"),

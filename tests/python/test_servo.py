@@ -170,7 +170,24 @@ def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     like = _Alike(CELL, knows_speeds=True)
 
     def lift(waits_s):
-        return Act(1, "lift", same=(510.0, waits_s))
+        return Act(1, "lift", same=(510.0, waits_s, 500.0, 510.0))
 
     assert like.is_same(lift(0.275), lift(0.325))
     assert not like.is_same(lift(0.150), lift(0.325)), "shorter than that something was taken away"
+
+
+def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
+    """The machine's feed is that of the way beside the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
+    poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
+    plan = SimpleNamespace(
+        sheet_mm=(100.0, 60.0), passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=())]
+    )
+    brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
+    feed, feeds = 0.0, {}
+    for line in "".join(grbl_servo(program(plan, brush, CELL))).splitlines():
+        words = dict(re.findall(r"([FX])(-?[\d.]+)", line.split("(")[0]))
+        feed = float(words["F"]) / 60 if "F" in words else feed
+        if "X" in words:
+            feeds.setdefault(13 < float(words["X"]) <= 20, []).append(feed)
+    assert set(feeds[True]) == {20.0}
+    assert max(feeds[False][2:-1]) <= 25 / np.hypot(1, 1.2), "the first is travel"

@@ -68,7 +68,8 @@ class Section:
 class Program:
     """header: lines for the reader, each beginning with a word of ours. sections() yields them one by one: a page of
     strokes is never held twice. robot_from_frame: (4, 4), the frame of all points, in the robot's. rise_mm: how high
-    the tool is over everything, where it goes first; rise_in_robot_mm: the same in the robot's frame."""
+    the tool is over everything, where it goes first; rise_in_robot_mm: the same in the robot's frame; touching_mm_s:
+    the most that the brush's tip may have where it touches."""
 
     header: tuple[str, ...]
     cell: Cell
@@ -76,6 +77,7 @@ class Program:
     sections: Callable[[], Iterator[Section]]
     rise_mm: float
     rise_in_robot_mm: float
+    touching_mm_s: float
 
 
 def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:

@@ -83,7 +83,8 @@ def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job
             moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
             yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
 
-    return Program(header, cell, frame, sections, cell.heights.safe_mm, rise_over(cell, plan.sheet_mm, frame))
+    rise_mm = rise_over(cell, plan.sheet_mm, frame)
+    return Program(header, cell, frame, sections, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
 
 
 def over(point, height_mm: float) -> np.ndarray:
@@ -94,6 +95,11 @@ def over(point, height_mm: float) -> np.ndarray:
 def approach_mm_s(brush, cell: Cell) -> float:
     """In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit."""
     return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
+
+
+def touching_mm_s(brush, cell: Cell) -> float:
+    """The most that the brush's tip may have where it touches."""
+    return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
 
 
 def names_of_stations(cell: Cell) -> dict[Station, str]:

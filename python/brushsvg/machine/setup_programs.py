@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Error
 from .cell import Cell, robot_from_paper
 from .motion import Move, Program, Section, Wait, rise_over
-from .program import approach_mm_s, astray_in, over
+from .program import approach_mm_s, astray_in, over, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
 SPEED_MM_S = 15.0
@@ -50,7 +50,9 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
         yield Section("border of the job, at safe height", (start, *steps))
 
     frame = robot_from_paper(cell, z_offset_mm)
-    made = Program((), cell, frame, sections, height, rise_over(cell, sheet_mm, frame))
+    made = Program(
+        (), cell, frame, sections, height, rise_over(cell, sheet_mm, frame), touching_mm_s(brush, cell)
+    )
     return _refuse_astray(made, sheet_mm)
 
 
@@ -97,7 +99,9 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             )
 
     frame = robot_from_paper(cell)
-    made = Program((), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame))
+    made = Program(
+        (), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame), touching_mm_s(brush, cell)
+    )
     return _refuse_astray(made, sheet_mm)
 
 

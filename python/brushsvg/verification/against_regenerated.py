@@ -37,7 +37,8 @@ def again(
     before = first_stroke - 1
     passes = ran.plan.passes
     if cell.servo:
-        passes = [_without(*each) for each in zip(passes, ran.lines, strict=True)]
+        rests = [waits_s >= cell.servo.settle_s for waits_s in ran.waits_s]
+        passes = [_without(*each) for each in zip(passes, ran.lines, rests, strict=True)]
     if speeds_mm_s:
         passes = [
             _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs)
@@ -59,14 +60,22 @@ class Told:
     notes: tuple[str, ...]
 
 
-def _without(a_pass, lines: np.ndarray):
-    """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone."""
+def _without(a_pass, lines: np.ndarray, rests: np.ndarray):
+    """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone.
+    Where the servo rests at no pose of the last lift, that is the one off the paper, from beside which its last way was
+    held.
+    """
+    goes = np.diff(np.asarray(a_pass.poses_mm)[:, :2], axis=0).any(axis=1)
+    is_off = not rests[1:][np.flatnonzero(np.r_[True, goes])[-1] :].any()
     poses = np.asarray(a_pass.poses_mm)[np.r_[lines[1:] != lines[:-1], True]]
     poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
     steps = np.diff(poses, axis=0)
     still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
     inner = np.zeros(len(poses), dtype=bool)
     inner[1:-1] = still[:-1] & still[1:] & (rising[:-1] == rising[1:])
+    if len(still) > 1 and still[-1] and is_off:
+        held = np.flatnonzero(np.r_[True, ~still])[-1]  # where the last way ends
+        inner[held:-1] = held > 0
     return _core.Pass(a_pass.stroke, poses[~inner], a_pass.speed_mm_s)
 
 
@@ -82,9 +91,9 @@ def differing_line(
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
     circles = any(act.kind == "circle" for act in again.acts)
-    if lost := sorted(
-        (again.modes or set()) - (read.modes or set()) - ({"G80"} if circles else {"G80", "G17", "G91.1"})
-    ):
+    idle = {"G80"} if circles else {"G80", "G17", "G91.1"}
+    idle |= set() if cell.language == "linuxcnc" else {"G40"}  # grbl knows no other
+    if lost := sorted((again.modes or set()) - (read.modes or set()) - idle):
         return f"{lost[0]} is missing before the first move"
     ours, theirs = _with_header_sorted(read.acts), _with_header_sorted(again.acts)
     if cell.servo:
@@ -154,10 +163,11 @@ def _with_header_sorted(acts: list[Act]) -> list[Act]:
 
 
 def _folded(acts: list[Act]) -> list[Act]:
-    """A servo's acts: ways in paint that follow each other as the last one, lifts one way with their waits as the last
-    with the sum."""
+    """A servo's acts: ways in paint that follow each other as the last one, all that it does at one place as one lift:
+    its last value, what is waited in all, its least and its greatest value. How fast a stroke may be is asked of the
+    way itself."""
     out: list[Act] = []
-    value, rises, place = 0.0, 0.0, ()
+    value, place, in_stroke = 0.0, (), False
     up = next((act.same[0] for act in acts if act.kind == "lift"), None)
     for act in acts:
         last = out[-1] if out else None
@@ -166,29 +176,30 @@ def _folded(acts: list[Act]) -> list[Act]:
                 continue
             value, place = act.same[0], act.place
             if last and last.kind == "way" and up not in (value, last.same[0]):
-                out[-1] = act._replace(at_most=(max(act.at_most[0], last.at_most[0]),))
+                most = () if in_stroke else (max(act.at_most[0], last.at_most[0]),)
+                out[-1] = act._replace(at_most=most)
                 continue
+            act = act._replace(at_most=()) if in_stroke and value != up else act
         elif act.kind in ("lift", "wait"):
-            change = act.same[0] - value if act.kind == "lift" else 0.0
-            waited_s = 0.0 if act.kind == "lift" else act.same[0]
-            value += change
-            if last and last.kind == "lift" and change * rises >= 0:
-                rises = change or rises
-                out[-1] = act._replace(kind="lift", same=(value, last.same[1] + waited_s))
-                continue
-            rises = change
-            act = act._replace(kind="lift", same=(value, waited_s))
+            value = act.same[0] if act.kind == "lift" else value
+            waited_s = act.same[0] if act.kind == "wait" else 0.0
+            before = out.pop().same if last and last.kind == "lift" else (value, 0.0, value, value)
+            same = (value, before[1] + waited_s, min(before[2], value), max(before[3], value))
+            act = act._replace(kind="lift", same=same)
+        elif act.kind == "text":
+            in_stroke = in_stroke if act.text[:1] != "(" else act.text.startswith("(stroke")
         out.append(act)
     return out
 
 
-_NUMBER = re.compile(r"-?\d*\.\d+|-?\d+")
+_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")
 NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, and the last digit of what is written
 WAITS_S = 0.0031
 LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits, and which part of it
 FASTER = 0.011  # mm/s, of what is written in steps of 0.01
 DIGITS = 10.5  # of the last decimal: what a statement loses with it
 TILTED_RAD = 1.05e-3  # about a brush's tip, which stays where it is
+PAPER_TILTED_RAD = 1e-5  # about a sheet's corner
 # what rounded poses make of a blend, which hangs on the angle between two moves: mm, or a part of it; and the part for
 # each mm of rounding, where few decimals turn moves of a millimetre by more than such an angle
 LEAST_BLEND_MM, BLENDS, BLENDS_PER_MM = 1e-2, 0.05, 2e2
@@ -259,7 +270,8 @@ class _Alike:
         if act.kind == "wait":
             return (WAITS_S,)
         if act.kind == "lift":
-            return (1, max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s)
+            waits_s = max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s
+            return (1, waits_s, self.step_values, self.step_values)
         if act.kind == "way":
             return (self.step_values,)
         if act.kind == "circle":
@@ -272,12 +284,13 @@ class _Alike:
             return _nearly(about, asked, 0.25 if self.is_servo else 0.01, self.knows_speeds)
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
-        tilts = 3 if wanted.startswith(("set_tcp", "return")) else 0
+        tilts = 3 if wanted.startswith(("set_tcp", "return", "paper")) else 0
+        tilted_rad = PAPER_TILTED_RAD if wanted.startswith("paper") else TILTED_RAD
         numbers = list(zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True))
         return all(
             abs(float(x) - float(y))
             <= (
-                TILTED_RAD
+                tilted_rad
                 if k >= len(numbers) - tilts
                 else DIGITS * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
             )

@@ -30,7 +30,8 @@ class Ran:
     """What a program paints: its passes as they are programmed and as they are run, with corners cut.
 
     problems: (stroke, sentence) for each thing that must not be; visits: for each stroke the stations that are visited
-    before it; lines: for each pass the line of the program that leads to each pose.
+    before it; lines: for each pass the line of the program that leads to each pose; waits_s: what is waited for behind
+    it.
     """
 
     plan: object
@@ -38,6 +39,7 @@ class Ran:
     problems: Problems
     visits: tuple
     lines: tuple
+    waits_s: tuple
 
 
 def slack_mm(cell: Cell) -> float:
@@ -48,12 +50,13 @@ def slack_mm(cell: Cell) -> float:
 def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
     """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
     problems: Problems = []
-    meant, cut, lines = [], [], []
+    meant, cut, lines, waits_s = [], [], [], []
     slack = slack_mm(cell)
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
         problems += [(name, sentence) for sentence in said]
         stroke = _stroke(section)
+        track = track if cell.servo else _with_ends_on_paper(track, slack)
         found = list(_touches(track, slack))
         if stroke and len(found) != 1:
             times = f"{len(found)} times, not once" if found else "never"
@@ -70,10 +73,11 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
             cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
+            waits_s.append(np.array([section.steps[number].wait_s for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
     problems += broken_limits(plan, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
-    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines))
+    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines), tuple(waits_s))
 
 
 def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
@@ -179,6 +183,12 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
     steps, back = section.steps, np.linalg.inv(frame)
     ends = moved(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
     known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the others go straight up, wherever the tool is
+    stays = (np.diff(ends[known], axis=0) == 0).all(
+        axis=1
+    )  # as a line that stands twice does, but for a blend
+    does = [steps[k].centre is not None or steps[k].blend_mm > 0 or steps[k].wait_s > 0 for k in known[1:]]
+    stays &= ~np.array(does, dtype=bool)
+    known = known[np.r_[True, ~stays]] if len(known) else known
     centres: list = [None] * len(steps)
     points, owner = [ends[:0]], [known[:0]]
     done = 0
@@ -211,6 +221,21 @@ def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int])
     ]
 
 
+def _with_ends_on_paper(track: Track, slack: float) -> Track:
+    """The track with a point wherever a straight line goes through the paper: there a touch begins or ends, whether or
+    not the program names the place. A servo's heights go in steps, through no paper."""
+    heights = track.points[:, 2]
+    crosses = (heights[:-1] < -slack) & (heights[1:] > slack) | (heights[:-1] > slack) & (
+        heights[1:] < -slack
+    )
+    straight = np.array([track.centres[number] is None for number in track.step[1:]], dtype=bool)
+    at = np.flatnonzero(crosses & straight)
+    before, after = track.points[at], track.points[at + 1]
+    part = before[:, 2:] / (before[:, 2:] - after[:, 2:])
+    points = np.insert(track.points, at + 1, before + part * (after - before), axis=0)
+    return Track(points, np.insert(track.step, at + 1, track.step[at + 1]), track.centres)
+
+
 def _touches(track: Track, slack: float) -> Iterator[slice]:
     """Of the points, those of each time that the brush is on the paper."""
     edges = np.flatnonzero(np.diff(np.r_[False, track.points[:, 2] <= slack, False]))
@@ -224,7 +249,7 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
     poses[:, 2] = np.minimum(poses[:, 2], 0.0)
     owner = track.step[on]
     steps = [section.steps[number] for number in owner]
-    is_end = np.r_[np.diff(owner) != 0, True]
+    is_end = np.r_[np.diff(track.step) != 0, True][on]
     radii = np.where(is_end, [step.blend_mm for step in steps], 0.0)
     speeds = [step.speed_mm_s for step in steps[1:] or steps if np.isfinite(step.speed_mm_s)]
     # a stroke is landed no faster than it is painted
@@ -272,16 +297,64 @@ def _careless(
     sideways[0] |= here is None
     touches, is_low = low <= paper_mm + slack, low < safe - slack
     careless = rapid & is_low & (touches | sideways)
-    fast = touches & ~rapid & (speed > limit + 1e-6)
+    goes = (track.points[:, :2] != before[:, :2]).any(axis=1) if cell.servo else True  # else no feed is used
+    fast = touches & ~rapid & goes & (speed > limit + 1e-6)
     travels = sideways & is_low & (high > paper_mm + slack) & (not section.title.startswith("paint: "))
     for k in np.flatnonzero(careless | fast | travels):
         line = f"line {steps[k].line}"
         if careless[k]:
             how = "while the brush touches" if touches[k] else f"at {low[k]:.2f} mm, below the safe height"
             yield f"{line}: a rapid move {how}"
-        elif fast[k] and np.isinf(speed[k]):
-            yield f"{line}: the height changes by {high[k] - low[k]:.2f} mm at once while the brush touches"
         elif fast[k]:
             yield f"{line}: speed {speed[k]:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
         else:
             yield f"{line}: the tool travels at {low[k]:.2f} mm, below the safe height {safe:g} mm"
+    if cell.servo:
+        first, last = np.diff(np.r_[False, touches, False].astype(int)).nonzero()[0].reshape(-1, 2).T
+        for on in map(slice, first, last):
+            top = paper_mm + slack
+            yield from _ahead(steps[on], before[on], track.points[on], cell, limit, top)
+
+
+def _ahead(
+    steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
+) -> Iterator[str]:
+    """A sentence where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
+    way beside the lift alone, and its heights go in steps: over any number of moves the tip may be no more than two
+    steps and a value ahead of what the limit allows for their time."""
+    lead_mm = 2 * cell.servo.step_mm + value_mm(cell) + 1e-6
+    ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
+    speeds = np.array([step.speed_mm_s for step in steps])
+    took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)
+    ends_s = np.cumsum(took_s + np.r_[0.0, [step.wait_s for step in steps[:-1]]])
+    begins_s, ends_mm = ends_s - took_s, np.cumsum(ways_mm)
+    begins_mm = ends_mm - ways_mm
+    starts, ends = np.minimum(before[:, 2], top_mm), np.minimum(after[:, 2], top_mm)
+    for count in _counts(len(steps)):
+        rise_mm = np.abs(ends[count - 1 :] - starts[: len(steps) - count + 1])
+        on_mm = ends_mm[count - 1 :] - begins_mm[: len(steps) - count + 1]
+        path_mm = np.hypot(on_mm, np.maximum(rise_mm - lead_mm, 0.0))
+        seconds = ends_s[count - 1 :] - begins_s[: len(steps) - count + 1]
+        ahead = np.flatnonzero((rise_mm > lead_mm) & (path_mm > (limit + 1e-6) * seconds + ROUNDED_MM))
+        if len(ahead):
+            k = int(ahead[0])
+            line = f"line {steps[k + count - 1].line}"
+            if path_mm[k] > 10 * limit * seconds[k]:
+                yield f"{line}: the height changes by {rise_mm[k]:.2f} mm at once while the brush touches"
+            else:
+                speed = path_mm[k] / seconds[k]
+                yield f"{line}: speed {speed:.1f} mm/s of the tip while the brush touches, limit {limit:.1f} mm/s"
+            return
+
+
+ROUNDED_MM = 4e-3  # of a way by the decimals of its ends
+
+
+def _counts(most: int) -> Iterator[int]:
+    """1, 2, 3, 4, 6, 8, 12, ...: what is fast over any number of moves is so, or nearly, over one of these."""
+    count = 1
+    while count <= most:
+        yield count
+        if count > 1 and count * 3 // 2 <= most:
+            yield count * 3 // 2
+        count *= 2

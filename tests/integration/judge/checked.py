@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import types
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from brushsvg.cli.arguments import parse
 from brushsvg.cli.commands import check as command
 from brushsvg.cli.commands import convert_file
 from brushsvg.cli.console import RefusedError
-from brushsvg.pipeline import preparation
+from brushsvg.pipeline import outputs, preparation
 
 CRASHED = "this should not happen"
 
@@ -34,13 +35,14 @@ def quick_check():
     known: dict[tuple, preparation.Work] = {}
     cells: dict[str, object] = {}
     asked: dict[tuple, object] = {}
-    whole = command.prepare, command.find_cell, command.convert.report_text, command.tell
+    names = "prepare", "find_cell", "tell", "outputs", "report"
+    whole = {name: getattr(command, name) for name in names}
 
     def prepare(args, cell, brush=None, **more):
         words = {name: value for name, value in vars(args).items() if name not in ("program", "json")}
         key = (repr(sorted(words.items())), cell.name, brush.name)
         if key not in known:
-            known[key] = whole[0](args, cell, brush, **more)
+            known[key] = whole["prepare"](args, cell, brush, **more)
         work, plan = known[key], known[key].plan
         work = copy.copy(work)  # a plan may be put in another order
         object.__setattr__(
@@ -50,7 +52,7 @@ def quick_check():
 
     def find_cell(name):
         if name not in cells:
-            cells[name] = whole[1](name)
+            cells[name] = whole["find_cell"](name)
         return cells[name]
 
     def refusals(*words) -> list[str]:
@@ -65,11 +67,13 @@ def quick_check():
         return []
 
     command.prepare, command.find_cell, command.tell = prepare, find_cell, lambda text: None
-    command.convert.report_text = lambda *_, **__: ""
+    command.outputs = types.SimpleNamespace(notes=outputs.notes, reported=lambda *_, **__: None)
+    command.report = types.SimpleNamespace(as_text=lambda *_: "")
     try:
         yield refusals
     finally:
-        command.prepare, command.find_cell, command.convert.report_text, command.tell = whole
+        for name, before in whole.items():
+            setattr(command, name, before)
 
 
 def put(path: Path, text: str) -> Path:

@@ -374,6 +374,8 @@ class _Controller:
         if self.motion != 0.0 and not self.feed_mm_s > 0:
             raise RefusedError(f"line {self.number}: no feed")
         if self.servo is not None:
+            if "Z" in values:
+                self._act("an axis that the machine does not need")
             there[2] = self.at[2]
             self._light()
             there[2] = self.at[2]

@@ -226,7 +226,9 @@ class _Robot:
         turned = self.here_turned if which[2:] == [3, 4, 5] else np.eye(3)
         tip, tilt = self._tip(self._known(number, found[1]) @ frame(place, turned))
         self._checked(number, found[8], found[9])
-        self._leg(Leg(number, "feed", tuple(self.at), tuple(tip), 1e3 * float(found[9]), tilt_rad=tilt))
+        speed, acceleration = 1e3 * float(found[9]), float(found[8])
+        at = tuple(self.at)
+        self._leg(Leg(number, "feed", at, tuple(tip), speed, tilt_rad=tilt, acceleration=acceleration))
 
     def _place(self, number: int, name: str, texts) -> tuple[np.ndarray, float]:
         if name not in self.places:
@@ -263,6 +265,7 @@ class _Robot:
         )
 
     def _circle(self, number: int, found) -> None:
+        self.run.frame.append(f"circles turn the tool by mode {found[12]}")
         via, _ = self._place(number, found[1], found.groups()[1:4])
         end, tilt = self._place(number, found[5], found.groups()[5:8])
         self._checked(number, found[9], found[10])

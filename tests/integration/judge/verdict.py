@@ -483,7 +483,7 @@ def facts(run: Run) -> tuple[dict, list]:
     for line in run.header:
         if found := FACT.fullmatch(line.strip()):
             said.setdefault(found[1], set()).add(found[2])
-    said["frame"] = set(run.frame)
+    said["what frames it"] = set(run.frame)
     sizes = [float(np.linalg.norm(np.subtract(leg.end, leg.start))) for leg in run.legs]
     done = np.concatenate([[0.0], np.cumsum(sizes)])
     return said, [(words, float(done[at])) for words, at in run.titles if TITLE.match(words)]

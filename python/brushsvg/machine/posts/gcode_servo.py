@@ -32,8 +32,8 @@ def grbl_servo(program: Program) -> Iterator[str]:
     yield "".join(grbl_comment(line) for line in program.header)
     yield grbl_comment("note: set $32=1, so that S changes along with the moves")
     yield f"{MODES}\n"
-    feed = f"F{feed_mm_min(program.cell.speeds.travel_mm_s):.1f}\n"
-    yield f"G1 {feed}"
+    feed = feed_mm_min(program.cell.speeds.travel_mm_s)
+    yield f"G1 F{feed:.1f}\n"
     here, value = None, 0
     for section in program.sections():
         if here is None:  # up before going anywhere
@@ -46,11 +46,12 @@ def grbl_servo(program: Program) -> Iterator[str]:
             if isinstance(step, Wait):
                 yield wait(step, grbl_comment)
                 continue
-            wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
+            wanted = feed_mm_min(step.speed_mm_s)
             if wanted != feed:
-                yield wanted
+                yield f"F{wanted:.1f}\n"
                 feed = wanted
-            value = yield from _lines(step, here, value, servo, decimals)
+            fastest = program.touching_mm_s if step.meaning in TOUCHING else math.inf
+            value, feed = yield from _lines(step, here, value, servo, decimals, fastest, feed)
             here = step.points_mm[-1]
     yield "\n" + grbl_comment(SERVO_END)
 
@@ -68,19 +69,22 @@ def height_at(servo: Servo, value: float) -> float:
 
 
 def _lines(
-    move: Move, here: np.ndarray, value: int, servo: Servo, decimals: int
-) -> Generator[str, None, int]:
-    """A move's lines, and the value that the servo has afterwards; value: that before."""
+    move: Move, here: np.ndarray, value: int, servo: Servo, decimals: int, fastest_mm_s: float, feed: float
+) -> Generator[str, None, tuple[int, float]]:
+    """A move's lines, and the servo's value and the feed [mm/min] that hold afterwards; value, feed: those before;
+    fastest_mm_s: of the tip."""
     path = np.vstack([here, move.points_mm])
     still = np.abs(np.diff(path[:, :2], axis=0)).max(axis=1) < 0.5 * 10.0**-decimals
     for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
         if not still[run[0]]:
-            value = yield from _ways(path[run[0] : run[-1] + 2], servo, decimals)
+            part = path[run[0] : run[-1] + 2]
+            feeds = _feeds(np.diff(part, axis=0), move.speed_mm_s, fastest_mm_s)
+            value, feed = yield from _ways(part, feeds, feed, servo, decimals)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for k in run:
             value = yield from _lift(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
-    return value
+    return value, feed
 
 
 def _lift(
@@ -103,8 +107,11 @@ def _lift(
     return value
 
 
-def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Generator[str, None, int]:
-    """Straight lines, each in parts on which the height is the one half way along the part; the last part's value."""
+def _ways(
+    path: np.ndarray, feeds: np.ndarray, feed: float, servo: Servo, decimals: int
+) -> Generator[str, None, tuple[int, float]]:
+    """Straight lines at their feeds, each in parts on which the height is the one half way along the part; the last
+    part's value and feed. feed: the one before."""
     pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
     for first in range(0, len(path) - 1, ROWS_AT_ONCE):
         part = path[first : first + ROWS_AT_ONCE + 1]
@@ -115,5 +122,22 @@ def _ways(path: np.ndarray, servo: Servo, decimals: int) -> Generator[str, None,
         ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
         heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
         values = value_at(servo, heights)
-        yield from rows(pattern, np.column_stack([ends, values]), decimals)
-    return int(values[-1])
+        at = feeds[first + which]
+        for run in np.split(np.arange(len(which)), np.flatnonzero(np.diff(at)) + 1):
+            if at[run[0]] != feed:
+                feed = at[run[0]]
+                yield f"F{feed:.1f}\n"
+            yield from rows(pattern, np.column_stack([ends[run], values[run]]), decimals)
+    return int(values[-1]), feed
+
+
+def _feeds(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
+    """(n,) the feed [mm/min] of each line (n, 3). It is that of the way beside the lift alone: where both together
+    would be faster than the tip may be, it is lower, in hundredths of the fastest, so that few lines change it."""
+    part = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)
+    is_steep = speed_mm_s > fastest_mm_s * part + 1e-9
+    part = np.where(part > 0.1, np.floor(100 * part + 1e-9) / 100, part)
+    slower = [
+        feed_mm_min(fastest_mm_s * each) if steep else 0.0 for each, steep in zip(part, is_steep, strict=True)
+    ]
+    return np.where(is_steep, slower, feed_mm_min(speed_mm_s))

@@ -6,7 +6,7 @@ import math
 import re
 
 from ...errors import Error
-from ...machine.cell import Cell, value_mm
+from ...machine.cell import Cell
 from ...machine.posts.gcode import comment, grbl_comment
 from ...machine.posts.gcode_servo import SERVO_END, height_at
 from . import Act, Readback, Step
@@ -52,20 +52,13 @@ class _Reader:
         self.comment = comment if cell.language == "linuxcnc" else grbl_comment
         self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
         self.words |= {"G4": "P", "G64": "P", "": "F"} | (
-            {"M3": "S", "G1": "XYSF"} if cell.servo else {"M5": ""}
+            {"M3": "SF", "G1": "XYSF"} if cell.servo else {"M5": ""}
         )
         self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
         self.motion = ""
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
-        # between two values, and two parts of a way, no more than this is written at once
-        self.jump_mm = 1.01 * (cell.servo.step_mm + value_mm(cell)) if cell.servo else 0.0
-        # and a lift alone begins half a step before where the way ended
-        self.lift_mm = self.jump_mm + (0.5 * cell.servo.step_mm if cell.servo else 0.0)
-        self.lift: tuple[int, float, float] | None = (
-            None  # which step, how far, how long it has been waited for
-        )
         self.at = {axis: math.nan for axis in "XYZ"}
         self.feed_mm_s = 0.0
         self.rapid_mm_s = cell.speeds.travel_mm_s
@@ -94,11 +87,16 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
+        values = {letter: value for letter, value in words if letter not in "GM"}
         if codes == ["M30"] and not self.servo:
             codes = ["M2"]  # what both end
+        idle = [code for code in codes if code == "M9"]  # switches off what no program switches on
+        if len(codes) > 1 and not values and (motion := self._motion_among(codes)):
+            self.motion = motion
+            idle.append(motion)
+        codes = [code for code in codes if code not in idle]
         if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= ALONE | MODES | set(NEEDED):
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
-        values = {letter: value for letter, value in words if letter not in "GM"}
         first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
         if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
             first = "M3"  # which holds
@@ -106,7 +104,9 @@ class _Reader:
             first = self.motion  # which goes on beside a mode
         if first not in self.words:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
-        if len(values) + len(set(codes)) != len(words) or not set(values) <= set(self.words[first]):
+        if len(values) + len(set(codes)) + len(idle) != len(words) or not set(values) <= set(
+            self.words[first]
+        ):
             raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
         if first == "G64" and "G21" not in self.seen:
             raise Error(
@@ -114,8 +114,6 @@ class _Reader:
             )
         if values and first != "G64" and self.out.modes is None:
             self.out.modes = frozenset(self.seen)
-        if first not in ("G4", "M3", ""):
-            self.lift = None
         if first in WAYS or not first:
             self._move(number, line, first, values)
         elif first == "G64":
@@ -138,17 +136,14 @@ class _Reader:
         """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
         if (plain := self.comment(said).rstrip("\n")) != line:
             raise Error(f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}")
-        sections = len(self.out.sections)
         self.out.comment(number, said)
-        if len(self.out.sections) > sections:
-            self.lift = None  # what is waited for belongs to another section
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
         if seconds < 0:
             raise Error(f"line {number}: {line[:40]!r} does not say how long")
         self.out.acts.append(Act(number, "wait", same=(seconds,)))
-        if self.lift:
-            self._waited(seconds)
+        if steps := self.out.section().steps:
+            steps[-1] = steps[-1]._replace(wait_s=steps[-1].wait_s + seconds)
 
     def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
@@ -167,10 +162,8 @@ class _Reader:
             self.value = values["S"]
             places["Z"] = self._height(number, values["S"])
             # the value takes effect with the move: the lift first, then the way at that height
-            change_mm = abs(places["Z"] - self.at["Z"])
-            if change_mm > 1e-9:
-                speed = math.inf if change_mm > self.jump_mm else None
-                self._go(number, False, {"Z": places["Z"]}, None, speed)
+            if places["Z"] != self.at["Z"]:
+                self._go(number, False, {"Z": places["Z"]}, None)
         centre = None
         if code in ("G2", "G3"):
             if not self.for_circles <= self.seen:
@@ -201,33 +194,28 @@ class _Reader:
         else:
             self.out.acts.append(Act(number, "move", "", (x, y, z), (speed,), (self.out.joint_mm,)))
 
-    def _go(self, number: int, rapid: bool, places: dict[str, float], centre, speed=None) -> None:
+    def _go(self, number: int, rapid: bool, places: dict[str, float], centre) -> None:
         self.at |= places
-        if speed is None:
-            speed = self.rapid_mm_s if rapid else self.feed_mm_s
+        speed = self.rapid_mm_s if rapid else self.feed_mm_s
         step = Step(number, rapid, self.at["X"], self.at["Y"], self.at["Z"], speed, 0.0, centre)
         self.out.section().steps.append(step)
 
     def _lift(self, number: int, values: dict[str, float]) -> None:
-        """At once, if nothing is waited for afterwards, or too far for one step."""
+        self.feed_mm_s = values["F"] / 60 if "F" in values else self.feed_mm_s
         self.value = values.get("S", self.value)
         before, height = self.at["Z"], self._height(number, self.value)
         if height == before:
             return  # the value that holds
-        self.lift = None
-        self._go(number, False, {"Z": height}, None, math.inf)
+        self._go(number, False, {"Z": height}, None)
         self.out.acts.append(Act(number, "lift", same=(self.value,)))
-        if not abs(height - before) > self.lift_mm:
-            self.lift = len(self.out.section().steps) - 1, abs(height - before), 0.0
 
-    def _waited(self, seconds: float) -> None:
-        """So long after the lift alone: as fast as the feed says, or faster where that is too short."""
-        at, way_mm, before_s = self.lift
-        waited_s = before_s + seconds
-        speed = max(way_mm / waited_s, self.feed_mm_s) if waited_s > 0 else math.inf
-        steps = self.out.section().steps
-        steps[at] = steps[at]._replace(speed_mm_s=speed)
-        self.lift = at, way_mm, waited_s
+    def _motion_among(self, codes: list[str]) -> str:
+        """The one that a line of modes sets and does not use; LinuxCNC stops there."""
+        if self.comment is comment:
+            return ""
+        motions = [code for code in codes if code == "G1" or (code == "G0" and not self.servo)]
+        rest = set(codes) - set(motions)
+        return motions[0] if len(motions) == 1 and rest <= STANDING else ""
 
     def _height(self, number: int, value: float) -> float:
         known = [row[1] for row in self.servo.table]

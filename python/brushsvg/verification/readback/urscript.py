@@ -9,12 +9,12 @@ import numpy as np
 from ...errors import Error
 from . import Act, Readback, Step
 
-_N = r"-?\d*\.\d+"
+_N = r"-?(?:\d+\.?\d*|\.\d+)"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
 _MOVE = re.compile(rf"(movel|movep)\({_POINT}, a=({_N}), v=({_N})(?:, r=({_N}))?\)")
-_CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=0\.0+, mode=1\)")
+_CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=(?:0+\.?0*|\.0+), mode=1\)")
 _PAPER = re.compile(rf"paper = p\[({_N}(?:, {_N}){{5}})\]")
-_SLEEP = re.compile(r"sleep\((\d*\.\d+)\)")
+_SLEEP = re.compile(r"sleep\((\d+\.?\d*|\.\d+)\)")
 _RISE = re.compile(
     rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\)), "
     rf"a=({_N}), v=({_N})\)"
@@ -35,8 +35,13 @@ def read_urscript(text: str) -> Readback:
         (number, line.lstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
     ]
     for number, line in lines:
-        if line.startswith("# ") and out.acts:
+        if line.startswith("# "):
+            before = len(out.acts)
             out.comment(number, line[2:])
+            if 0 < before < len(out.acts) and out.acts[before - 1].text.startswith("here ="):
+                out.acts.insert(
+                    before - 1, out.acts.pop()
+                )  # a title changes nothing of what stands before it
         elif found := _MOVE.fullmatch(line):
             x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
             _is_run(number, line, a, v)
@@ -57,7 +62,8 @@ def read_urscript(text: str) -> Readback:
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
         elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
             out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
-            out.acts.append(Act(number, "text", line))
+            is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
+            out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
             raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes")
     if not out.paper:
