@@ -32,7 +32,7 @@ def ends_mm(path, select):
 
 @pytest.mark.parametrize("own", ["", 'transform="translate(4,3) rotate(3)"'])
 def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
-    out, layer = checked(plugin, tmp_path, f"{OPEN.replace('<svg', f'<svg {own}')}{BODY}</svg>")
+    out, layer = checked(plugin, tmp_path, f"{OPEN}<g {own}>{BODY}</g></svg>")
     assert layer.get(f"{INKSCAPE}label") == "Brush check: round-6: 1 cannot be painted, 1 warned of"
     texts = [" ".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
     assert "width 22.000 mm is outside the range [0.000, 8.400] mm" in texts[0]

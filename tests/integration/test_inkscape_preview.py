@@ -28,7 +28,7 @@ HEADS = {
     "wide": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="xMaxYMid"',
     "slice": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="xMinYMin slice"',
     "pt": 'width="420pt" height="370pt" viewBox="-12.5 37 210 185"',
-    "moved": 'width="150mm" height="130mm" viewBox="0 0 150 130" transform="translate(4,3) scale(0.9)"',
+    "moved": 'width="150mm" height="130mm" viewBox="-4 -3 165 143"',
     "stretched": 'width="200mm" height="130mm" viewBox="0 0 150 130" preserveAspectRatio="none"',
 }
 
