@@ -38,6 +38,7 @@ ALONE = {
 }  # no other word of command beside them
 ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
 STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
+UNKNOWN_TO_GRBL = {"G64", "G90.1"}  # it answers them with an error, and senders then stop with the brush pressed
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
@@ -54,6 +55,9 @@ class _Reader:
         self.words |= {"G4": "P", "G64": "P", "": "F"} | (
             {"M3": "SF", "G1": "XYSF"} if cell.servo else {"M5": ""}
         )
+        self.known = ALONE | MODES | set(NEEDED)
+        if cell.language != "linuxcnc":
+            self.known -= UNKNOWN_TO_GRBL
         self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
         self.motion = ""
         self.value = math.nan  # of the servo
@@ -95,7 +99,7 @@ class _Reader:
             self.motion = motion
             idle.append(motion)
         codes = [code for code in codes if code not in idle]
-        if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= ALONE | MODES | set(NEEDED):
+        if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= self.known:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
         first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
         if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
