@@ -38,7 +38,10 @@ ALONE = {
 }  # no other word of command beside them
 ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
 STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
-UNKNOWN_TO_GRBL = {"G64", "G90.1"}  # it answers them with an error, and senders then stop with the brush pressed
+UNKNOWN_TO_GRBL = {
+    "G64",
+    "G90.1",
+}  # it answers them with an error, and senders then stop with the brush pressed
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
