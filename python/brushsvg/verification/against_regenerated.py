@@ -241,8 +241,10 @@ class _Alike:
         )
 
     def is_idle(self, act: Act, here: tuple) -> bool:
-        """Goes to where the tool is."""
-        return act.kind == "move" and act.place == here
+        """Goes to where the tool is, or nowhere that a brush shows: the tool counts as where it was."""
+        if act.kind != "move" or len(act.place) != len(here):
+            return False
+        return act.place == here or math.dist(act.place, here) <= self.near_mm / 2
 
     def is_on_the_way(self, act: Act, here: tuple, to: Act) -> bool:
         """Whether a straight move ends on another one that begins here: with or without it, the way is the same."""
