@@ -30,10 +30,10 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     };
     std::mutex mutex;
     std::condition_variable ended;
-    std::size_t running = 0;
+    const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), end - begin);
+    std::size_t running = threads > 1 ? threads - 1 : 0;  // counted before the first one ends
     std::vector<std::thread> others;
-    for (unsigned k = 1; k < std::min<std::size_t>(std::thread::hardware_concurrency(), end - begin); ++k) {
-        ++running;
+    for (std::size_t k = 1; k < threads; ++k) {
         others.emplace_back([&] {
             cancel.take_over();
             run();
@@ -44,7 +44,8 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     }
     run();
     std::exception_ptr given_up;  // this thread alone asks whether to go on, also while it waits
-    for (std::unique_lock lock(mutex); running > 0;) {
+    std::unique_lock lock(mutex);
+    while (running > 0) {
         ended.wait_for(lock, std::chrono::milliseconds(50));
         if (!given_up) try {
                 checkpoint(1 << 20);
@@ -52,6 +53,7 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
                 given_up = std::current_exception();
             }
     }
+    lock.unlock();
     for (std::thread& other : others) other.join();
     if (given_up) std::rethrow_exception(given_up);
     for (const std::exception_ptr& error : errors)
