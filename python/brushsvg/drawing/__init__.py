@@ -66,7 +66,8 @@ def read_drawing(path, options: ReadOptions = AS_DRAWN) -> Design:
     """The drawing in a file, its format chosen by extension; or one that is open already.
 
     path: of the file; or an ezdxf document, or an SVG as an ElementTree or its root element: read as their files would
-    be. Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
+    be, but an ElementTree holds nothing that stands before its root, so of links to style sheets there nothing is said.
+    Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
     is not asked for.
     """
     reader, data = _opened(path)

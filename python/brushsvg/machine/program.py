@@ -117,7 +117,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
         return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
     # a vessel may stand lower than the paper, under which nothing is fast
     rim = max(station.rim_mm, 0.0) + cell.heights.clearance_mm
-    press_mm_s = min(speeds.press_mm_s, speeds.paint_mm_s, brush.max_speed_mm_s)
+    press_mm_s = min(speeds.press_mm_s, touching_mm_s(brush, cell))
     steps += [
         Move("approach", over(station.place_mm, rim), approach_mm_s(brush, cell)),
         Move("dip", over(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),

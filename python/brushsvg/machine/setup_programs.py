@@ -75,7 +75,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
         raise Error(
             f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height"
         )
-    speed = min(brush.max_speed_mm_s, speeds.paint_mm_s, SPEED_MM_S)
+    speed = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press = min(speeds.press_mm_s, speed)
     steps = []
     for number, (height, (x, y)) in enumerate(zip(heights, starts, strict=True)):

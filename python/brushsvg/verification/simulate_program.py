@@ -17,7 +17,7 @@ from ..machine.limits import astray, astray_between, broken_limits, height_astra
 from ..machine.move_extents import ways
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
-from ..machine.program import names_of_stations
+from ..machine.program import names_of_stations, touching_mm_s
 from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
@@ -286,7 +286,7 @@ def _careless(
     if not len(track.points):
         return
     slack, safe = slack_mm(cell), cell.heights.safe_mm
-    limit = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s)
+    limit = touching_mm_s(brush, cell)
     steps = [section.steps[number] for number in track.step]
     rapid = np.array([step.rapid for step in steps])
     speed = np.array([step.speed_mm_s for step in steps])
