@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 from ..errors import Error
 from ..files import read_bytes
+from .damage import refuse_damage
 
 if TYPE_CHECKING:
     from .design import Design
@@ -73,9 +74,7 @@ def read_drawing(path, options: ReadOptions = AS_DRAWN) -> Design:
     reader, data = _opened(path)
     design = reader(data, options)
     if not options.lenient:
-        for notice in design.notices:
-            if notice.damaged:
-                raise Error(notice.sentence, where=notice.where)
+        refuse_damage(design)
     return design
 
 

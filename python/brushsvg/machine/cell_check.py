@@ -10,8 +10,8 @@ import numpy as np
 from ..errors import Error
 from .cell import NEEDED_BY, RELOADS, Cell, Station, robot_from_paper, value_mm
 from .frames import moved, normal_tilt_deg
-from .limits import astray
 from .move_extents import ways
+from .workspace_limits import astray
 
 COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
 

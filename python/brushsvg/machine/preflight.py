@@ -11,9 +11,9 @@ from .. import _core
 from ..errors import Error
 from .cell import Cell, robot_from_paper
 from .corner_blending import blend_radii, blended
-from .limits import beyond_edges
 from .program import WHOLE_JOB, Job, forbidden
 from .rounding import as_written
+from .workspace_limits import beyond_edges
 
 DEFAULT_TOLERANCE_MM = 0.05
 

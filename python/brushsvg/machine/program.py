@@ -10,11 +10,11 @@ import numpy as np
 from ..errors import Error
 from .cell import Cell, Station, robot_from_paper
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
-from .limits import broken_limits, height_astray, walked_astray
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .posts import POSTS
 from .posts.text import told_apart
 from .rounding import Written, as_written
+from .workspace_limits import broken_limits, height_astray, walked_astray
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 

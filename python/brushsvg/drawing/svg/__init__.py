@@ -10,7 +10,7 @@ from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Notice
 from ..empty_drawing import nothing_to_paint
 from .context import local, one_line
-from .css_selectors import selected
+from .selection import selected
 from .settings import PREFIX, document_settings
 from .tree_walk import SVG, Walk
 from .viewport import Page, read_page

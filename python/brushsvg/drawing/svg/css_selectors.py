@@ -60,7 +60,7 @@ class _Node(ElementWrapper):
             yield child
 
 
-class _Tree:
+class Tree:
     """A document as selectors see it."""
 
     def __init__(self, root: ET.Element):
@@ -88,7 +88,7 @@ class Rules:
         self.notices: list[Notice] = []
         self._matcher = Matcher()
         sheets = [node for node in root.iter() if node.tag in _STYLES and self._counts(node)]
-        self._tree = _Tree(root) if sheets else None
+        self._tree = Tree(root) if sheets else None
         texts = ["".join(sheet.itertext()) for sheet in sheets]
         if (length := sum(map(len, texts))) > TEXT_LIMIT:
             raise Error(f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}", where="style")
@@ -147,18 +147,6 @@ class Rules:
 
     def _note(self, sentence: str) -> None:
         self.notices.append(Notice("style", sentence))
-
-
-def selected(root: ET.Element, text: str) -> set[ET.Element]:
-    """The elements that a CSS selector names. Error if it is none, or names nothing."""
-    tree = _Tree(root)
-    selectors = tree.compiled(tinycss2.parse_component_value_list(text))
-    if not selectors:
-        raise Error(f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path")
-    found = {node for node, wrapped in tree.nodes.items() if any(each.test(wrapped) for each in selectors)}
-    if not found:
-        raise Error(f"selector {text[:60]!r} matches no element of the drawing")
-    return found
 
 
 # What media queries say, as far as it is known beforehand.

@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import Error
 from ..design import SubPath
 from ..svg.path_to_cubics import LARGEST_MM
-from .typesetting import Placed, Setting
+from .placed_glyphs import Placed, Setting
 
 _MARGIN_MM = 20  # as around a drawing without a sheet of its own
 _CUBICS = 2_000_000  # a book page has a hundredth of it; beyond, the document alone takes 100 MB

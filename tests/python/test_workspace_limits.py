@@ -10,13 +10,13 @@ from programs import call
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.errors import Error
-from brushsvg.machine import limits
+from brushsvg.machine import workspace_limits as limits
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.limits import astray, astray_between
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.program import forbidden
 from brushsvg.machine.setup_programs import border, paper_height
+from brushsvg.machine.workspace_limits import astray, astray_between
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)
