@@ -24,6 +24,9 @@ UPPER_LEFT_FIRST = np.array([1.0, -1.0])
 # Of parts in a line of writing: with more a dot would come before the letter left of it, with less the roof of a
 # Chinese character after what stands below.
 HIGHER = 0.5
+# A dot is hardly longer than wide, hardly farther above its stem than it is high, and so many times lower than that at
+# least, and narrower at most.
+DOT, STEM = 1.3, 2.5
 # Lines of which one is so much flatter are a bar and what crosses it.
 FLATTER_RAD = np.radians(30)
 
@@ -137,13 +140,14 @@ def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
 def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray) -> list[set[int]]:
     """For each chain those that are painted before it: of two that begin at one place the one that leads farther to the
     left, a stem before its bowl; of two that cross the flatter one; and what it begins on, unless that lies to its
-    right, a bowl before the stem behind it."""
+    right, a bowl before the stem behind it; a bar from one line to another after both."""
     begin, pass_ = defaultdict(list), defaultdict(list)
     for k, chain in enumerate(chains):
         begin[chain[0].ends[0]].append(k)
         for crossing in {crossing for piece in chain for crossing in piece.through}:
             pass_[crossing].append(k)
     begin.pop(None, None)
+    end = [chain[-1].ends[1] for chain in chains]
     steep = [float(np.arctan2(*np.abs(line[-1] - line[0])[::-1])) for line in lines]
     to_right = [
         float(np.arctan2(c[0] - line[0, 0], line[0, 1] - c[1]))
@@ -158,8 +162,14 @@ def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.nda
             if steep[one] < steep[two] - FLATTER_RAD:
                 earlier[two].add(one)
         for host, guest in product(pass_[crossing], begin[crossing]):
-            if host != guest and centres[host, 0] <= centres[guest, 0]:
+            if host == guest:
+                continue
+            if centres[host, 0] <= centres[guest, 0]:
                 earlier[guest].add(host)
+            for other in pass_.get(end[guest], ()):
+                bar = steep[guest] < min(FLATTER_RAD, steep[host] - FLATTER_RAD, steep[other] - FLATTER_RAD)
+                if bar and other not in (host, guest):
+                    earlier[guest] |= {host, other}
     return earlier
 
 
@@ -180,4 +190,22 @@ def in_rows(boxes: np.ndarray) -> list[int]:
         rows[-1].append(k)
         floor = min(floor, boxes[k, 1])
     across = (boxes[:, 0] + boxes[:, 2]) - HIGHER * (boxes[:, 1] + boxes[:, 3])
-    return [k for row in rows for k in sorted(row, key=lambda k: across[k])]
+    return _dots_last([k for row in rows for k in sorted(row, key=lambda k: across[k])], boxes)
+
+
+def _dots_last(order: list[int], boxes: np.ndarray) -> list[int]:
+    """The dots of i and j after their stems. Those of Chinese characters, over what is wider, stay before it."""
+    sizes = boxes[:, 2:] - boxes[:, :2]
+    for dot in [k for k in order if sizes[k].max() < DOT * sizes[k].min()]:
+        stems = [
+            k
+            for k in order
+            if 0 <= boxes[dot, 1] - boxes[k, 3] < DOT * sizes[dot, 1]
+            and min(boxes[k, 2], boxes[dot, 2]) > max(boxes[k, 0], boxes[dot, 0])
+            and sizes[k, 0] < STEM * sizes[dot, 0]
+            and sizes[k, 1] > STEM * sizes[dot, 1]
+        ]
+        if stems:
+            order.remove(dot)
+            order.insert(order.index(max(stems, key=lambda k: boxes[k, 3])) + 1, dot)
+    return order
