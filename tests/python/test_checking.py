@@ -517,6 +517,10 @@ HARMLESS = {
         (r"(?m)^(M3 S6\d+\n)", r"\1\1"),
         (r"(?m)^(G1 X\S+ Y\S+) S(\d+)\n(G1 X\S+ Y\S+) S\2\n", r"\1 S\2\n\3\n"),
         (r"(?m)^F1200\.0", "F1080.0"),
+        (r"(?m)^M3 S640\n(G4 P0\.200\n)", r"\1"),  # the lift's steps one less, and waited for all the same
+        (r"(?m)^(M3 S640\n)(G4 P\S+\n)", r"\2\1"),
+        (r"(?m)^M3 S600\n(G4 P0\.017\n(?:G4 P0\.150\n)?F1200)", r"M3\n\1"),  # landed on the first way
+        (r"(?m)^F1200\.0\n(M3 S640\n)", r"F0.0\n\1"),  # nothing goes sideways at it
     ],
     "ur5e": [
         (r"(?m)^  movel", "movel"),
@@ -801,14 +805,14 @@ def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
 
 def test_a_blend_may_differ_by_what_rounded_moves_turn():
     """It hangs on the angle between two moves: a thousandth of a millimetre turns one of a millimetre much."""
-    like = _Alike(replace(find_cell("ur5e"), decimals=3), knows_speeds=True)
+    like = _Alike(replace(find_cell("ur5e"), decimals=3))
 
     def blend(mm):
         return Act(1, "move", "movep", (10.0, 20.0, -3.0), (20.0, 500.0), (mm,))
 
     assert like.is_same(blend(0.573), blend(0.540))
     assert not like.is_same(blend(0.900), blend(0.540))
-    like = _Alike(replace(find_cell("ur5e"), decimals=5), knows_speeds=True)
+    like = _Alike(replace(find_cell("ur5e"), decimals=5))
     assert not like.is_same(blend(0.573), blend(0.540))
 
 
@@ -825,6 +829,43 @@ def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
     for tolerance in ("0.0026", "0.03"):
         assert call(capsys, *words, tolerance)[0] == 0
         assert call(capsys, "check", "two.script", "two.svg", "--cell", "coarse.toml")[0] == 0
+
+
+@pytest.mark.parametrize("drawing", [(), ("two.svg",)])
+def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_told(desk, capsys, drawing):
+    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    text = (desk / "two.nc").read_text()
+    for old, new, told in (
+        (r"(?m)^M3 S60[04]\n", "M3\n", "brushsvg would write"),
+        (r"(?m)^F1200\.0\nG1", "F0.0\nG1", "has no feed"),
+        (r"(?m)^F1200\.0\nG1", "F-1200.0\nG1", "is no feed"),
+    ):
+        (desk / "two.nc").write_text(edited(old, new, 0)(text))
+        status, _, err = call(capsys, "check", "two.nc", *drawing)
+        assert status == 1 and any(told in line for line in err), (old, err)
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
+    """Alone, too: a time may only be shorter by what lowered feeds have added since."""
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    seconds, length = (int(re.search(rf"{word}(\d+)", text)[1]) for word in ("time: about ", "length: "))
+    for drawing in ((), ("two.svg",)):
+        for old, new in (
+            (f"about {seconds} s", f"about {seconds - (3 if drawing else 5)} s"),
+            (f"about {seconds} s", f"about {seconds + 5} s"),
+            (f"length: {length} mm", f"length: {length * 9 // 10} mm"),
+            (f"length: {length} mm", f"length: {length + 4} mm"),
+        ):
+            (desk / program).write_text(edited(old, new)(text))
+            status, _, err = call(capsys, "check", program, *drawing)
+            assert status == 1 and any("brushsvg would write" in line for line in err), (drawing, new)
+    paint = {"ur5e": ("v=0.02000", "v=0.01000")}.get(name, ("F1200.0", "F600.0"))
+    (desk / program).write_text(text.replace(*paint))
+    status, _, err = call(capsys, "check", program)
+    assert (status, err) == (0, []), "slower since"
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])

@@ -167,7 +167,7 @@ def test_the_output_is_never_switched_off():
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     """Where the line before it was held, rounded heights do not tell to the value: a lift that begins four values
     later waits a tenth of a millimetre less, and was taken for one that was changed."""
-    like = _Alike(CELL, knows_speeds=True)
+    like = _Alike(CELL)
 
     def lift(waits_s):
         return Act(1, "lift", same=(510.0, waits_s, 500.0, 510.0))

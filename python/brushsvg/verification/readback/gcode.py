@@ -154,7 +154,7 @@ class _Reader:
 
     def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
-            if not values["F"] > 0:
+            if values["F"] < 0:
                 raise Error(f"line {number}: {line[:40]!r} is no feed")
             self.feed_mm_s = values["F"] / 60
         if not code:
