@@ -881,6 +881,56 @@ def test_a_servos_jump_within_a_lift_is_told(desk, capsys, drawing):
     assert status == 1 and any("at once while the brush touches" in line for line in err), err
 
 
+HUGE = "9" * 400
+NUMBERS = {
+    "linuxcnc-3axis": [r"(?<=Z-)3\.\d+", r"(?<=G1 X)\d+", r"(?<=F)480", r"(?<=G64 P)0"],
+    "grbl-servo": [r"(?<=S)636", r"(?<=F)360", r"(?<=G4 P)0"],
+    "ur5e": [r"(?<=v=)0\.02000", r"(?<=a=)0", r"(?<=r=)0", r"(?<=on_paper\()0", r"(?<=paper = p\[)-0"],
+}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", NUMBERS)
+def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(desk, capsys, name):
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    for old in NUMBERS[name]:
+        for new in (HUGE, "1" + 309 * "0", "12345678901"):
+            (desk / program).write_text(edited(old, new)(text))
+            status, _, err = call(capsys, "check", program, "two.svg")
+            assert (status, len(err)) == (1, 1) and "is larger than any number that brushsvg writes" in err[0]
+
+
+@pytest.mark.parametrize(("name", "most"), [("linuxcnc-3axis", 252), ("grbl-3axis", 79)])
+def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, most):
+    """LinuxCNC's interpreter stops at 253 letters; grbl keeps 79, which count no blanks."""
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    line = re.search(r"(?m)^G1 .*$", text)[0]
+    blanks = line.count(" ") if name == "grbl-3axis" else 0
+    for length in (most, most + 1):
+        longer = line + "0" * (length - len(line) + blanks)
+        (desk / program).write_text(text.replace(line, longer, 1))
+        status, _, err = call(capsys, "check", program, "two.svg")
+        assert (status == 0) == (length == most), err
+        assert length == most or f"has {length} letters, the controller reads no more than {most}" in err[0]
+
+
+def test_a_visit_to_the_paint_more_is_told_by_the_time_of_the_header(desk, capsys):
+    """Alone: nobody knows which colours were asked for, but each visit takes its time."""
+    station = '[[stations]]\nname = "ink"\nplace_mm = [-15, 10]\ndepth_mm = 5\nhold_s = 1\ndrip_s = 2\n'
+    text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "layer"\n' + station
+    (desk / "mine.toml").write_text(text)
+    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    visit = re.search(r"(?s)\(paint: ink\)\n.*?(?=\(stroke 1)", text)[0]
+    (desk / "two.ngc").write_text(text.replace("(stroke 2", f"{visit}F480.0\n(stroke 2"))
+    status, _, err = call(capsys, "check", "two.ngc", "--cell", "mine.toml")
+    assert status == 1 and any("(time: about" in line for line in err), err
+
+
 def test_a_title_that_stands_twice_is_told(desk, capsys):
     assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
