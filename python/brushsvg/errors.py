@@ -28,8 +28,14 @@ class Error(ValueError):
         self.value = value
         self.range = range
         self.file = file
-        for name in filter(None, (file, where)):
+        for name in (name for name in (file, where) if isinstance(name, str) and name):
             self.add_note(f"in {name}")  # for whoever meets it as a traceback
+
+
+def need(value, kind: type | tuple[type, ...], what: str) -> None:
+    """Error for a value of another Python type than what it should be, in words."""
+    if not isinstance(value, kind):
+        raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}")
 
 
 def lacking(what: str, *packages: str) -> Error:

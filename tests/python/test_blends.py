@@ -82,6 +82,14 @@ def test_a_robot_does_not_blend_where_it_turns_back_or_presses():
     assert (blend_radii(path, Blending(0.1)) > 0).any()
 
 
+def test_corners_in_the_air_are_cut_by_little_however_coarse_the_plan():
+    """With 2 mm the tool went sideways from 4.8 mm below the safe height on."""
+    cell = find_cell("linuxcnc-3axis")
+    coarse = replace(cell, blending=replace(cell.blending, tolerance_mm=2.0))
+    assert as_exact_as(coarse, 10.0).blending.tolerance_mm == pytest.approx(0.04)
+    assert as_exact_as(coarse, 0.05).blending.tolerance_mm == pytest.approx(0.01)
+
+
 def test_without_tolerance_nothing_is_cut():
     assert blended(CORNER, blend_radii(CORNER, Blending(0.0)))[0] is CORNER
 

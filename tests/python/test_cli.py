@@ -401,7 +401,7 @@ def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys
     status, _, err = run(capsys, *command.split(), out, *flags.split())
     assert (status, len(err)) == (1, 1)
     suffix = Path(out).suffix.lower()
-    assert f"extension '{suffix}' is neither .json" in err[0]
+    assert err[0].startswith(f"brushsvg: {out}: the extension '{suffix}' is neither .json"), "not the drawing"
     assert err[0].endswith(f"; for {suffix} give --cell {cells}")
     for cell in cells.split(" or "):  # which is true of each
         assert run(capsys, "height", out, "--cell", cell)[0] == 0

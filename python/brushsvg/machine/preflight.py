@@ -27,9 +27,15 @@ def problems(
 
 
 def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
-    """The cell, cutting corners by at most a fifth of a plan's tolerance: they must not use it up."""
-    cut_mm = min(cell.blending.tolerance_mm, tolerance_mm / 5)
+    """The cell, cutting corners by at most a fifth of a plan's tolerance: they must not use it up. Nor by more than
+    CUT_IN_AIR_MM, or the tool would begin to go sideways well below the safe height."""
+    cut_mm = min(cell.blending.tolerance_mm, tolerance_mm / 5, CUT_IN_AIR_MM)
     return replace(cell, blending=replace(cell.blending, tolerance_mm=cut_mm))
+
+
+CUT_IN_AIR_MM = (
+    0.04  # a right angle that is cut by so much is left 0.04 / tan(22.5 degrees) = 0.1 mm before it
+)
 
 
 def check_rounding(cell: Cell, tolerance_mm: float) -> None:

@@ -14,7 +14,7 @@ from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .posts import POSTS
 from .posts.text import told_apart
 from .rounding import Written, as_written
-from .workspace_limits import broken_limits, height_astray, walked_astray
+from .workspace_limits import broken_limits, height_astray, touching_mm_s, walked_astray
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
@@ -95,11 +95,6 @@ def over(point, height_mm: float) -> np.ndarray:
 def approach_mm_s(brush, cell: Cell) -> float:
     """In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit."""
     return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
-
-
-def touching_mm_s(brush, cell: Cell) -> float:
-    """The most that the brush's tip may have where it touches."""
-    return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
 
 
 def names_of_stations(cell: Cell) -> dict[Station, str]:

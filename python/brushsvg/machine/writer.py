@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, need
 from ..files import write_files
 from .cell import Cell
 from .cell_file import cell_names, find_cell, parse_cell, write_cell
@@ -94,6 +94,7 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
+    need(title, str, "a title")
     # a cell made by hand must be one that a file may hold: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)

@@ -16,8 +16,14 @@ from ..machine.frames import moved
 from ..machine.move_extents import ways
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
-from ..machine.program import names_of_stations, touching_mm_s
-from ..machine.workspace_limits import astray, astray_between, broken_limits, height_astray
+from ..machine.program import names_of_stations
+from ..machine.workspace_limits import (
+    astray,
+    astray_between,
+    broken_limits,
+    height_astray,
+    touching_mm_s,
+)
 from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper

@@ -62,7 +62,13 @@ def check_file(args) -> None:
                 drawn = work.strokes if made.first_stroke == 1 else None
         told = against_regenerated.Told(*_told_by(made, work))
         again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
-        changed = again and against_regenerated.differing_line(text, read, again, cell, speeds is not None)
+        least_s = None
+        if again and speeds is None:  # feeds may have been lowered since its time was told
+            fastest = [again.touching_mm_s] * len(ran.plan.passes)
+            least_s = duration_s(
+                against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
+            )
+        changed = again and against_regenerated.differing_line(text, read, again, cell, least_s)
         problems = problems + ([("", changed)] if changed else [])
         shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
         if args.preview:

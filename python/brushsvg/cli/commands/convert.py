@@ -25,9 +25,11 @@ def convert_file(args) -> None:
     notes = outputs.notes(work)
     if args.order == "nearest":
         work, notes = preparation.nearest_first(work), (*notes, "order: nearest first")
+    if suffix_of(args.output) != ".json":
+        with about(args.output):
+            writer.post_for(suffix_of(args.output), cell)
     with about(args.input):
         if suffix_of(args.output) != ".json":
-            writer.post_for(suffix_of(args.output), cell)
             preflight.check_rounding(cell, work.options.tolerance_mm)
         marks = prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
         problems = preflight.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)

@@ -23,8 +23,9 @@ def border_file(args) -> None:
     cell = cell_of(args)
     work, marks, *_ = look(args, cell, outlines=False)
     cell = preflight.as_exact_as(cell, work.options.tolerance_mm)
-    with about(args.input):
+    with about(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
+    with about(args.input):
         around_mm = around(preflight.bounds_mm(marks, work.brush))
         made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
         title, count = f"border of {work.title or 'untitled'}", len(work.plan.passes)
@@ -43,8 +44,9 @@ def height_file(args) -> None:
     check_places(args.output)
     cell = preflight.as_exact_as(cell_of(args), preflight.DEFAULT_TOLERANCE_MM)
     brush = brush_of(args) or find_brush(preparation.DEFAULT_BRUSH)
-    with about(cell.name):
+    with about(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
+    with about(cell.name):
         made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
         heights_mm = (args.highest, args.lowest, args.step)
         header = header_lines.height_header(brush.name, args.sheet, heights_mm, made)
