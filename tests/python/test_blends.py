@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import problems
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -12,7 +13,7 @@ from brushsvg.cli import main
 from brushsvg.machine.cell import Blending
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.corner_blending import blend_radii, blended, turns_rad
-from brushsvg.machine.preflight import as_exact_as, problems
+from brushsvg.machine.preflight import as_exact_as
 
 CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
 

@@ -173,19 +173,31 @@ def test_the_file_is_read_back():
     [
         ({"format": "x"}, "format", "does not say"),
         ({"version": 2}, "version", "version 2 of brushsvg/chart is not known; known is 1"),
+        ({"version": True}, "version", "version True of"),
+        ({"markers": [{"id": True, "corners_mm": [[0, 0]] * 4}]}, "markers[0]", "needs an id"),
+        (
+            {"markers": [{"id": 0, "corners_mm": [[0, 0]] * 3 + [[0, 0, 0]]}]},
+            "markers[0].corners_mm[3]",
+            "2 finite",
+        ),
+        (
+            {"strokes": [{"id": "a", "kind": "arc", "depth_mm": True}]},
+            "strokes[0].depth_mm",
+            "True is not a finite number",
+        ),
         ({"dictionary": "DICT_6X6"}, "dictionary", "must be of DICT_4X4_50"),
         ({"plan": None}, "plan", "has no plan"),
         ({"markers": [{"id": 0}]}, "markers[0]", "four corners_mm"),
         (
             {"markers": [{"id": 0, "corners_mm": [[0, 0]] * 3 + [[0, None]]}]},
-            "markers[0].corners_mm",
-            "2 finite",
+            "markers[0].corners_mm[3][1]",
+            "None is not a finite number",
         ),
         ({"strokes": []}, "strokes", "are not those of the plan"),
         (
             {"strokes": [{"id": "a", "kind": "arc", "depth_mm": "x"}]},
             "strokes[0].depth_mm",
-            "1 finite number",
+            "'x' is not a finite number",
         ),
     ],
 )
@@ -196,6 +208,8 @@ def test_a_damaged_file_names_the_key(change, where, said):
     assert refusal.value.where == where
     with pytest.raises(Error):
         read_chart(b"{")
+    with pytest.raises(Error, match="the key stands twice"):
+        read_chart(b'{"format": "brushsvg/chart", "format": "brushsvg/chart", "version": 1}')
 
 
 def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):

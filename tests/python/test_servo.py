@@ -8,14 +8,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from programs import call
+from programs import call, program
 from test_gcode import TWO, text_of
 
 from brushsvg.errors import Error
 from brushsvg.machine.cell import Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
-from brushsvg.machine.program import Job, program
+from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
 from brushsvg.verification.against_regenerated import _Alike
 from brushsvg.verification.readback import Act

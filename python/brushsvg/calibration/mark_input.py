@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import _core
+from .. import _core, json_fields
 from ..errors import Error
 
 FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
@@ -99,14 +99,9 @@ def _listed(marks, read) -> list[tuple[str, list]]:
         except Error as refusal:
             raise Error(f"{marks}: {refusal}", "marks", refusal.value) from None
         return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
-    if not isinstance(marks, list) or not all(isinstance(row, dict) for row in marks):
-        raise Error("this must be a list of objects, or the path of a marks.json", "marks")
     out = []
-    for i, row in enumerate(marks):
-        if unknown := [key for key in row if key not in ("stroke", "outline_mm", "note")]:
-            raise Error(
-                "this is not known here; known are stroke, outline_mm, note", f"marks[{i}].{unknown[0]}"
-            )
+    for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):
+        json_fields.refuse_unknown(row, ("stroke", "outline_mm", "note"), f"marks[{i}]")
         for key, kind, what in (("stroke", str, "a stroke's id"), ("outline_mm", list, "a list of rings")):
             if not isinstance(row.get(key), kind):
                 raise Error(f"{key} must be {what}", f"marks[{i}]")

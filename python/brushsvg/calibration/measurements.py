@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-import json
-import math
 import re
-from contextlib import suppress
 from dataclasses import dataclass, field
 
+from .. import json_fields
 from ..errors import Error
 
 FORMAT = "brushsvg/measurements"
@@ -173,38 +171,23 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
 
 
 def _read_json(text: str) -> Measurements:
-    try:
-        content = json.loads(text, object_pairs_hook=_once)
-    except Error:
-        raise
-    except (ValueError, RecursionError) as problem:
-        raise Error(f"this is not valid JSON: {problem}") from None
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise Error(f'the file does not say "format": "{FORMAT}"', "format")
-    if content.get("version") != 1:
-        raise Error(f"version {content.get('version')} of {FORMAT} is not known; known is 1", "version")
-    if unknown := [key for key in content if key not in (*_ABOUT, *_PAINTED)]:
-        raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0])
+    content = json_fields.document(text, FORMAT)
+    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), told=(*KINDS, "marks"))
     rows = {}
     for kind in KINDS:
-        listed = content.get(kind, [])
-        if not isinstance(listed, list) or not all(isinstance(row, dict) for row in listed):
-            raise Error("this must be a list of objects", kind)
-        if listed:
+        if listed := json_fields.objects(content.get(kind, []), kind):
             rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
         raise Error("name and about must be text", "name")
     span = content.get("depth_range_mm")
     if span is not None:
-        if not isinstance(span, list) or len(span) != 2:
-            raise Error("this must be two numbers, the least and the greatest depth", "depth_range_mm")
-        span = tuple(_number(value, "depth_range_mm") for value in span)
+        span = json_fields.numbers(span, "depth_range_mm", 2)
         if not 0 <= span[0] < span[1] <= LONGEST_MM:
             raise Error(
                 f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
             )
-    speed = _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
     if "marks" not in content:
         if lost := [key for key in _PAINTED if key in content]:
             raise Error("this says something of marks, and there are none", lost[0])
@@ -223,33 +206,22 @@ def _read_json(text: str) -> Measurements:
 def _expected(given) -> dict:
     if not isinstance(given, dict):
         raise Error("this must be an object", "expected")
-    if unknown := [key for key in given if key not in EXPECTED]:
-        raise Error(f"this is not known; known are {', '.join(EXPECTED)}", f"expected.{unknown[0]}")
-    out = {key: _number(value, f"expected.{key}") for key, value in given.items()}
-    for key, value in out.items():
-        if not 0 <= value <= 30:
-            raise Error(f"{value:g} is outside the range [0, 30]", f"expected.{key}", value)
-    return out
+    json_fields.refuse_unknown(given, EXPECTED, "expected")
+    return {key: json_fields.number(value, f"expected.{key}", 0, 30) for key, value in given.items()}
 
 
 def _row(kind: str, row: dict, where: str) -> Row:
     names = ("depth_mm", *KINDS[kind])
     series = _SERIES if kind == "angles" else ()
-    if unknown := [key for key in row if key not in (*names, *series, "note")]:
-        raise Error(
-            f"this is not known here; known are {', '.join((*names, *series, 'note'))}",
-            f"{where}.{unknown[0]}",
-        )
+    json_fields.refuse_unknown(row, (*names, *series, "note"), where)
     numbers = {}
     for name in names:
         if name not in row:
             raise Error(f"the key {name} is missing", where)
-        numbers[name] = _number(row[name], f"{where}.{name}")
+        numbers[name] = json_fields.number(row[name], f"{where}.{name}")
     for name in series:
         values = row.get(name, [] if name == "beta_deg" else None)
-        if not isinstance(values, list):
-            raise Error("this must be a list of numbers", f"{where}.{name}")
-        numbers[name] = tuple(_number(value, f"{where}.{name}[{i}]") for i, value in enumerate(values))
+        numbers[name] = json_fields.numbers(values, f"{where}.{name}")
     depth = numbers.pop("depth_mm")
     if not 0 < depth <= LONGEST_MM:
         raise Error(f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, depth)
@@ -259,19 +231,3 @@ def _row(kind: str, row: dict, where: str) -> Row:
                 f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
             )
     return Row(kind, where, depth, numbers)
-
-
-def _number(value, where: str) -> float:
-    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
-        with suppress(OverflowError):  # an integer beyond all floats
-            return float(value)
-    raise Error(f"{value!r:.24} is not a finite number", where)
-
-
-def _once(pairs: list[tuple[str, object]]) -> dict:
-    """An object; Error for a key that stands twice, of which one would be lost."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise Error("the key stands twice", next(name for name in names if names.count(name) > 1))
-    return found

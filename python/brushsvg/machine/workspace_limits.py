@@ -18,15 +18,15 @@ def touching_mm_s(brush, cell: Cell) -> float:
     return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
 
 
-def broken_limits(plan, brush, cell: Cell) -> list[tuple[str, str]]:
-    """(stroke or station, sentence) for each limit that the plan breaks wherever the paper lies.
+def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[tuple[str, str]]:
+    """(stroke or station, sentence) for each limit that passes break wherever the paper lies.
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    problems = [] if plan.passes else [("", "there is nothing to paint")]
+    problems = [] if passes else [("", "there is nothing to paint")]
     limit = touching_mm_s(brush, cell)
     whose = f"brush {brush.name}" if limit == brush.max_speed_mm_s else f"cell {cell.name}"
-    for a_pass in plan.passes:
+    for a_pass in passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         if len(poses) == 0:
             sentences = ["the pass has no poses"]
@@ -45,7 +45,7 @@ def broken_limits(plan, brush, cell: Cell) -> list[tuple[str, str]]:
     for station in cell.stations:
         if station.by_hand:
             continue  # at the safe height
-        width, height = plan.sheet_mm
+        width, height = sheet_mm
         on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         if any(place_inside(ways([[point]]), *on_sheet) is not None for point in path):

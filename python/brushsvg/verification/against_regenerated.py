@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from .. import _core
 from ..machine.cell import Cell, value_mm
 from ..machine.header_lines import header_of
 from ..machine.motion import Program, duration_s, painting_mm
+from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
 from ..machine.program import Job, unchecked_program
 from ..machine.writer import text_of
@@ -45,12 +45,12 @@ def again(
             _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs)
             for each, speed in zip(passes, speeds_mm_s, strict=True)
         ]
-    plan = SimpleNamespace(sheet_mm=ran.plan.sheet_mm, passes=[None] * before + list(passes))
+    loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
-    made = unchecked_program(plan, brush, cell, (), job)
+    made = unchecked_program(loads, brush, cell, job)
     if told is None:
         return made
-    return replace(made, header=header_of(told.title, brush.name, plan, told.notes, made, job))
+    return replace(made, header=header_of(told.title, brush.name, loads, told.notes, made, job))
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             waits_s.append(np.array([section.steps[number].wait_s for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
-    problems += broken_limits(plan, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
+    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
     return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines), tuple(waits_s))
 
 
