@@ -120,7 +120,7 @@ SHAPES = {
         True,
     ),
     "hatch of edges": (add_edges, EDGES, True),
-    "mpolygon": (lambda m: m.add_mpolygon(fill_color=1).paths.add_polyline_path(SQUARE, is_closed=True), ROUND, True),
+    "mpolygon": (lambda m: m.add_mpolygon().paths.add_polyline_path(SQUARE, is_closed=True), ROUND, True),
     "circle seen from below": (
         lambda m: m.add_circle((-10, 20), 30, dxfattribs={"extrusion": (0, 0, -1)}),
         circle((10, 20), 30),
@@ -137,7 +137,7 @@ SHAPES = {
         False,
     ),
 }  # fmt: skip
-FILLED = {"solid", "trace", "hatch", "hatch of edges", "mpolygon"}
+FILLED = {"solid", "trace", "hatch", "hatch of edges"}
 each_shape = pytest.mark.parametrize("name", SHAPES)
 
 

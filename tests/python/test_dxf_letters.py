@@ -6,9 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from dxf_text import drawing, encoded, only, read, text_dxf
-from fontTools.fontBuilder import FontBuilder
-from fontTools.pens.ttGlyphPen import TTGlyphPen
+from dxf_text import drawing, encoded, only, read, save_font, text_dxf
 
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.dxf import read_dxf
@@ -17,30 +15,7 @@ from brushsvg.errors import Error
 
 ALIGN = ezdxf.enums.TextEntityAlignment
 FOLDERS = ezdxf.fonts.font_manager.FONT_DIRECTORIES
-TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # p goes down to -200
 LIKE_SHX = "the drawing's SHX fonts are no strokes here"
-
-
-def save_font(path, family, wide=600):
-    """A, x and p are boxes of that width, 1000 to the em and 100 between them, A 700 high."""
-    builder = FontBuilder(1000, isTTF=True)
-    builder.setupGlyphOrder([".notdef", "space", "A", "x", "p"])
-    builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space"})
-    glyphs = {"space": TTGlyphPen(None).glyph()}
-    for name, top in TOPS.items():
-        pen, bottom = TTGlyphPen(None), -200 if name == "p" else 0
-        pen.moveTo((0, bottom))
-        for corner in ((0, top), (wide, top), (wide, bottom)):
-            pen.lineTo(corner)
-        pen.closePath()
-        glyphs[name] = pen.glyph()
-    builder.setupGlyf(glyphs)
-    builder.setupHorizontalMetrics({name: (wide + 100, 0) for name in glyphs})
-    builder.setupHorizontalHeader(ascent=800, descent=-200)
-    builder.setupNameTable({"familyName": family, "styleName": "Regular"})
-    builder.setupOS2()
-    builder.setupPost()
-    builder.save(path)
 
 
 @pytest.fixture
@@ -102,10 +77,10 @@ def test_text_is_a_filled_shape_in_its_font(fonts):
     ("align", "box"),
     [
         ("LEFT", (0, 0, 13, 7)),
-        ("CENTER", (-6.5, 0, 6.5, 7)),
-        ("RIGHT", (-13, 0, 0, 7)),
+        ("CENTER", (-7, 0, 6, 7)),
+        ("RIGHT", (-14, 0, -1, 7)),
         ("TOP_LEFT", (0, -7, 13, 0)),
-        ("MIDDLE_CENTER", (-6.5, -3.5, 6.5, 3.5)),
+        ("MIDDLE_CENTER", (-7, -3.5, 6, 3.5)),
     ],
 )
 @pytest.mark.parametrize("turned", [0, 90])
@@ -126,9 +101,9 @@ def test_text_is_aligned_turned_and_stretched(fonts, align, box, turned):
 def test_text_fits_between_two_points(fonts):
     document = in_boxes()
     text = document.modelspace().add_text("AA", height=7, dxfattribs={"style": "Boxes"})
-    text.set_placement((0, 0), (26, 0), align=ALIGN.FIT)
+    text.set_placement((0, 0), (28, 0), align=ALIGN.FIT)
     (element,) = read(document).elements
-    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]
+    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]  # and the distance to a next letter, 2
 
 
 def test_text_in_blocks_and_from_below(fonts):
