@@ -131,6 +131,63 @@ def test_attributes_are_text_at_their_own_place(fonts):
     assert element.colour == "#00ff00"
 
 
+def test_constant_attributes_are_text_and_definitions_elsewhere_are_named(fonts):
+    document = in_boxes()
+    block, msp = document.blocks.new("b"), document.modelspace()
+    for flags in (0, 1, 2, 3):
+        block.add_attdef("T", (20 * flags, 0), "A", height=7, dxfattribs={"style": "Boxes", "flags": flags})
+    msp.add_blockref("b", (0, 0))
+    msp.add_attdef("T", (0, 50), "A", height=7, dxfattribs={"style": "Boxes"})
+    design = read(document)
+    (element,) = design.elements
+    assert boxes(element) == [(40, 0, 46, 7)]
+    assert "attribute definitions are no text of the drawing: 1 entity left out" in sentences(design)
+
+
+def test_codes_of_text(fonts):
+    document = in_boxes()
+    for words in ("%%065", "%%uA"):
+        document.modelspace().add_text(words, height=7, dxfattribs={"style": "Boxes"})
+    design = read(document)
+    assert [boxes(element) for element in design.elements] == [[(0, 0, 6, 7)]] * 2
+    assert sum("lines along the letters" in sentence for sentence in sentences(design)) == 1
+
+
+@pytest.mark.parametrize("kind", ["TEXT", "MTEXT"])
+def test_text_that_does_not_say_its_height_is_damaged(fonts, kind):
+    line = "0 LINE 8 0 10 0 20 0 11 5 21 5"
+    design = read_dxf(
+        text_dxf(line, f"0 {kind} 8 0 10 0 20 0 1 A"), ReadOptions(sheet_mm=(99, 99), units="mm")
+    )
+    assert [(notice.sentence, notice.damaged) for notice in design.notices] == [
+        ("it is damaged (it has no height): left out", True)
+    ]
+
+
+def test_letters_of_several_heights_in_one_word_stand_on_one_line(fonts):
+    document = in_boxes()
+    document.modelspace().add_mtext(r"A{\H2x;A}", {"style": "Boxes", "char_height": 7, "insert": (0, 50)})
+    small, large = read(document).elements
+    assert (boxes(small), boxes(large)) == ([(0, 36, 6, 43)], [(7, 36, 19, 50)])
+
+
+@pytest.mark.parametrize(
+    ("words", "attributes", "sentence"),
+    [
+        (r"A{\T2;A}", {}, "the distances between its letters"),
+        ("A", {"bg_fill": 3}, "its background is not painted"),
+        ("A", {"flow_direction": 3}, "its letters one below the other"),
+        (r"A{\H2x;A}", {"line_spacing_style": 2}, "its lines are set as far apart"),
+        (r"A {\H0;A}", {}, "it is damaged (its height is 0.0)"),
+    ],
+)
+def test_what_of_mtext_is_not_read_is_named(fonts, words, attributes, sentence):
+    document = in_boxes()
+    document.modelspace().add_line((0, 0), (5, 5))
+    document.modelspace().add_mtext(words, {"style": "Boxes", "char_height": 7} | attributes)
+    assert any(told.startswith(sentence) for told in sentences(read(document)))
+
+
 def test_an_attribute_may_have_lines(fonts):
     document = in_boxes(version="R2018")
     document.blocks.new("b").add_circle((0, 0), 1)
