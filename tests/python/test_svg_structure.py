@@ -237,7 +237,8 @@ def test_a_transform_of_the_drawing_itself_is_told():
     text = HEAD.replace("<svg", '<svg transform="rotate(20)"') + '<path d="M10 0H20"/></svg>'
     design = read_svg(text.encode())
     assert lines(design)[0][1] == (10, 0)
-    assert [notice.damaged for notice in design.notices] == [True]
+    (notice,) = design.notices
+    assert notice.damaged and notice.sentence.endswith("put it on a group around all that is drawn")
 
 
 @pytest.mark.parametrize(
