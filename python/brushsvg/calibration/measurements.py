@@ -68,10 +68,12 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         return found
     depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
     if not depths:
-        raise Error("there is no measurement in it")
+        raise Error("there is no measurement in it", code="measurement-missing")
     if depths[-1] <= SHALLOWEST_MM:
         raise Error(
-            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres", "depth_mm"
+            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres",
+            "depth_mm",
+            code="depth-out-of-range",
         )
     found.depths_mm.extend(depths)
     return found
@@ -84,7 +86,10 @@ def read_widths(text: str) -> list[tuple[float, float]]:
         for name, value in row.items():
             if not 0 < value <= LONGEST_MM:
                 raise Error(
-                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm", f"{where}, {name}", value
+                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+                    f"{where}, {name}",
+                    value,
+                    code="out-of-range",
                 )
         pairs.append((row["depth_mm"], row["width_mm"]))
     return pairs
@@ -96,7 +101,9 @@ def _read_table(text: str) -> Measurements:
         kind = row.pop("kind")
         if kind not in _TABLE:
             raise Error(
-                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}", where
+                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}",
+                where,
+                code="measurement-kind",
             )
         rows.setdefault(kind, []).append(_row(kind, row, where))
     return Measurements(rows)
@@ -117,17 +124,18 @@ def _table_rows(
             if any((line[name] or "").strip() for name in table.fieldnames):
                 rows.append((where, {name: (line[name] or "").strip() for name in columns}))
     except csv.Error as problem:
-        raise Error(f"this is not a table: {problem}") from None
+        raise Error(f"this is not a table: {problem}", code="not-a-table") from None
     told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
     for where, cell in told:
         if not _NUMBER.fullmatch(cell):
-            raise Error(f"{cell!r} is not a number", where)
+            raise Error(f"{cell!r} is not a number", where, code="not-a-number")
     points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
     if points and commas:
         raise Error(
             f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
             "numbers with a point",
             commas[0][0],
+            code="table-separators",
         )
     return [
         (where, row | {name: float(row[name].replace(",", ".")) for name in numbers}) for where, row in rows
@@ -149,15 +157,18 @@ def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
     if least:
         raise Error(
             f"the table needs a first line with {','.join(columns)}, or with semicolons or tabs for the commas; "
-            f"it lacks {' and '.join(least)}"
+            f"it lacks {' and '.join(least)}",
+            code="table-columns",
         )
     found = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
     if len(found) > 1:
         both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in found)
-        raise Error(f"its columns could be separated by {both}: write one of them", "line 1")
+        raise Error(
+            f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators"
+        )
     names = found[0].fieldnames
     if twice := [name for name in names if name and names.count(name) > 1]:
-        raise Error(f"the column {twice[0]} stands twice", "line 1")
+        raise Error(f"the column {twice[0]} stands twice", "line 1", code="key-twice")
     return found[0]
 
 
@@ -169,6 +180,7 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
             f"{surplus[0]!r} stands beyond the columns of the first line"
             + (f": {advice}" if separator == "," else ""),
             where,
+            code="table-columns",
         )
 
 
@@ -178,41 +190,54 @@ def _read_json(text: str) -> Measurements:
     except Error:
         raise
     except (ValueError, RecursionError) as problem:
-        raise Error(f"this is not valid JSON: {problem}") from None
+        raise Error(f"this is not valid JSON: {problem}", code="not-json") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise Error(f'the file does not say "format": "{FORMAT}"', "format")
+        raise Error(f'the file does not say "format": "{FORMAT}"', "format", code="format-unknown")
     if content.get("version") != 1:
-        raise Error(f"version {content.get('version')} of {FORMAT} is not known; known is 1", "version")
+        raise Error(
+            f"version {content.get('version')} of {FORMAT} is not known; known is 1",
+            "version",
+            code="version-unknown",
+        )
     if unknown := [key for key in content if key not in (*_ABOUT, *_PAINTED)]:
-        raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0])
+        raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0], code="key-unknown")
     rows = {}
     for kind in KINDS:
         listed = content.get(kind, [])
         if not isinstance(listed, list) or not all(isinstance(row, dict) for row in listed):
-            raise Error("this must be a list of objects", kind)
+            raise Error("this must be a list of objects", kind, code="wrong-type")
         if listed:
             rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
-        raise Error("name and about must be text", "name")
+        raise Error("name and about must be text", "name", code="wrong-type")
     span = content.get("depth_range_mm")
     if span is not None:
         if not isinstance(span, list) or len(span) != 2:
-            raise Error("this must be two numbers, the least and the greatest depth", "depth_range_mm")
+            raise Error(
+                "this must be two numbers, the least and the greatest depth",
+                "depth_range_mm",
+                code="wrong-type",
+            )
         span = tuple(_number(value, "depth_range_mm") for value in span)
         if not 0 <= span[0] < span[1] <= LONGEST_MM:
             raise Error(
-                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
+                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm",
+                "depth_range_mm",
+                code="depth-out-of-range",
             )
     speed = _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
     if "marks" not in content:
         if lost := [key for key in _PAINTED if key in content]:
-            raise Error("this says something of marks, and there are none", lost[0])
+            raise Error(
+                "this says something of marks, and there are none", lost[0], code="measurements-mixed"
+            )
         return Measurements(rows, name, about, span, speed)
     if rows:
         raise Error(
             "marks tell what the other kinds tell, and are fitted alone: leave these out, or make two files",
             next(iter(rows)),
+            code="measurements-mixed",
         )
     plan, marks = content.get("plan"), content["marks"]
     return Measurements(
@@ -222,13 +247,19 @@ def _read_json(text: str) -> Measurements:
 
 def _expected(given) -> dict:
     if not isinstance(given, dict):
-        raise Error("this must be an object", "expected")
+        raise Error("this must be an object", "expected", code="wrong-type")
     if unknown := [key for key in given if key not in EXPECTED]:
-        raise Error(f"this is not known; known are {', '.join(EXPECTED)}", f"expected.{unknown[0]}")
+        raise Error(
+            f"this is not known; known are {', '.join(EXPECTED)}",
+            f"expected.{unknown[0]}",
+            code="key-unknown",
+        )
     out = {key: _number(value, f"expected.{key}") for key, value in given.items()}
     for key, value in out.items():
         if not 0 <= value <= 30:
-            raise Error(f"{value:g} is outside the range [0, 30]", f"expected.{key}", value)
+            raise Error(
+                f"{value:g} is outside the range [0, 30]", f"expected.{key}", value, code="out-of-range"
+            )
     return out
 
 
@@ -239,24 +270,32 @@ def _row(kind: str, row: dict, where: str) -> Row:
         raise Error(
             f"this is not known here; known are {', '.join((*names, *series, 'note'))}",
             f"{where}.{unknown[0]}",
+            code="key-unknown",
         )
     numbers = {}
     for name in names:
         if name not in row:
-            raise Error(f"the key {name} is missing", where)
+            raise Error(f"the key {name} is missing", where, code="key-missing")
         numbers[name] = _number(row[name], f"{where}.{name}")
     for name in series:
         values = row.get(name, [] if name == "beta_deg" else None)
         if not isinstance(values, list):
-            raise Error("this must be a list of numbers", f"{where}.{name}")
+            raise Error("this must be a list of numbers", f"{where}.{name}", code="wrong-type")
         numbers[name] = tuple(_number(value, f"{where}.{name}[{i}]") for i, value in enumerate(values))
     depth = numbers.pop("depth_mm")
     if not 0 < depth <= LONGEST_MM:
-        raise Error(f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, depth)
+        raise Error(
+            f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+            where,
+            depth,
+            code="depth-out-of-range",
+        )
     for name, value in numbers.items():
         if name.endswith("_mm") and not isinstance(value, tuple) and abs(value) > LONGEST_MM:
             raise Error(
-                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
+                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true",
+                f"{where}.{name}",
+                code="out-of-range",
             )
     return Row(kind, where, depth, numbers)
 
@@ -265,7 +304,7 @@ def _number(value, where: str) -> float:
     if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
         with suppress(OverflowError):  # an integer beyond all floats
             return float(value)
-    raise Error(f"{value!r:.24} is not a finite number", where)
+    raise Error(f"{value!r:.24} is not a finite number", where, code="not-a-number")
 
 
 def _once(pairs: list[tuple[str, object]]) -> dict:
@@ -273,5 +312,7 @@ def _once(pairs: list[tuple[str, object]]) -> dict:
     found = dict(pairs)
     if len(found) < len(pairs):
         names = [name for name, _ in pairs]
-        raise Error("the key stands twice", next(name for name in names if names.count(name) > 1))
+        raise Error(
+            "the key stands twice", next(name for name in names if names.count(name) > 1), code="key-twice"
+        )
     return found

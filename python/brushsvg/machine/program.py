@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import Error
+from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .motion import Arc, Move, Program, Section, Wait, rise_over
@@ -39,15 +39,18 @@ def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WH
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    for where, sentence in forbidden(plan, brush, cell, job):
-        raise Error(sentence, where=where)
+    for notice in forbidden(plan, brush, cell, job):
+        raise Error(notice.sentence, where=notice.where, code=notice.code)
     if not 1 <= job.first_stroke <= len(plan.passes):
-        raise Error(f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job")
+        raise Error(
+            f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job",
+            code="stroke-unknown",
+        )
     return unchecked_program(plan, brush, cell, header, job)
 
 
-def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[tuple[str, str]]:
-    """(stroke or station, sentence) for each limit that is broken anywhere on the way of the whole job, whichever
+def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[Notice]:
+    """A notice of the stroke or station for each limit that is broken anywhere on the way of the whole job, whichever
     stroke it begins with, or on that of a visit to any station; empty when the robot may run it."""
     found = broken_limits(plan, brush, cell)
     if not all(np.isfinite(a_pass.poses_mm).all() for a_pass in plan.passes):
@@ -59,12 +62,12 @@ def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[tuple[str, 
     return list(dict.fromkeys(found))
 
 
-def astray_in(made: Program, sheet_mm) -> list[tuple[str, str]]:
-    """The sentences for a program's ways, its rise before the first move included."""
+def astray_in(made: Program, sheet_mm) -> list[Notice]:
+    """The same for a program's ways, its rise before the first move included."""
     found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
     post = POSTS.get(made.cell.language)
     if post and post.in_robot_frame:  # else it rises to the safe height over the paper
-        found += [("", said) for said in height_astray(made.rise_in_robot_mm, made.cell)]
+        found += height_astray(made.rise_in_robot_mm, made.cell)
     return found
 
 

@@ -28,13 +28,16 @@ def post_for(suffix: str, cell: Cell) -> Post:
             f"no program can be written in {cell.language!r}, the language of cell {cell.name}; "
             f"known: {', '.join(POSTS)}",
             where="language",
+            code="language-unknown",
         )
     if suffix not in post.extensions:
         other = cells_for(suffix)
         raise Error(
             f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
             f"{post.title}, which cell {cell.name} speaks"
-            + (f"; for {suffix} give --cell {' or '.join(other)}" if other else "")
+            + (f"; {suffix} is for cell {' or '.join(other)}" if other else ""),
+            code="program-format",
+            advice="give --cell" if other else "",
         )
     return post
 
@@ -98,6 +101,6 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
     suffix = Path(path).suffix.lower()
-    for where, sentence in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
-        raise Error(sentence, where=where)
+    for notice in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
+        raise Error(notice.sentence, where=notice.where, code=notice.code)
     write_files({path: encode(suffix, plan, brush, title, cell=cell)})

@@ -41,42 +41,44 @@ def read_chart(data: bytes) -> Chart:
     try:
         content = json.loads(data.decode("utf-8-sig", "replace"))
     except (ValueError, RecursionError) as problem:
-        raise Error(f"this is not valid JSON: {problem}") from None
+        raise Error(f"this is not valid JSON: {problem}", code="not-json") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise Error(f'the file does not say "format": "{FORMAT}"', "format")
+        raise Error(f'the file does not say "format": "{FORMAT}"', "format", code="format-unknown")
     if content.get("version") != VERSION:
         raise Error(
-            f"version {content.get('version')} of {FORMAT} is not known; known is {VERSION}", "version"
+            f"version {content.get('version')} of {FORMAT} is not known; known is {VERSION}",
+            "version",
+            code="version-unknown",
         )
     if content.get("dictionary") != DICTIONARY:
-        raise Error(f"the markers must be of {DICTIONARY}", "dictionary")
+        raise Error(f"the markers must be of {DICTIONARY}", "dictionary", code="chart-markers")
     if not isinstance(content.get("plan"), dict):
-        raise Error("the chart has no plan", "plan")
+        raise Error("the chart has no plan", "plan", code="key-missing")
     plan = _core.read_plan(json.dumps(content["plan"]))
     markers = tuple(_marker(row, f"markers[{i}]") for i, row in enumerate(_rows(content, "markers")))
     strokes = tuple(_stroke(row, f"strokes[{i}]") for i, row in enumerate(_rows(content, "strokes")))
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
-        raise Error("the strokes are not those of the plan, in its order", "strokes")
+        raise Error("the strokes are not those of the plan, in its order", "strokes", code="chart-strokes")
     return Chart(plan, strokes, markers, ())
 
 
 def _rows(content: dict, key: str) -> list[dict]:
     rows = content.get(key)
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise Error("this must be a list of objects", key)
+        raise Error("this must be a list of objects", key, code="wrong-type")
     return rows
 
 
 def _marker(row: dict, where: str) -> Marker:
     corners = row.get("corners_mm")
     if not isinstance(row.get("id"), int) or not isinstance(corners, list) or len(corners) != 4:
-        raise Error("a marker needs an id and four corners_mm", where)
+        raise Error("a marker needs an id and four corners_mm", where, code="wrong-type")
     return Marker(row["id"], tuple(_numbers(corner, 2, f"{where}.corners_mm") for corner in corners))
 
 
 def _stroke(row: dict, where: str) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
-        raise Error("a stroke needs an id and a kind, in words", where)
+        raise Error("a stroke needs an id and a kind, in words", where, code="wrong-type")
     (depth,) = _numbers([row.get("depth_mm")], 1, f"{where}.depth_mm")
     return Stroke(row["id"], row["kind"], depth, _numbers(row.get("box_mm"), 4, f"{where}.box_mm"))
 
@@ -84,5 +86,5 @@ def _stroke(row: dict, where: str) -> Stroke:
 def _numbers(values, count: int, where: str) -> tuple[float, ...]:
     sound = isinstance(values, list) and len(values) == count
     if not sound or not all(isinstance(v, int | float) and math.isfinite(v) for v in values):
-        raise Error(f"this must be {count} finite number{'s' * (count > 1)}", where)
+        raise Error(f"this must be {count} finite number{'s' * (count > 1)}", where, code="wrong-type")
     return tuple(float(v) for v in values)

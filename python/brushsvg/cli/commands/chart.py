@@ -33,7 +33,7 @@ def chart_file(args) -> None:
         marks = _core.simulate(made.plan, brush)
         problems = preflight.problems(made.plan, brush, marks, cell, preflight.DEFAULT_TOLERANCE_MM, job)
         if problems:
-            raise RefusedError([(args.output, *problem) for problem in folded(problems)])
+            raise RefusedError(args.output, folded(problems))
         title = f"calibration chart of brush {brush.name}"
         files = {args.output: writer.encode(suffix_of(args.output), made.plan, brush, title, (), cell, job)}
     if args.page:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...evaluation import report
 from ...machine import paint_reload, preflight, writer
 from ...machine.program import Job
@@ -20,7 +22,7 @@ def convert_file(args) -> None:
     work = prepare(args, cell)
     cell = preflight.as_exact_as(cell, work.options.tolerance_mm)
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
-    warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
+    warn(args.input, [notice for notice in work.notices if notice not in damaged])
     job = Job(args.z_offset, args.from_stroke)
     notes = outputs.notes(work)
     if args.order == "nearest":
@@ -31,12 +33,11 @@ def convert_file(args) -> None:
             preflight.check_rounding(cell, work.options.tolerance_mm)
         marks = prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
         problems = preflight.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
-        problems = folded([*problems, *((n.where, n.sentence) for n in damaged)])
+        problems = folded([*problems, *damaged])
         if damaged:
-            where, sentence = problems[-1]
-            problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")
+            problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
         if problems:
-            raise RefusedError([(args.input, *problem) for problem in problems])
+            raise RefusedError(args.input, problems)
         program = writer.encode(suffix_of(args.output), work.plan, work.brush, work.title, notes, cell, job)
         files = {args.output: program}
         if args.preview:

@@ -7,9 +7,10 @@ from ...drawing import ReadOptions, settings_in
 from ...drawing.layout import Layout
 from ...errors import Error
 from ...machine.cell import Cell
+from ...machine.cell_check import OF_EXAMPLE
 from ...machine.cell_file import cell_names, find_cell
 from ...pipeline import preparation
-from ..console import about, say
+from ..console import about, warn
 from .outputs import suffix_of
 
 
@@ -22,8 +23,10 @@ def settle(args, drawing: str, alone: bool = False) -> None:
             if getattr(args, kind) is None and said.get(kind, names[0]) not in names:
                 raise Error(
                     f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
-                    f"{', '.join(names)}: give --{kind}",
+                    f"{', '.join(names)}",
                     where="svg",
+                    code=f"{kind}-unknown",
+                    advice=f"give --{kind}",
                 )
     for name, value in said.items():
         if getattr(args, name, value) is None:
@@ -67,5 +70,4 @@ def options_of(args, cell: Cell, brush=None) -> preparation.Options:
 
 def warn_of_example(args, cell: Cell) -> None:
     if cell.paper.example and suffix_of(args.output) != ".json":
-        sentence = "the paper's place is an example: teach yours (brushsvg cell new --taught ...)"
-        say(cell.name, "paper", sentence)
+        warn(cell.name, [OF_EXAMPLE])

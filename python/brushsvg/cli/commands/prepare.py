@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from ...errors import Error
+from ...errors import Error, Notice
 from ...machine import paint_reload, preflight, writer
 from ...machine.cell import Cell
 from ...machine.program import WHOLE_JOB, Job
 from ...pipeline import prediction, preparation
-from ..console import about, say, stage, warn
+from ..console import about, stage, warn
 from .options import options_of
 from .outputs import suffix_of
 
@@ -20,7 +20,8 @@ def prepare(args, cell: Cell, brush=None, partly: bool = False) -> preparation.W
     if suffix_of(args.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
-                say(args.input, f"--{flag} has no effect on a plan, whose poses are fixed")
+                sentence = f"--{flag} has no effect on a plan, whose poses are fixed"
+                warn(args.input, [Notice("", sentence, code="flag-without-effect", about=flag)])
     with about(args.input):
         return preparation.prepare(args.input, options_of(args, cell, brush), stage, partly)
 
@@ -41,7 +42,7 @@ def look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool 
             work = preparation.in_loads(work, cell)
             too_long = paint_reload.too_long(work.plan, work.brush, cell)
         marks = prediction.predict(work, outlines, stage, whole)
-        warnings, forbidden = [(n.where, n.sentence) for n in work.notices], []
+        warnings, forbidden = [*work.notices], []
         if work.plan.passes or not work.refused:
             forbidden = preflight.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
         warnings += forbidden
