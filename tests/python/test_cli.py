@@ -398,8 +398,8 @@ def test_wrong_usage(desk, capsys, words):
     ],
 )
 def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
-    status, _, err = run(capsys, "--messages", "json", *command.split(), out, *flags.split())
-    (refusal,) = map(json.loads, err)
+    status = main(["--messages", "json", *command.split(), out, *flags.split()])
+    refusal = json.loads(capsys.readouterr().err)
     assert (status, refusal["code"], refusal["advice"]) == (1, "program-format", "give --cell")
     suffix = Path(out).suffix.lower()
     assert f"extension '{suffix}' is neither .json" in refusal["sentence"]

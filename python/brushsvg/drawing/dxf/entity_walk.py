@@ -98,7 +98,9 @@ class Walk:
         for layout in self.document.layouts:
             if not layout.is_modelspace:
                 count = sum(entity.dxftype() not in _SILENT for entity in layout)
-                self._counts[shown(layout.name), "paper space is not painted", None, "paper-space"] += count
+                self._leave_out(
+                    shown(layout.name), "paper space is not painted", code="paper-space", count=count
+                )
         for (where, why, layer, code), count in self._counts.items():
             if count:
                 entities = "1 entity" if count == 1 else f"{count} entities"
@@ -272,8 +274,10 @@ class Walk:
         joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
         self.pieces.append(Piece(name, place.name, pen, tuple(found), fill_rule, joinable))
 
-    def _leave_out(self, where: str, why: str, layer: str | None = None, *, code: str) -> None:
-        self._counts[where, why, layer, code] += 1
+    def _leave_out(
+        self, where: str, why: str, layer: str | None = None, *, code: str, count: int = 1
+    ) -> None:
+        self._counts[where, why, layer, code] += count
 
     def _note(
         self, where: str, sentence: str, layer: str | None, damaged: bool = False, *, code: str

@@ -106,4 +106,4 @@ def _some(told: list[tuple[str, str]], damaged: bool) -> list[Notice]:
     kept = [(where, shown(sentence).rstrip(".")) for where, sentence in told[:_MOST_NOTICES]]
     if more := len(told) - len(kept):
         kept.append(("file", f"and {more} more such problems"))
-    return [Notice(where, sentence, damaged, code="dxf-repaired") for where, sentence in kept]
+    return [Notice(where, sentence, damaged, code="dxf-repaired", about=sentence) for where, sentence in kept]
