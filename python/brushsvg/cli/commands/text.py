@@ -20,5 +20,5 @@ def text_file(args) -> None:
             width_mm=args.width,
             sheet_mm=args.sheet,
         )
-    warn(args.font, [(notice.where, notice.sentence) for notice in notices])
+    warn(args.font, notices)
     write(args, {args.output: drawing.encode()})

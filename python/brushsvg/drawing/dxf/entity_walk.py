@@ -88,7 +88,7 @@ class Walk:
         self.top = _Place(np.diag([mm_per_unit, mm_per_unit, mm_per_unit, 1.0]))
         self.pieces: list[Piece] = []
         self.notices: list[Notice] = []
-        self._counts: Counter[tuple[str, str, str | None]] = Counter()
+        self._counts: Counter[tuple[str, str, str | None, str]] = Counter()
         self._known: dict[tuple[str | None, float], list[Curve] | None] = {}
         self._entities = self._cubics = 0
 
@@ -98,11 +98,13 @@ class Walk:
         for layout in self.document.layouts:
             if not layout.is_modelspace:
                 count = sum(entity.dxftype() not in _SILENT for entity in layout)
-                self._counts[shown(layout.name), "paper space is not painted", None] += count
-        for (where, why, layer), count in self._counts.items():
+                self._leave_out(
+                    shown(layout.name), "paper space is not painted", code="paper-space", count=count
+                )
+        for (where, why, layer, code), count in self._counts.items():
             if count:
                 entities = "1 entity" if count == 1 else f"{count} entities"
-                self.notices.append(Notice(where, f"{why}: {entities} left out", layer=layer))
+                self.notices.append(Notice(where, f"{why}: {entities} left out", layer=layer, code=code))
         self.notices += self.letters.notices
 
     def _walk(self, entities, place: _Place) -> None:
@@ -113,6 +115,7 @@ class Walk:
                     f"the drawing unfolds to more than {_MOST_ENTITIES} entities, blocks in blocks counted "
                     "each time they are inserted",
                     where=_top(place.name),
+                    code="drawing-too-large",
                 )
             kind = shown(entity.dxftype(), 40)
             name = f"{place.name}/" if place.name else ""
@@ -122,7 +125,7 @@ class Walk:
                 if kind in _SILENT:
                     continue
                 if not isinstance(entity, ezdxf.entities.DXFGraphic):
-                    self._leave_out(kind, f"{kind} is not read")
+                    self._leave_out(kind, f"{kind} is not read", code="dxf-entity-unread")
                     continue
                 pen = self.pens.pen(entity, place.pen)
                 layer = pen.layer
@@ -130,33 +133,39 @@ class Walk:
             except Error:
                 raise
             except NoFontError:
-                self._leave_out(kind, _TEXT_ADVICE, layer)
+                self._leave_out(kind, _TEXT_ADVICE, layer, code="text-unread")
             except Exception as problem:  # whatever ezdxf meets in numbers that anyone may have written
-                self._note(name, f"it is damaged ({reason(problem)}): left out", layer, damaged=True)
+                self._note(
+                    name,
+                    f"it is damaged ({reason(problem)}): left out",
+                    layer,
+                    damaged=True,
+                    code="geometry-damaged",
+                )
 
     def _entity(self, entity, kind: str, name: str, pen: Pen, place: _Place) -> None:
         if entity.dxf.get("invisible", 0):
-            self._leave_out("invisible", "entities made invisible are not painted")
+            self._leave_out("invisible", "entities made invisible are not painted", code="hidden")
         elif kind == "INSERT":
             self._insert(entity, name, pen, place)
         elif pen.hidden:
-            self._leave_out(pen.layer, pen.hidden, pen.layer)
+            self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
         elif kind in _TEXT:
             lines = self.letters.outlines(entity, name, pen.layer)
             self._piece(entity, kind, name, pen, place, lines)
         elif kind == "MTEXT":
             self._parts(self.letters.parts(entity, name), name, pen, place)
         elif kind in _ENDLESS:
-            self._leave_out(kind, f"{kind} has no ends")
+            self._leave_out(kind, f"{kind} has no ends", code="line-without-ends")
         elif (lines := self._curves(entity, place.stretch)) is not None:
             self._piece(entity, kind, name, pen, place, lines)
         elif isinstance(entity, ezdxf.protocols.SupportsVirtualEntities):
             parts = list(ezdxf.protocols.virtual_entities(entity))
             if not parts:
-                self._leave_out(kind, f"{kind} is not read")
+                self._leave_out(kind, f"{kind} is not read", code="dxf-entity-unread")
             self._parts(parts, name, pen, place)
         else:
-            self._leave_out(kind, f"{kind} is not read")
+            self._leave_out(kind, f"{kind} is not read", code="dxf-entity-unread")
 
     def _parts(self, parts: list, name: str, pen: Pen, place: _Place) -> None:
         self._deeper(name, place)
@@ -172,25 +181,31 @@ class Walk:
 
     def _insert(self, insert, name: str, pen: Pen, place: _Place) -> None:
         if pen.frozen:
-            self._leave_out(pen.layer, pen.hidden, pen.layer)
+            self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
             return
         shown_here = [attribute for attribute in insert.attribs if not attribute.is_invisible]
         self._parts([_lines_of(attribute) for attribute in shown_here], name, pen, place)
         block = insert.block()
         block_name = shown(insert.dxf.get("name", ""), 40)
         if block is None:
-            self._note(name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True)
+            self._note(
+                name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True, code="dxf-block"
+            )
             return
         if block.block.is_xref:
-            self._note(
-                name, f"block {block_name!r} is kept in another file, which is not read: left out", pen.layer
-            )
+            sentence = f"block {block_name!r} is kept in another file, which is not read: left out"
+            self._note(name, sentence, pen.layer, code="dxf-block")
             return
         key = insert.dxf.name.casefold()
         if key in place.blocks:
-            raise Error(f"block {block_name!r} inserts itself", where=_top(name))
+            raise Error(f"block {block_name!r} inserts itself", where=_top(name), code="dxf-block")
         if ezdxf.xclip.XClip(insert).is_clipping_enabled:
-            self._note(name, "its clipping (XCLIP) is not read: it counts as whole", pen.layer)
+            self._note(
+                name,
+                "its clipping (XCLIP) is not read: it counts as whole",
+                pen.layer,
+                code="clipping-unread",
+            )
         self._deeper(name, place)
         matrix = np.array(list(insert.matrix44())).reshape(4, 4)
         for suffix, shift in self._array(insert, name):
@@ -207,7 +222,9 @@ class Walk:
         rows, columns = max(rows, 1), max(columns, 1)
         if rows * columns > _MOST_ENTITIES:
             raise Error(
-                f"{rows} rows of {columns} columns are more than {_MOST_ENTITIES} entities", where=_top(name)
+                f"{rows} rows of {columns} columns are more than {_MOST_ENTITIES} entities",
+                where=_top(name),
+                code="drawing-too-large",
             )
         if rows == columns == 1:
             return [("", np.zeros(3))]
@@ -223,7 +240,9 @@ class Walk:
 
     def _deeper(self, name: str, place: _Place) -> None:
         if len(place.blocks) >= _DEEPEST:
-            raise Error(f"blocks are nested more than {_DEEPEST} deep", where=_top(name))
+            raise Error(
+                f"blocks are nested more than {_DEEPEST} deep", where=_top(name), code="drawing-too-large"
+            )
 
     def _piece(self, entity, kind: str, name: str, pen: Pen, place: _Place, lines: list[Curve]) -> None:
         fill_rule = "nonzero" if kind in _TEXT else "evenodd" if kind in dxf_curves.FILLED else ""
@@ -231,30 +250,36 @@ class Walk:
         for line in lines:
             self._cubics += len(line.cubics)
             if self._cubics > _MOST_CUBICS:
-                raise Error(f"the drawing unfolds to more than {_MOST_CUBICS} curves", where=_top(name))
+                raise Error(
+                    f"the drawing unfolds to more than {_MOST_CUBICS} curves",
+                    where=_top(name),
+                    code="drawing-too-large",
+                )
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
             widths = None if line.widths is None else line.widths * place.mean_stretch
             if not (np.abs(cubics).max() <= _FARTHEST_MM and np.ptp(cubics, axis=(0, 1)).max() <= LARGEST_MM):
-                self._note(
-                    name, "its geometry is not finite or beyond 1e6 mm: left out", pen.layer, damaged=True
-                )
+                sentence = "its geometry is not finite or beyond 1e6 mm: left out"
+                self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
             if widths is not None and not (widths.min() >= 0 and widths.max() <= LARGEST_MM):
-                self._note(
-                    name, "its widths are outside the range [0, 1e6] mm: left out", pen.layer, damaged=True
-                )
+                sentence = "its widths are outside the range [0, 1e6] mm: left out"
+                self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
             found.append(Curve(cubics, line.closed, widths))
         if not found:
-            self._note(name, "it has no geometry: left out", pen.layer)
+            self._note(name, "it has no geometry: left out", pen.layer, code="geometry-empty")
             return
         if kind in ("HATCH", "MPOLYGON") and not entity.dxf.solid_fill:
-            self._note(name, "its pattern is not read: it counts as filled", pen.layer)
+            self._note(name, "its pattern is not read: it counts as filled", pen.layer, code="paint-unread")
         joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
         self.pieces.append(Piece(name, place.name, pen, tuple(found), fill_rule, joinable))
 
-    def _leave_out(self, where: str, why: str, layer: str | None = None) -> None:
-        self._counts[where, why, layer] += 1
+    def _leave_out(
+        self, where: str, why: str, layer: str | None = None, *, code: str, count: int = 1
+    ) -> None:
+        self._counts[where, why, layer, code] += count
 
-    def _note(self, where: str, sentence: str, layer: str | None, damaged: bool = False) -> None:
-        self.notices.append(Notice(where, sentence, damaged, layer))
+    def _note(
+        self, where: str, sentence: str, layer: str | None, damaged: bool = False, *, code: str
+    ) -> None:
+        self.notices.append(Notice(where, sentence, damaged, layer, code=code))
