@@ -7,7 +7,7 @@ import numpy as np
 
 import brushsvg
 from brushsvg.brush.describe import one_line
-from brushsvg.cli.console import RefusedError, about, say, warn
+from brushsvg.cli.console import RefusedError, about, say_notice, warn
 from brushsvg.evaluation import report
 from brushsvg.files import write_files
 from brushsvg.machine import preflight, writer
@@ -27,8 +27,8 @@ def main(drawing: Path, directory: Path) -> None:
     loads = in_loads(work.plan, work.brush, cell)
     walk = preflight.look(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)
     if walk.problems:
-        raise RefusedError([(str(drawing), *problem) for problem in walk.problems])
-    warn(str(drawing), [(notice.where, notice.sentence) for notice in work.notices])
+        raise RefusedError(str(drawing), walk.problems)
+    warn(str(drawing), work.notices)
 
     totals = {
         how: report.measure(each.plan, marks[how], each.brush, each.strokes)[1] for how, each in works.items()
@@ -80,6 +80,6 @@ if __name__ == "__main__":
         with about(sys.argv[1]):
             main(Path(sys.argv[1]), Path(sys.argv[2]))
     except RefusedError as refused:
-        for line in refused.lines:
-            say(*line)
+        for notice in refused.why:
+            say_notice(refused.file, notice)
         sys.exit(1)

@@ -104,7 +104,7 @@ class Run:
         shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, *words, "--quiet"],
+                [self.program, "--messages", "json", *words, "--quiet"],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
@@ -129,20 +129,24 @@ class Run:
     def finish(self, may_refuse: bool = False) -> tuple[str, list[str]]:
         """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine."""
         out, err = self.process.communicate()
-        ours = "|".join(
-            re.escape(word) for word in self.words if os.path.basename(word) == word
-        )  # not files of theirs
-        told = [in_dialogs(re.sub(f"^brushsvg: (?:(?:{ours}): )?", "", line)) for line in err.splitlines()]
+        notices = [(line, _notice(line)) for line in err.splitlines()]
+        told = [self._in_words(notice) if notice else line for line, notice in notices]
         status = self.process.returncode
         if status == 0 or (may_refuse and status == 1 and out):
             return out, told
         if status != 1:
             self._stop_if_too_old()
-        ours = [line for line in err.splitlines() if line.startswith("brushsvg: ")]
-        if not ours:  # its Python broke down before it could say anything
+        if not any(
+            notice or line.startswith("brushsvg: ") for line, notice in notices
+        ):  # its Python broke down before it could say anything
             reason = f": {told[-1]}" if told else f" ({status})"
             raise StopError(f"{self.program} does not run{reason}\nInstall it anew:  {INSTALL} --force")
         raise StopError("\n".join(["brushsvg refuses:", *told]))
+
+    def _in_words(self, notice: dict) -> str:
+        """A line for the dialog. Files of ours, which the person never sees, are not named."""
+        ours = notice["file"] in self.words and os.path.basename(notice["file"]) == notice["file"]
+        return ": ".join(filter(None, ("" if ours else notice["file"], notice["where"], in_dialogs(notice))))
 
     def made(self, name: str) -> bytes:
         path = os.path.join(self.folder.name, name)
@@ -156,8 +160,10 @@ class Run:
         """The report that it printed, of what can be painted and of what is refused."""
         out, _ = self.finish(may_refuse=True)
         try:
-            report = json.loads(in_dialogs(out))
-            report["refused"], report["warnings"], report["brush"]
+            report = json.loads(out)
+            for each in (*report["refused"], *report["warnings"], *report["forbidden"]):
+                each["sentence"] = in_dialogs(each)
+            report["brush"]
         except (ValueError, KeyError, TypeError):
             self._stop_if_too_old()
             raise StopError(f"{self.program} has not printed a report.") from None
@@ -180,6 +186,15 @@ class Run:
                 f"brushsvg {found[0].split()[1]} is too old: this extension needs {needed}. "
                 f"Install it with:  {INSTALL.replace('install', 'upgrade')}"
             )
+
+
+def _notice(line: str) -> dict | None:
+    """A warning or refusal of brushsvg, None for any other line."""
+    try:
+        notice = json.loads(line)
+        return notice if {"file", "where", "sentence", "code", "advice", "damaged"} <= notice.keys() else None
+    except (ValueError, AttributeError):
+        return None
 
 
 def root_of(drawing: str) -> dict[str, str]:

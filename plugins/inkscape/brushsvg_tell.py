@@ -6,31 +6,30 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
-import re
 import sys
 
 UNATTENDED = (b"--batch-process", b"--export-", b"-o")  # with these Inkscape opens no window that stays
-IN_DIALOGS = {  # what brushsvg advises those who type: what is done in Inkscape instead
-    "give --brush": "choose another one in Brush settings, or a brush file in this dialog",
-    "give --cell": "choose another one in Brush settings",
-    "--width MM gives all strokes one width": "Object > Fill and Stroke gives all strokes one width",
-    "--wide passes fills it": "passes in Brush settings fills it",
-    " (--lenient draws what is sound)": ": mend or delete it, or draw it anew",
-    "(brushsvg cell new --taught ...)": "in a terminal (brushsvg cell new --taught ...) and choose its file",
-    "--strokes few needs less": "fewer Strokes need less",
-    "in Inkscape with Path > Object to Path, or with "
-    "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg": (
-        "with Path > Object to Path, or into strokes with Extensions > Brush > Convert to strokes"
-    ),
+IN_DIALOGS = {  # by the code of what brushsvg tells: what is done in Inkscape where it advises those who type
+    "brush-unknown": "choose another one in Brush settings, or a brush file in this dialog",
+    "cell-unknown": "choose another one in Brush settings",
+    "program-format": "choose it in Brush settings",
+    "depth-not-measured": "Object > Fill and Stroke gives all strokes one width",
+    "width-out-of-reach": "passes in Brush settings fills it",
+    "paper-example": "brushsvg cell new --taught, in a terminal, writes a cell to choose in Brush settings",
+    "sheet-too-small": "fewer Strokes need less",
+    "text-unread": "turn it into paths with Path > Object to Path, or into strokes with Extensions > Brush > Convert "
+    "to strokes",
 }
+MEND = "mend or delete it, or draw it anew"  # what is damaged, whatever its code
 
 
-def in_dialogs(sentence: str) -> str:
-    """A sentence of brushsvg with its advice worded for who has dialogs and no flags."""
-    sentence = re.sub(r"give --cell ((?:[a-z0-9-]+(?: or )?)+)$", r"choose \1 in Brush settings", sentence)
-    for typed, done in IN_DIALOGS.items():
-        sentence = sentence.replace(typed, done)
-    return sentence
+def in_dialogs(notice: dict) -> str:
+    """What brushsvg tells, with its advice worded for who has dialogs and no flags."""
+    sentence, advice = notice["sentence"], notice["advice"]
+    if not advice:
+        return sentence
+    done = IN_DIALOGS.get(notice["code"], MEND if notice["damaged"] else advice)
+    return sentence[: len(sentence) - len(advice)] + done
 
 
 def tell(text: str) -> None:

@@ -89,8 +89,7 @@ def _compensated(document, brush_name, compensation, tolerance_mm, width_px):
         done = brushsvg.compensate(strokes, found, drawing.sheet_mm, compensation, tolerance_mm)
     except brushsvg.Error as refused:
         raise _sentence(refused) from None
-    told = [(notice.where, notice.sentence) for notice in (*drawing.notices, *notices)]
-    for where, sentence in [*told, *done.warnings]:
+    for where, sentence in (*drawing.notices, *notices, *done.warnings):
         click.echo("brushsvg: " + ": ".join(filter(None, (where, sentence))), err=True)
     missed = [
         stroke.id for stroke, miss in zip(strokes, done.misses, strict=True) if not miss.within_tolerance

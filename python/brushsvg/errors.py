@@ -1,17 +1,24 @@
-"""The one error a user can cause; everything else is a bug."""
+"""What a person is told: the one error a user can cause (everything else is a bug), and notices, which stop nothing.
+
+Both have a code, which says of what kind they are: docs/diagnostics.md lists them. Decisions ask for the code, never
+for words of a sentence.
+"""
 
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 
 
 class Error(ValueError):
     """A refusal in one full sentence.
 
-    sentence: what is wrong, with the number and the admissible range; str(error) is this sentence.
+    sentence: what is wrong, with the number and the admissible range; str(error) is this sentence with the advice.
     where: the element, stroke or key it concerns, "" if none.
     value, range: the offending number and (least, greatest), None where there are none.
     file: the file it is about, None where only the caller knows.
+    code: of what kind it is, "" where the C++ library refuses, which has no codes.
+    advice: what helps who types commands, "" where the sentence says it all: other programs word it their own way.
     """
 
     def __init__(
@@ -21,24 +28,79 @@ class Error(ValueError):
         value: float | None = None,
         range: tuple[float, float] | None = None,
         file: str | None = None,
+        code: str = "",
+        advice: str = "",
     ):
-        super().__init__(sentence)
+        super().__init__(told(sentence, advice))
         self.sentence = sentence
         self.where = where
         self.value = value
         self.range = range
         self.file = file
+        self.code = code
+        self.advice = advice
         for name in (name for name in (file, where) if isinstance(name, str) and name):
             self.add_note(f"in {name}")  # for whoever meets it as a traceback
+
+    def notice(self, where: str | None = None) -> Notice:
+        """The same as something that stops nothing; where: its element, where that is known better."""
+        return Notice(
+            self.where if where is None else where, self.sentence, code=self.code, advice=self.advice
+        )
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A warning about one element, or the reason why it was left out or may not be run.
+
+    where: the element, stroke or key, "" if none. damaged: the geometry itself is broken and was read up to the error;
+    convert refuses it unless lenient. layer: where the element lies, None for what concerns the whole drawing.
+    code: of what kind it is, "" where the C++ library warns, which has no codes. about: what of that kind, where alike
+    are only those of the same: a CSS property, a kind of element. advice: what to type, see Error.
+    """
+
+    where: str
+    sentence: str
+    damaged: bool = False
+    layer: str | None = None
+    code: str = ""
+    about: str = ""
+    advice: str = ""
+
+    def __iter__(self):
+        """For `where, sentence = notice`."""
+        return iter((self.where, self.told))
+
+    @property
+    def told(self) -> str:
+        """The sentence with its advice."""
+        return told(self.sentence, self.advice)
+
+    def as_json(self) -> dict[str, str | bool]:
+        """For programs that read us: the sentence ends in the advice."""
+        told = {"where": self.where, "sentence": self.told, "code": self.code}
+        return told | {"advice": self.advice, "damaged": self.damaged}
+
+    @property
+    def kind(self) -> tuple[str, str, bool]:
+        """What notices have in common that are told as one."""
+        return (self.code, self.about, self.damaged) if self.code else ("", self.sentence, self.damaged)
+
+
+def told(sentence: str, advice: str) -> str:
+    return f"{sentence}; {advice}" if advice else sentence
 
 
 def need(value, kind: type | tuple[type, ...], what: str) -> None:
     """Error for a value of another Python type than what it should be, in words."""
     if not isinstance(value, kind):
-        raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}")
+        raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
 
 
 def lacking(what: str, *packages: str) -> Error:
     """A refusal for want of packages of an extra, with what installs them where this runs."""
     names = " ".join(packages)
-    return Error(f"{what} {' and '.join(packages)}: install with  {sys.executable} -m pip install {names}")
+    return Error(
+        f"{what} {' and '.join(packages)}: install with  {sys.executable} -m pip install {names}",
+        code="package-missing",
+    )

@@ -30,6 +30,7 @@ def read_bytes(path: str | os.PathLike) -> bytes:
             raise Error(
                 f"the file is larger than {LARGEST_BYTES // 2**20} MB, the range is [0, {LARGEST_BYTES // 2**20}] MB",
                 file=os.fspath(path),
+                code="file-too-large",
             )
         return data
     except FileNotFoundError:
@@ -38,7 +39,7 @@ def read_bytes(path: str | os.PathLike) -> bytes:
         sentence = "this is a directory, not a file"
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         sentence = f"the file cannot be read: {reason(problem)}"
-    raise Error(sentence, file=os.fspath(path))
+    raise Error(sentence, file=os.fspath(path), code="file-unreadable")
 
 
 def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike) -> Path:
@@ -56,7 +57,8 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
         return Path(name_or_path)
     known = ", ".join(names)
     raise Error(
-        f"{kind} {name_or_path!r} is not known; known are {known}, and any file that ends in {suffix}"
+        f"{kind} {name_or_path!r} is not known; known are {known}, and any file that ends in {suffix}",
+        code=f"{kind}-unknown",
     )
 
 
@@ -104,7 +106,9 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
             os.replace(beside[path], targets[path])
             del beside[path]
     except OSError as problem:
-        raise Error(f"the file cannot be written: {reason(problem)}", file=os.fspath(path)) from None
+        raise Error(
+            f"the file cannot be written: {reason(problem)}", file=os.fspath(path), code="file-unwritable"
+        ) from None
     finally:
         for left in beside.values():
             Path(left).unlink(missing_ok=True)

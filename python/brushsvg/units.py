@@ -30,12 +30,16 @@ def _shown(text: str) -> str:
 def _parts(text: str) -> tuple[float, str]:
     found = _LENGTH.fullmatch(text.strip())
     if not found:
-        raise Error(f"{_shown(text)} is not a length; write for example 5mm, 0.2in or 14pt")
+        raise Error(
+            f"{_shown(text)} is not a length; write for example 5mm, 0.2in or 14pt", code="not-a-length"
+        )
     value, unit = float(found[1]), found[2].lower()
     if not math.isfinite(value):
-        raise Error(f"{_shown(text)} is too large to be a length")
+        raise Error(f"{_shown(text)} is too large to be a length", code="not-a-length")
     if unit not in MM_PER and unit not in ("", "%", *_OF_FONT):
-        raise Error(f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q")
+        raise Error(
+            f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q", code="not-a-length"
+        )
     return value, unit
 
 
@@ -43,7 +47,7 @@ def number(text: str) -> float:
     """A finite number as SVG writes it. Error if it is none."""
     value = float(text) if _NUMBER.fullmatch(text := text.strip()) else math.nan
     if not math.isfinite(value):
-        raise Error(f"{_shown(text)} is not a number")
+        raise Error(f"{_shown(text)} is not a number", code="not-a-number")
     return value
 
 
@@ -51,10 +55,13 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
     """A length in mm; a bare number counts in default_unit. Error if it is no length or a percentage."""
     value, unit = _parts(text)
     if unit == "%":
-        raise Error(f"{_shown(text)} is a percentage, but there is nothing to take it of")
+        raise Error(
+            f"{_shown(text)} is a percentage, but there is nothing to take it of", code="not-a-length"
+        )
     if unit in _OF_FONT:
         raise Error(
-            f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q"
+            f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q",
+            code="not-a-length",
         )
     unit = unit or default_unit
     length = value * MM_PER[unit]
@@ -67,7 +74,7 @@ def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
     """A length in px (SVG user units, 96 to the inch); percentages are of percent_of px, em and ex of a font's size."""
     value, unit = _parts(text)
     if unit and not text.rstrip()[-len(unit) - 1].strip():  # people write "5 mm", browsers do not read it
-        raise Error(f"{_shown(text)} has a blank before its unit")
+        raise Error(f"{_shown(text)} has a blank before its unit", code="not-a-length")
     if unit in _OF_FONT:
         return value * (FONT_PX if unit == "rem" else em_px * _OF_FONT[unit])
     return value * percent_of / 100 if unit == "%" else value * PX_PER[unit or "px"]
@@ -77,7 +84,9 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
     """Width and height in mm from "210x297", "8.5x11in" or "210mm x 297mm"; a unit at the end serves both."""
     found = _SIZE.fullmatch(" ".join(text.lower().split()))
     if not found:
-        raise Error(f"{_shown(text)} is not a size; write for example 210x297mm or 8.5x11in")
+        raise Error(
+            f"{_shown(text)} is not a size; write for example 210x297mm or 8.5x11in", code="not-a-size"
+        )
     height_unit = found[4]
     size = (
         length_mm(found[1] + (found[2] or height_unit), default_unit),
@@ -86,7 +95,7 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
     for value in size:
         if not 0 < value <= 1e6:
             sentence = f"{value} mm in the size {_shown(text)} is outside the range (0, 1000000] mm"
-            raise Error(sentence, value=value, range=(0.0, 1e6))
+            raise Error(sentence, value=value, range=(0.0, 1e6), code="out-of-range")
     return size
 
 

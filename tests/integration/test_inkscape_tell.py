@@ -51,16 +51,15 @@ def document(setting: str) -> str:
     return SOUND.replace("<svg ", f"<svg {setting} ")
 
 
-ADVICE = {  # what the command line advises: a script of ours and a drawing that are told so
-    "give --brush": ("preview", document('data-brushsvg-brush="mine"')),
-    "give --cell": ("preview", document('data-brushsvg-cell="mine"')),
-    "--width MM gives all strokes one width": ("preview", path("M20 30 H90", width="0.1")),
-    "--wide passes fills it": ("check", f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'),
-    " (--lenient draws what is sound)": ("save", path("M20 30 H90 V")),
-    "(brushsvg cell new --taught ...)": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
-    "--strokes few needs less": ("chart", SOUND, "--strokes=many", "--sheet=letter"),
-    "in Inkscape with Path > Object to Path, or with inkscape --export-text-to-path --export-plain-svg -o out.svg "
-    "in.svg": ("save", SOUND.replace("</svg>", '<text id="word" x="9" y="9">a</text></svg>')),
+ADVICE = {  # by the code of what brushsvg tells: a script of ours and a drawing that are told so
+    "brush-unknown": ("preview", document('data-brushsvg-brush="mine"')),
+    "cell-unknown": ("preview", document('data-brushsvg-cell="mine"')),
+    "depth-not-measured": ("preview", path("M20 30 H90", width="0.1")),
+    "width-out-of-reach": ("check", f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'),
+    "paper-example": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
+    "sheet-too-small": ("chart", SOUND, "--strokes=many", "--sheet=letter"),
+    "program-format": ("save", document('data-brushsvg-cell="linuxcnc-3axis"'), "--format=script"),
+    "text-unread": ("save", SOUND.replace("</svg>", '<text id="word" x="9" y="9">a</text></svg>')),
 }
 
 
@@ -72,24 +71,30 @@ def in_dialogs(monkeypatch):
     return IN_DIALOGS
 
 
-@pytest.mark.parametrize("typed", ADVICE)
-def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, typed):
-    script, text, *words = ADVICE[typed]
+@pytest.mark.parametrize("code", ADVICE)
+def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code):
+    script, text, *words = ADVICE[code]
     source = tmp_path / "drawing.svg"
     source.write_text(text)
     done = plugin.script(script, source, *words)
     told = " ".join(
         re.sub("<[^>]*>", " ", (done.stdout + done.stderr).decode()).split()
     )  # a check breaks its lines
-    assert in_dialogs[typed].strip() in told.replace("&gt;", ">")
-    assert typed not in told or typed in in_dialogs[typed]
+    assert in_dialogs[code] in told.replace("&gt;", ">")
+    assert "--" not in told.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
+
+
+def test_damage_is_to_be_mended_whatever_its_code(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    source.write_text(path("M20 30 H90 V"))
+    assert b"; mend or delete it, or draw it anew" in plugin.script("save", source).stderr
 
 
 def test_a_cell_is_advised_by_name(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(document('data-brushsvg-cell="linuxcnc-3axis"'))
     done = plugin.script("save", source, "--format=script")
-    assert done.stderr.endswith(b"; for .script choose ur5e in Brush settings\n")
+    assert done.stderr.endswith(b"; .script is for cell ur5e; choose it in Brush settings\n")
 
 
 def test_all_advice_is_tried(in_dialogs):

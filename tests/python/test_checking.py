@@ -154,7 +154,7 @@ def test_a_resumed_program_is_no_lost_one(desk, capsys):
     [
         (
             edited(r"\(cell: linuxcnc-3axis,", "(cell: my-own,"),
-            "names cell 'my-own', which does not come along: give --cell",
+            "names cell 'my-own', which does not come along; give --cell",
         ),
         (edited(r"\(title: .*\)\n", ""), "brushsvg did not write this program"),
         (edited(r"\(sheet: .*\)\n", ""), "does not say how large the sheet is"),

@@ -280,7 +280,7 @@ def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
     status, _, err = run(capsys, "convert", "x.svg", "out.ngc")
     assert status == 1
     assert [line.split(": ")[2] for line in err] == ["worse", "worse", "off", "worse", "worse"]
-    hint = " (--lenient draws what is sound)"
+    hint = "; --lenient draws what is sound"
     assert err[-1] == (
         "brushsvg: x.svg: worse: d is damaged at character 17: found 'nan 4'; read up to there" + hint
     )
@@ -398,11 +398,13 @@ def test_wrong_usage(desk, capsys, words):
     ],
 )
 def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
-    status, _, err = run(capsys, *command.split(), out, *flags.split())
-    assert (status, len(err)) == (1, 1)
+    status = main(["--messages", "json", *command.split(), out, *flags.split()])
+    refusal = json.loads(capsys.readouterr().err)
+    assert (status, refusal["code"], refusal["advice"]) == (1, "program-format", "give --cell")
     suffix = Path(out).suffix.lower()
-    assert err[0].startswith(f"brushsvg: {out}: the extension '{suffix}' is neither .json"), "not the drawing"
-    assert err[0].endswith(f"; for {suffix} give --cell {cells}")
+    assert refusal["file"] == out, "not the drawing"
+    assert refusal["sentence"].startswith(f"the extension '{suffix}' is neither .json")
+    assert refusal["sentence"].endswith(f"; {suffix} is for cell {cells}; give --cell")
     for cell in cells.split(" or "):  # which is true of each
         assert run(capsys, "height", out, "--cell", cell)[0] == 0
 

@@ -56,7 +56,7 @@ def test_the_document_names_no_files(desk, capsys, file):
     told = refusal_of(capsys, "convert", "d.svg", "x.ngc")
     assert told == (
         f"brushsvg: d.svg: svg: data-brushsvg-cell asks for cell '{file}', which does not come along; known are "
-        f"{', '.join(cell_names())}: give --cell\n"
+        f"{', '.join(cell_names())}; give --cell\n"
     )
 
 
@@ -74,7 +74,7 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
     ):
         assert refusal_of(capsys, *words) == (
             f"brushsvg: d.svg: svg: data-brushsvg-brush asks for brush '{file}', which does not come along; known are "
-            "rigid, round-6: give --brush\n"
+            "rigid, round-6; give --brush\n"
         )
     assert not (desk / "x.json").exists()
     assert main(["convert", "d.svg", "x.ngc", "--brush", "round-6"]) == 0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from programs import forbidden, program, whole
 
-from brushsvg.errors import Error
+from brushsvg.errors import Error, Notice
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import SAFE_MEANINGS, duration_s
 from brushsvg.machine.program import Job, unchecked_program
@@ -108,13 +108,15 @@ def test_limits_are_named_with_stroke_and_number(poses, words):
 
 def test_speed_limits_and_nothing_to_paint():
     too_fast = forbidden(plan_of(STROKE, speed=51.0), brush_of(80.0), find_cell())
-    assert too_fast == [("s1", "speed 51.0 mm/s is outside the range (0, 50.0] mm/s of cell linuxcnc-3axis")]
+    speed = "speed 51.0 mm/s is outside the range (0, {}] mm/s of {}".format
+    assert too_fast == [Notice("s1", speed("50.0", "cell linuxcnc-3axis"), code="speed-out-of-range")]
     too_fast = forbidden(plan_of(STROKE, speed=51.0), BRUSH, find_cell())
-    assert too_fast == [("s1", "speed 51.0 mm/s is outside the range (0, 25.0] mm/s of brush hog")]
+    assert too_fast == [Notice("s1", speed("25.0", "brush hog"), code="speed-out-of-range")]
     with pytest.raises(Error, match="brush hog"):
         program(plan_of(STROKE, speed=25.1), BRUSH, find_cell())
     assert len(forbidden(plan_of(STROKE, speed=float("nan")), BRUSH, find_cell())) == 1
-    assert forbidden(plan_of(), BRUSH, find_cell()) == [("", "there is nothing to paint")]
+    (nothing,) = forbidden(plan_of(), BRUSH, find_cell())
+    assert (nothing.where, nothing.code) == ("", "nothing-to-paint")
 
 
 @pytest.mark.parametrize("limit", [40.0, 25.0, 3.0])
@@ -132,4 +134,4 @@ def test_the_workspace_ends_where_it_says():
 
 def test_a_pass_that_never_presses_is_refused():
     (found,) = forbidden(plan_of([(10, 10, 0), (20, 10, 0)]), brush_of(25.0), find_cell())
-    assert found[1] == "the brush is never pressed to the paper: nothing would be painted"
+    assert (found.where, found.code) == ("s1", "never-pressed")

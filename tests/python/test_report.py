@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from brushsvg import Stroke, compensate, find_brush, simulate
+from brushsvg.errors import Notice
 from brushsvg.evaluation import report
 from brushsvg.evaluation.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
 
@@ -60,12 +61,22 @@ ROW = Figures("s/1", 0.9512345678, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42)
 
 
 def test_json_is_complete_and_without_nan():
-    made = Report("T", "round-6", "closed", 0.05, (ROW,), ROW, 75.04, (("s/1", "odd"),))
+    made = Report(
+        "T",
+        "round-6",
+        "closed",
+        0.05,
+        (ROW,),
+        ROW,
+        75.04,
+        (Notice("s/1", "odd", code="strange", advice="mend"),),
+    )
     read = json.loads(to_json(made), parse_constant=lambda name: pytest.fail(name))
     assert read["format"] == "brushsvg/report"
     assert read["strokes"][0]["overlap"] == 0.951235
     assert read["total"]["poses"] == 42
-    assert read["warnings"] == [{"where": "s/1", "sentence": "odd"}]
+    told = {"where": "s/1", "sentence": "odd; mend", "code": "strange", "advice": "mend", "damaged": False}
+    assert read["warnings"] == [told]
 
 
 def test_text_names_every_stroke_and_says_what_is_not_known():
@@ -74,7 +85,7 @@ def test_text_names_every_stroke_and_says_what_is_not_known():
     assert "nan" not in text.lower()
     assert "None" not in text
     assert "1 min 15 s" in text
-    both = to_text(Report("T", "round-6", "closed", 0.05, (ROW, ROW), ROW, 5, (("", "odd"),)))
+    both = to_text(Report("T", "round-6", "closed", 0.05, (ROW, ROW), ROW, 5, (Notice("", "odd"),)))
     assert both.startswith("T: 2 strokes, brush round-6, compensation closed, tolerance 0.05 mm\n")
     assert both.count("s/1 ") == 3
     assert both.endswith("Warnings: 1\n  odd\n")

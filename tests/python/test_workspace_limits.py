@@ -193,17 +193,15 @@ def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
 
 def test_a_way_between_two_places_says_only_what_they_do_not():
     cell = robot(**RING)
-    assert astray_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell) == [
-        "on the way there the tool goes 0.0 mm away from the robot's origin, outside the range [150, 850] mm of the "
-        "reach of cell mine"
-    ]
+    (said,) = astray_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
+    assert said.code == "out-of-reach" and "on the way there the tool goes 0.0 mm" in said.sentence
     assert astray_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
 
 
 def test_a_number_tells_that_it_is_outside():
     cell = robot(reach_mm=(150.0, 850.0))
     (said,) = astray(ways([[(850.0004, 0, 0)]]), np.eye(4), cell)
-    assert "goes 850.0004 mm away" in said
+    assert "goes 850.0004 mm away" in said.sentence
 
 
 def test_boxes_to_keep_out_of_are_written_read_and_named(desk, capsys):
@@ -232,7 +230,8 @@ def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
     assert forbidden(plan_of(ROUND), BRUSH, cell) == []
     across = replace(ink, wipe_mm=((50.0, -10.0, 5.0), (80.0, -10.0, 5.0)))
     found = forbidden(plan_of(ROUND), BRUSH, replace(cell, stations=(across,)))
-    assert found == [("ink", "its wipe goes over the sheet of 600 x 200 mm")]
+    assert [(each.where, each.code) for each in found] == [("ink", "station-on-sheet")]
+    assert "wipe goes over the sheet of 600 x 200 mm" in found[0].sentence
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])

@@ -59,12 +59,14 @@ def calibrate_marks(
         raise Error(
             f"the plan goes {painted.deepest_mm:g} mm deep, beyond the depth range [{least:g}, {deepest:g}] mm",
             "depth_range_mm",
+            code="depth-out-of-range",
         )
     if deepest > BEYOND * painted.deepest_mm:
         raise Error(
             f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
             f'mm: paint deeper ones, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',
             "depth_range_mm",
+            code="depth-not-measured",
         )
     options = options or _core.MarkOptions()
     options.deepest_mm = deepest
@@ -149,7 +151,7 @@ def expected_brush(
         if mark.outline_mm
     ]
     if not painted:
-        raise Error("the plan paints nothing", "plan")
+        raise Error("the plan paints nothing", "plan", code="nothing-painted")
     options = options or _core.MarkOptions()
     options.deepest_mm = deepest
     depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
@@ -253,6 +255,7 @@ def _refuse_unlike(fit, painted: Painted) -> None:
             f"{len(wild)} of {len(painted.marks)} marks are not what any brush paints along their strokes: are the "
             "marks in mm, y up, each with the id of its stroke?",
             "marks",
+            code="marks-outlying",
         )
 
 
@@ -272,4 +275,5 @@ def _refuse_unsure(brush: _core.Brush, fit) -> None:
                 f"these marks leave the {law.replace('_', ' ')} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at "
                 f"depth {depths[worst]:g} mm: {todo}",
                 law,
+                code="law-undetermined",
             )

@@ -78,13 +78,21 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     points, remarks = _direct(measured, total)
     maker.fit("half_width", points)
     if "half_width" not in maker.done:
-        raise Error("no width was measured: add half_width or width, one row per depth", "half_width")
+        raise Error(
+            "no width was measured: add half_width or width, one row per depth",
+            "half_width",
+            code="measurement-missing",
+        )
     maker.fit("tip_to_widest", points)
     maker.fit("tip_gap", points)
     maker.fit("lag", points)
     maker.fit_sums(points)
     if "lag" not in maker.done:
-        raise Error("no lag was measured: add lag, angles or angular, one row per depth", "lag")
+        raise Error(
+            "no lag was measured: add lag, angles or angular, one row per depth",
+            "lag",
+            code="measurement-missing",
+        )
     brush = maker.brush(name or measured.name or "measured")
     laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
     plausibility.refuse_brush(brush)
@@ -127,7 +135,7 @@ def _of_angles(row: Row, total: bool) -> dict:
             _core.Lines.total if total else _core.Lines.plain,
         )
     except Error as refusal:
-        raise Error(str(refusal), row.where, refusal.value) from None
+        raise Error(str(refusal), row.where, refusal.value, code=refusal.code) from None
     plausibility.refuse_other_start(row.where, *series)
     return found
 
@@ -158,6 +166,7 @@ class _Maker:
                 "angular, straight and side_view all measure the sum of lag and tip gap, so the two cannot be told "
                 "apart: add angles, or rows of lag or tip_gap",
                 next(kind for kind in SUMS if kind in self.measured.rows),
+                code="law-undetermined",
             )
         wanted, known = ("lag", "tip_gap") if "tip_gap" in self.done else ("tip_gap", "lag")
         if "lag" in self.done and "tip_gap" in self.done:
@@ -167,7 +176,11 @@ class _Maker:
             return
         law = self.done[known].fit.law
         if self.measured.rows.get("side_view") and wanted == "lag":
-            raise Error("side_view needs the lag at depth 0: add rows of lag or angles", "side_view")
+            raise Error(
+                "side_view needs the lag at depth 0: add rows of lag or angles",
+                "side_view",
+                code="measurement-missing",
+            )
         new = [Point(row.where, row.depth_mm, self._sum(row) - law(row.depth_mm)) for row in rows]
         self._fit(wanted, new)
         self._carry(wanted, known, rows)
@@ -180,7 +193,7 @@ class _Maker:
             return row.numbers["value_mm"] + self.done["lag"].fit.law(0.0)
         if "tip_to_widest" not in self.done:
             sentence = "this needs the widest section of the footprint: add rows of tip_to_widest"
-            raise Error(sentence, row.where)
+            raise Error(sentence, row.where, code="law-undetermined")
         widest = self.done["tip_to_widest"].fit.law(row.depth_mm)  # as it was measured, not as it is drawn
         if "path_mm" in row.numbers:
             return row.numbers["path_mm"] - row.numbers["distance_mm"] + widest
@@ -196,12 +209,13 @@ class _Maker:
             sentence = (
                 f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative"
             )
-            raise Error(sentence, worst.where, worst.value_mm)
+            raise Error(sentence, worst.where, worst.value_mm, code="law-negative")
         different = plausibility.different(depths)
         if different < 2:
             raise Error(
                 f"{law} was measured at depth {depths[0]:g} mm alone: measure it at two depths or more, better five",
                 points[0].where,
+                code="depths-too-few",
             )
         plausibility.refuse_range(law, max(depths), self.range_mm, points[0].where)
         if law == "lag":

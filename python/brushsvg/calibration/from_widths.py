@@ -42,7 +42,12 @@ def new_brush(
         sentence = (
             f"the greatest depth {deepest:g} mm is outside the range [{widths[-1][0]:g}, {LONGEST_MM:g}] mm"
         )
-        raise Error(f"{sentence} from the deepest width to the longest brush", "depth", deepest)
+        raise Error(
+            f"{sentence} from the deepest width to the longest brush",
+            "depth",
+            deepest,
+            code="depth-out-of-range",
+        )
     brush = _core.Brush()
     brush.name, brush.kind = name, "round" if lag_mm > 0 else "pen"
     brush.depth_range_mm = (0.0, deepest)
@@ -76,21 +81,33 @@ def outlines_assumed(source: str) -> str:
 def need_fits() -> None:
     """Error where the library was built without Ceres."""
     if not hasattr(_core, "fit_law"):
-        raise Error("this brushsvg was built without fits; build it with Ceres (libceres-dev)")
+        raise Error(
+            "this brushsvg was built without fits; build it with Ceres (libceres-dev)", code="package-missing"
+        )
 
 
 def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
     if not widths_mm:
-        raise Error("there is no width: at least one is needed, for example 5 mm at depth 4 mm", "width")
+        raise Error(
+            "there is no width: at least one is needed, for example 5 mm at depth 4 mm",
+            "width",
+            code="measurement-missing",
+        )
     for depth, width in widths_mm:
         if not (math.isfinite(depth) and 0 < depth <= LONGEST_MM):
             raise Error(
                 f"the depth {depth:g} mm of a width is outside the range (0, {LONGEST_MM:g}] mm",
                 "width",
                 depth,
+                code="depth-out-of-range",
             )
         if not (math.isfinite(width) and 0 < width <= LONGEST_MM):
-            raise Error(f"the width {width:g} mm is outside the range (0, {LONGEST_MM:g}] mm", "width", width)
+            raise Error(
+                f"the width {width:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+                "width",
+                width,
+                code="out-of-range",
+            )
     return sorted(widths_mm)
 
 
@@ -125,6 +142,7 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
             "the right order?",
             "width",
             2 * halves[worst],
+            code="width-falls",
         )
     told = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
     more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""

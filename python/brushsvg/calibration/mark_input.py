@@ -51,16 +51,22 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
     for i, (stroke, outline) in enumerate(rows):
         where = f"marks[{i}]"
         if stroke not in passes:
-            raise Error(f"there is no stroke {stroke!r} in the plan; it has {_some(list(passes))}", where)
+            raise Error(
+                f"there is no stroke {stroke!r} in the plan; it has {_some(list(passes))}",
+                where,
+                code="stroke-unknown",
+            )
         if stroke in seen:
-            raise Error(f"stroke {stroke!r} has two marks: join their outlines to one", where)
+            raise Error(
+                f"stroke {stroke!r} has two marks: join their outlines to one", where, code="stroke-twice"
+            )
         seen.add(stroke)
         rings = [_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
         if not rings:
-            raise Error("the mark has no outline: leave out what was not painted", where)
+            raise Error("the mark has no outline: leave out what was not painted", where, code="mark-empty")
         found.append((stroke, passes[stroke], rings))
     if not found:
-        raise Error("there is no mark in it", "marks")
+        raise Error("there is no mark in it", "marks", code="measurement-missing")
     _refuse_other_frames(found)
     _refuse_what_is_no_paint(found)
     _refuse_what_tells_nothing(found)
@@ -74,20 +80,24 @@ def _passes(plan, read) -> dict[str, np.ndarray]:
         try:
             parsed = _core.read_plan(read(plan).decode("utf-8", "replace"))
         except Error as refusal:
-            raise Error(f"{plan}: {refusal}", "plan", refusal.value) from None
+            raise Error(f"{plan}: {refusal}", "plan", refusal.value, code=refusal.code) from None
     elif isinstance(plan, dict):
         whole = {"format": "brushsvg/plan", "version": 1, "brush": "", "brush_sha256": "", "sheet_mm": [1, 1]}
         try:
             parsed = _core.read_plan(json.dumps(whole | plan))
         except Error as refusal:
-            raise Error(str(refusal), f"plan.{refusal.where}", refusal.value) from None
+            raise Error(str(refusal), f"plan.{refusal.where}", refusal.value, code=refusal.code) from None
     else:
-        raise Error('marks need "plan": the path of the plan.json that was painted', "plan")
+        raise Error(
+            'marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing"
+        )
     out: dict[str, np.ndarray] = {}
     for number, one in enumerate(parsed.passes, 1):
         name = one.stroke or f"stroke{number}"
         if name in out:
-            raise Error(f"two passes paint stroke {name!r}: give each its own name", "plan")
+            raise Error(
+                f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice"
+            )
         out[name] = np.array(one.poses_mm)
     return out
 
@@ -97,14 +107,14 @@ def _listed(marks, read) -> list[tuple[str, list]]:
         try:
             found = _core.read_marks(read(marks).decode("utf-8", "replace"))
         except Error as refusal:
-            raise Error(f"{marks}: {refusal}", "marks", refusal.value) from None
+            raise Error(f"{marks}: {refusal}", "marks", refusal.value, code=refusal.code) from None
         return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
     out = []
     for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):
         json_fields.refuse_unknown(row, ("stroke", "outline_mm", "note"), f"marks[{i}]")
         for key, kind, what in (("stroke", str, "a stroke's id"), ("outline_mm", list, "a list of rings")):
             if not isinstance(row.get(key), kind):
-                raise Error(f"{key} must be {what}", f"marks[{i}]")
+                raise Error(f"{key} must be {what}", f"marks[{i}]", code="wrong-type")
         out.append((row["stroke"], row["outline_mm"]))
     return out
 
@@ -116,9 +126,9 @@ def _ring(points, where: str) -> np.ndarray:
     except (TypeError, ValueError):
         ring = np.zeros(0)
     if ring.ndim != 2 or ring.shape[0] < 3 or ring.shape[1] != 2:
-        raise Error("a ring is a list of three or more points [x, y]", where)
+        raise Error("a ring is a list of three or more points [x, y]", where, code="wrong-type")
     if not np.isfinite(ring).all():
-        raise Error("a coordinate is not a finite number", where)
+        raise Error("a coordinate is not a finite number", where, code="not-a-number")
     return ring
 
 
@@ -151,6 +161,7 @@ def _refuse_other_frames(found: list) -> None:
                 f"the marks are {scale:.3g} times as long as their strokes: are the outlines in {name}? They count in "
                 "mm",
                 "marks",
+                code="marks-scaled",
             )
     off = np.hypot(*(seen - planned).T)
     if len(found) > 2 and spread(planned) > 10.0:
@@ -160,7 +171,9 @@ def _refuse_other_frames(found: list) -> None:
         )
         if rigid(flipped) < 0.3 * rigid(seen) and rigid(seen) > 10.0:
             raise Error(
-                "the sheet of the marks stands upside down: y must go up, from the lower left corner", "marks"
+                "the sheet of the marks stands upside down: y must go up, from the lower left corner",
+                "marks",
+                code="marks-displaced",
             )
     if off.max() <= FARTHEST_MM and len(found) < 2:
         return
@@ -174,12 +187,14 @@ def _refuse_other_frames(found: list) -> None:
                 f"the mark of stroke {found[i][0]!r} lies {off[i]:.0f} mm from it, where stroke "
                 f"{found[other[i]][0]!r} was painted: do the marks have the ids of their strokes?",
                 f"marks[{i}]",
+                code="mark-off-stroke",
             )
     if (worst := int(off.argmax())) is not None and off[worst] > FARTHEST_MM:
         raise Error(
             f"the mark of stroke {found[worst][0]!r} lies {off[worst]:.0f} mm from it, more than {FARTHEST_MM:g} mm: "
             "are plan and marks those of one sheet, both in mm from its lower left corner?",
             f"marks[{worst}]",
+            code="mark-off-stroke",
         )
 
 
@@ -198,18 +213,21 @@ def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
             raise Error(
                 f"the sheet of the marks lies {words}; outlines count from the lower left corner of the plan's sheet",
                 "marks",
+                code="marks-displaced",
             )
     if abs(size - 1) > 0.2:
         raise Error(
             f"the marks lie {size:.3g} times as far apart as their strokes: are the outlines in pixels, or scanned at "
             "another scale? They count in mm",
             "marks",
+            code="marks-scaled",
         )
     if (away := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * FARTHEST_MM:
         raise Error(
             f"all marks lie {away:.0f} mm from their strokes, all the same way: outlines count from the lower left "
             "corner of the plan's sheet",
             "marks",
+            code="marks-displaced",
         )
 
 
@@ -221,6 +239,7 @@ def _refuse_what_is_no_paint(found: list) -> None:
                 f"the mark of stroke {stroke!r} has an area of {area:.2g} mm^2, less than {LEAST_MM2:g}: leave out "
                 "what was not painted",
                 f"marks[{i}]",
+                code="mark-empty",
             )
         way = np.ptp(poses[:, :2], axis=0)
         for k, ring in enumerate(rings):
@@ -230,6 +249,7 @@ def _refuse_what_is_no_paint(found: list) -> None:
                     f"a ring of the mark of stroke {stroke!r} is {larger:.0f} mm wider than its stroke, more than "
                     f"{WIDEST_MM:g} mm: leave out what is not its paint, such as the border of the page",
                     f"marks[{i}].outline_mm[{k}]",
+                    code="mark-too-large",
                 )
 
 
@@ -255,19 +275,23 @@ def _refuse_what_tells_nothing(found: list) -> None:
     count = depths_painted(ways)
     if count == 0:
         raise Error(
-            f"no stroke is painted for more than {PAINTED_MM:g} mm at any depth: paint longer ones", "plan"
+            f"no stroke is painted for more than {PAINTED_MM:g} mm at any depth: paint longer ones",
+            "plan",
+            code="depths-too-few",
         )
     if count == 1:
         raise Error(
             "all was painted at one depth: how lag and width change with depth takes strokes at two depths or more, "
             "better five",
             "plan",
+            code="depths-too-few",
         )
     if all(_turning(poses) < STRAIGHT_RAD for poses in ways):
         raise Error(
             "all strokes are straight: lag and displacement of the marks cannot be told apart; add corners, arcs and "
             "reversals, at each depth",
             "plan",
+            code="law-undetermined",
         )
 
 

@@ -66,10 +66,12 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         return found
     depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
     if not depths:
-        raise Error("there is no measurement in it")
+        raise Error("there is no measurement in it", code="measurement-missing")
     if depths[-1] <= SHALLOWEST_MM:
         raise Error(
-            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres", "depth_mm"
+            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres",
+            "depth_mm",
+            code="depth-out-of-range",
         )
     found.depths_mm.extend(depths)
     return found
@@ -82,7 +84,10 @@ def read_widths(text: str) -> list[tuple[float, float]]:
         for name, value in row.items():
             if not 0 < value <= LONGEST_MM:
                 raise Error(
-                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm", f"{where}, {name}", value
+                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+                    f"{where}, {name}",
+                    value,
+                    code="out-of-range",
                 )
         pairs.append((row["depth_mm"], row["width_mm"]))
     return pairs
@@ -94,7 +99,9 @@ def _read_table(text: str) -> Measurements:
         kind = row.pop("kind")
         if kind not in _TABLE:
             raise Error(
-                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}", where
+                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}",
+                where,
+                code="measurement-kind",
             )
         rows.setdefault(kind, []).append(_row(kind, row, where))
     return Measurements(rows)
@@ -115,17 +122,18 @@ def _table_rows(
             if any((line[name] or "").strip() for name in table.fieldnames):
                 rows.append((where, {name: (line[name] or "").strip() for name in columns}))
     except csv.Error as problem:
-        raise Error(f"this is not a table: {problem}") from None
+        raise Error(f"this is not a table: {problem}", code="not-a-table") from None
     told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
     for where, cell in told:
         if not _NUMBER.fullmatch(cell):
-            raise Error(f"{cell!r} is not a number", where)
+            raise Error(f"{cell!r} is not a number", where, code="not-a-number")
     points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
     if points and commas:
         raise Error(
             f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
             "numbers with a point",
             commas[0][0],
+            code="table-separators",
         )
     return [
         (where, row | {name: float(row[name].replace(",", ".")) for name in numbers}) for where, row in rows
@@ -147,15 +155,18 @@ def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
     if least:
         raise Error(
             f"the table needs a first line with {','.join(columns)}, or with semicolons or tabs for the commas; "
-            f"it lacks {' and '.join(least)}"
+            f"it lacks {' and '.join(least)}",
+            code="table-columns",
         )
     found = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
     if len(found) > 1:
         both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in found)
-        raise Error(f"its columns could be separated by {both}: write one of them", "line 1")
+        raise Error(
+            f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators"
+        )
     names = found[0].fieldnames
     if twice := [name for name in names if name and names.count(name) > 1]:
-        raise Error(f"the column {twice[0]} stands twice", "line 1")
+        raise Error(f"the column {twice[0]} stands twice", "line 1", code="key-twice")
     return found[0]
 
 
@@ -167,6 +178,7 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
             f"{surplus[0]!r} stands beyond the columns of the first line"
             + (f": {advice}" if separator == "," else ""),
             where,
+            code="table-columns",
         )
 
 
@@ -179,23 +191,28 @@ def _read_json(text: str) -> Measurements:
             rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
-        raise Error("name and about must be text", "name")
+        raise Error("name and about must be text", "name", code="wrong-type")
     span = content.get("depth_range_mm")
     if span is not None:
         span = json_fields.numbers(span, "depth_range_mm", 2)
         if not 0 <= span[0] < span[1] <= LONGEST_MM:
             raise Error(
-                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
+                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm",
+                "depth_range_mm",
+                code="depth-out-of-range",
             )
     speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
     if "marks" not in content:
         if lost := [key for key in _PAINTED if key in content]:
-            raise Error("this says something of marks, and there are none", lost[0])
+            raise Error(
+                "this says something of marks, and there are none", lost[0], code="measurements-mixed"
+            )
         return Measurements(rows, name, about, span, speed)
     if rows:
         raise Error(
             "marks tell what the other kinds tell, and are fitted alone: leave these out, or make two files",
             next(iter(rows)),
+            code="measurements-mixed",
         )
     plan, marks = content.get("plan"), content["marks"]
     return Measurements(
@@ -205,7 +222,7 @@ def _read_json(text: str) -> Measurements:
 
 def _expected(given) -> dict:
     if not isinstance(given, dict):
-        raise Error("this must be an object", "expected")
+        raise Error("this must be an object", "expected", code="wrong-type")
     json_fields.refuse_unknown(given, EXPECTED, "expected")
     return {key: json_fields.number(value, f"expected.{key}", 0, 30) for key, value in given.items()}
 
@@ -217,17 +234,24 @@ def _row(kind: str, row: dict, where: str) -> Row:
     numbers = {}
     for name in names:
         if name not in row:
-            raise Error(f"the key {name} is missing", where)
+            raise Error(f"the key {name} is missing", where, code="key-missing")
         numbers[name] = json_fields.number(row[name], f"{where}.{name}")
     for name in series:
         values = row.get(name, [] if name == "beta_deg" else None)
         numbers[name] = json_fields.numbers(values, f"{where}.{name}")
     depth = numbers.pop("depth_mm")
     if not 0 < depth <= LONGEST_MM:
-        raise Error(f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, depth)
+        raise Error(
+            f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+            where,
+            depth,
+            code="depth-out-of-range",
+        )
     for name, value in numbers.items():
         if name.endswith("_mm") and not isinstance(value, tuple) and abs(value) > LONGEST_MM:
             raise Error(
-                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
+                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true",
+                f"{where}.{name}",
+                code="out-of-range",
             )
     return Row(kind, where, depth, numbers)

@@ -47,6 +47,7 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
             "read: turn by 90 degrees before the drag; are these radians?",
             where,
             alpha0_deg,
+            code="angles-in-radians",
         )
     if alpha_deg and max(alpha_deg) < math.pi:
         raise Error(
@@ -54,6 +55,7 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
             "radians?",
             where,
             max(alpha_deg),
+            code="angles-in-radians",
         )
     if len(s_mm) == len(alpha_deg) and len(s_mm) > 1:
         first, last = int(np.argmin(s_mm)), int(np.argmax(s_mm))
@@ -63,6 +65,7 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
                 f"after {s_mm[last]:g} mm, but a dragged brush turns towards its motion: are the rows in the right "
                 "order?",
                 where,
+                code="angles-grow",
             )
 
 
@@ -85,6 +88,7 @@ def refuse_other_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
             f"{'before' if found[0] < 0 else 'after'} s_mm = 0, where it was {alpha0_deg:g} degrees: count s_mm from "
             "where that drag begins, and all angles in degrees",
             where,
+            code="angles-from-elsewhere",
         )
 
 
@@ -155,6 +159,7 @@ def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], whe
             f"{law} was measured to a depth of {deepest_mm:g} mm, the brush is to be pressed {range_mm[1]:g} mm: "
             f'measure it deeper, or give "depth_range_mm": [{range_mm[0]:g}, {deepest_mm:g}]',
             where,
+            code="depth-not-measured",
         )
 
 
@@ -164,6 +169,7 @@ def refuse_no_lag(points) -> None:
         raise Error(
             "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new with --lag 0",
             points[0].where,
+            code="pen-without-lag",
         )
 
 
@@ -188,6 +194,7 @@ def refuse_halves_as_widths(rows: dict) -> None:
             "these rows are twice what those of width say: half_width counts from the middle to one edge, width from "
             "edge to edge",
             halves[0].where,
+            code="half-width-doubled",
         )
 
 
@@ -206,6 +213,7 @@ def refuse_falling(law: str, points) -> None:
             "pressed deeper paints wider and trails more: are the rows in the right order, and depths counted from "
             "first contact down?",
             points[0].where,
+            code="law-falls",
         )
 
 
@@ -218,12 +226,14 @@ def refuse_unexplained(law: str, points, fit) -> None:
             f"the {law} is {values.mean():.3g} mm at every depth: such a pen is made by brushsvg brush new, with "
             "--lag 0 if it does not trail",
             points[0].where,
+            code="pen-without-lag",
         )
     if len(values) > 3 and fit.r_squared < 0.5:
         raise Error(
             f"the {law} hardly follows the depth, R^2 {fit.r_squared:.2f}: are the rows in the right order, and all of "
             "one brush?",
             points[0].where,
+            code="law-scatters",
         )
 
 
@@ -234,6 +244,7 @@ def refuse_width(depth_mm: float, width_mm: float) -> None:
             f"the width is {width_mm:.3g} mm at depth {depth_mm:g} mm: depths and widths both count in millimetres",
             "half_width",
             width_mm / 2,
+            code="not-millimetres",
         )
 
 
@@ -250,6 +261,7 @@ def refuse_brush(brush) -> None:
             "millimetres; for a pen that does not trail take brushsvg brush new --lag 0",
             "lag",
             lag,
+            code="not-millimetres",
         )
     if not brush.tip_to_widest.assumed and widest > lag + gap:
         raise Error(
@@ -257,6 +269,7 @@ def refuse_brush(brush) -> None:
             f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres",
             "tip_to_widest",
             widest,
+            code="not-millimetres",
         )
     length = float(np.max(brush.footprints.dragged[-1].outline_mm[:, 0]))
     if not brush.tip_gap.assumed and gap > 1.5 * length:
@@ -265,6 +278,7 @@ def refuse_brush(brush) -> None:
             "friction must lie in it; measure the gap from the tip of the footprint, in millimetres",
             "tip_gap",
             gap,
+            code="not-millimetres",
         )
 
 
@@ -283,6 +297,7 @@ def refuse_open(brush, fitted) -> None:
         f"these values leave the {fitted.name} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at depth "
         f"{depths[worst]:.3g} mm: {todo}",
         fitted.name,
+        code="law-undetermined",
     )
 
 

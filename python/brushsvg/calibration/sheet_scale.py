@@ -69,10 +69,12 @@ def refuse_scale(scale: SheetScale | None) -> None:
             f"the sheet is {scale.told(scale.x)} than the plan in x and {scale.told(scale.y)} in y: was it scanned at "
             "different resolutions in x and y? Outlines count in mm of the tool's way",
             "marks",
+            code="marks-scaled",
         )
     if scale.is_off(scale.both):
         raise Error(
             f"the sheet is {scale.told(scale.both)} than the plan: was the page printed, or the paint scanned, at "
             "another scale? Outlines count in mm of the tool's way",
             "marks",
+            code="marks-scaled",
         )

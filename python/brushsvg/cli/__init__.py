@@ -75,11 +75,13 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
 
 def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
     from .arguments import parse
-    from .console import RefusedError, say
+    from .console import RefusedError, say, say_notice, tell_in_json
 
     file = ""
     try:
+        tell_in_json(False)
         args = parse(argv)
+        tell_in_json(args.messages == "json")
         file = getattr(args, "input", "")
         from . import commands
 
@@ -87,8 +89,8 @@ def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
     except SystemExit as leaving:
         return leaving.code
     except RefusedError as refused:
-        for line in refused.lines:
-            say(*line)
+        for notice in refused.why:
+            say_notice(refused.file, notice)
         return 1
     except OSError:
         raise

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
+from collections.abc import Iterable
 from contextlib import contextmanager
 
-from ..errors import Error
+from ..errors import Error, Notice
 from ..text_summary import folded
 
 
 class RefusedError(Exception):
-    """lines: (file, element, sentence), one for each thing that forbids to go on."""
+    """why: one for each thing that forbids to go on; file: the one that they are of."""
 
-    def __init__(self, lines: list[tuple[str, str, str]]):
-        super().__init__(lines)
-        self.lines = lines
+    def __init__(self, file: str, why: list[Notice]):
+        super().__init__(file, why)
+        self.file, self.why = file, why
 
 
 @contextmanager
@@ -24,19 +26,23 @@ def about(file: str):
     try:
         yield
     except Error as problem:
-        raise RefusedError([(problem.file or file, problem.where, str(problem))]) from None
+        raise RefusedError(problem.file or file, [problem.notice()]) from None
 
 
 def say(*parts: str) -> None:
     """One line on stderr: what a drawing puts into an id can neither break it nor steer the terminal."""
     if sys.stderr is not None:
         text = ": ".join(part for part in ("brushsvg", *parts) if part)
-        clear_stage()
-        try:
-            sys.stderr.write("".join(letter if letter.isprintable() else " " for letter in text) + "\n")
-            sys.stderr.flush()
-        except OSError:  # nobody reads: what was asked for is done or refused all the same
-            let_go(sys.stderr)
+        _write_line("".join(letter if letter.isprintable() else " " for letter in text))
+
+
+def _write_line(text: str) -> None:
+    clear_stage()
+    try:
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+    except OSError:  # nobody reads: what was asked for is done or refused all the same
+        let_go(sys.stderr)
 
 
 def let_go(stream) -> None:
@@ -48,15 +54,32 @@ def let_go(stream) -> None:
 def tell(text: str) -> None:
     """What was asked for, on stdout."""
     if sys.stdout is None:
-        raise RefusedError([("standard output", "", "it is closed")])
+        raise RefusedError("standard output", [Notice("", "it is closed", code="file-unwritable")])
     clear_stage()
     sys.stdout.write(text)
 
 
-def warn(file: str, warnings) -> None:
-    """warnings: (element, sentence); many of a kind become one line."""
-    for where, sentence in folded(warnings):
-        say(file, where, sentence)
+def warn(file: str, warnings: Iterable[Notice]) -> None:
+    """Many warnings of a kind become one line."""
+    for notice in folded(warnings):
+        say_notice(file, notice)
+
+
+def say_notice(file: str, notice: Notice) -> None:
+    """One line of text, or of JSON for programs that asked for it."""
+    if not _in_json:
+        say(file, notice.where, notice.told)
+    elif sys.stderr is not None:
+        _write_line(json.dumps({"file": file, **notice.as_json()}))
+
+
+def tell_in_json(is_asked: bool) -> None:
+    """How warnings and refusals are told from now on."""
+    global _in_json
+    _in_json = is_asked
+
+
+_in_json = False
 
 
 def stage(text: str) -> None:

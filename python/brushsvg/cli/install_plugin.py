@@ -40,7 +40,9 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
         (folder / NOTE).write_bytes(os.fsencode(f"{note}\n") if note else b"")
     except OSError as problem:
         raise Error(
-            f"cannot be written: {(problem.strerror or str(problem)).lower()}", file=str(folder)
+            f"cannot be written: {(problem.strerror or str(problem)).lower()}",
+            file=str(folder),
+            code="file-unwritable",
         ) from None
     return folder
 
@@ -73,7 +75,8 @@ def _from_tree(source: Path) -> dict[str, bytes]:
     if not found:
         raise Error(
             "the extension is not part of this package, its licence being another: give its zip, "
-            "brushsvg-inkscape.zip, which `make plugins` makes of the source"
+            "brushsvg-inkscape.zip, which `make plugins` makes of the source",
+            code="plugin-missing",
         )
     return {path.name: path.read_bytes() for path in found}
 
@@ -85,13 +88,15 @@ def _from_zip(path: str) -> dict[str, bytes]:
             names = {each.filename: each.filename.rpartition("/")[2] for each in inside}
             known = all(name.endswith(_SUFFIXES) or name == "LICENSE" for name in names.values())
             if not known or "brushsvg_program.py" not in names.values():
-                raise Error("this is not the extension's zip", file=path)
+                raise Error("this is not the extension's zip", file=path, code="plugin-zip")
             if sum(each.file_size for each in inside) > _LARGEST:
-                raise Error(f"it holds more than {_LARGEST} bytes", file=path)
+                raise Error(f"it holds more than {_LARGEST} bytes", file=path, code="file-too-large")
             return {names[each.filename]: file.read(each) for each in inside}
     except OSError as problem:
         raise Error(
-            f"the file cannot be read: {(problem.strerror or str(problem)).lower()}", file=path
+            f"the file cannot be read: {(problem.strerror or str(problem)).lower()}",
+            file=path,
+            code="file-unreadable",
         ) from None
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError):
-        raise Error("this is not a zip that can be read", file=path) from None
+        raise Error("this is not a zip that can be read", file=path, code="plugin-zip") from None

@@ -85,7 +85,10 @@ def _opened(path) -> tuple:
         reader = READERS.get(extension.lower())
         if reader is None:
             known = ", ".join(READERS)
-            raise Error(f"{extension or 'no extension'} is not a drawing format that is read; known: {known}")
+            raise Error(
+                f"{extension or 'no extension'} is not a drawing format that is read; known: {known}",
+                code="drawing-format",
+            )
         return reader, read_bytes(path)
     if hasattr(path, "modelspace"):
         text = io.StringIO()
@@ -95,5 +98,7 @@ def _opened(path) -> tuple:
     if ElementTree.iselement(root) and isinstance(root, ElementTree.Element):
         return _svg, ElementTree.tostring(root)
     raise Error(
-        f"a {type(path).__name__} is neither the path of a drawing nor an open one, an ezdxf document or an ElementTree"
+        f"a {type(path).__name__} is neither the path of a drawing nor an open one, "
+        "an ezdxf document or an ElementTree",
+        code="drawing-format",
     )

@@ -14,4 +14,4 @@ def refuse_damage(design: Design) -> None:
     """Error with the first notice of geometry that is broken, as it was drawn, and was read up to there."""
     for notice in design.notices:
         if notice.damaged:
-            raise Error(notice.sentence, where=notice.where)
+            raise Error(notice.sentence, where=notice.where, code=notice.code, advice=notice.advice)

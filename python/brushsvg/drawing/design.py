@@ -6,19 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Notice:
-    """A warning about one element.
-
-    damaged: the geometry itself is broken and was read up to the error; convert refuses it unless lenient; layer:
-    where the element lies, None for what concerns the whole drawing.
-    """
-
-    where: str
-    sentence: str
-    damaged: bool = False
-    layer: str | None = None
+from ..errors import Notice
 
 
 @dataclass(frozen=True)

@@ -89,12 +89,14 @@ def _fitting_scale(
     growing = size if keeps_width else size + margin
     if (room <= 0).any():
         raise Error(
-            f"strokes {margin.max():.4g} mm wide do not fit {fit_mm[0]:g} x {fit_mm[1]:g} mm", where="fit"
+            f"strokes {margin.max():.4g} mm wide do not fit {fit_mm[0]:g} x {fit_mm[1]:g} mm",
+            where="fit",
+            code="drawing-does-not-fit",
         )
     with np.errstate(divide="ignore"):
         scale = float((room / growing).min())
     if not math.isfinite(scale):
-        raise Error("marks without a size cannot be fitted", where="fit")
+        raise Error("marks without a size cannot be fitted", where="fit", code="drawing-does-not-fit")
     return scale
 
 
@@ -109,7 +111,7 @@ def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
 
     for path in wanted:
         if not any(chosen(element.layer, [path]) for element in design.elements):
-            raise Error(_why_nothing(design, path, chosen), where="layer")
+            raise Error(_why_nothing(design, path, chosen), where="layer", code="nothing-to-paint")
     elements = tuple(element for element in design.elements if chosen(element.layer))
     notices = tuple(notice for notice in design.notices if notice.layer is None or chosen(notice.layer))
     return replace(design, elements=elements, notices=notices)
@@ -134,9 +136,15 @@ def _layer(name: str, paths: list[str]) -> str:
             return found[0]
         if found:
             listed = ", ".join(map(repr, found[:_NAMED]))
-            raise Error(f"{name!r} names {len(found)} layers: {listed}; write the whole name", where="layer")
+            raise Error(
+                f"{name!r} names {len(found)} layers: {listed}; write the whole name",
+                where="layer",
+                code="layer-ambiguous",
+            )
     there = ", ".join(paths[:_NAMED]) + (f" and {len(paths) - _NAMED} more" if len(paths) > _NAMED else "")
-    raise Error(f"there is no layer {name!r}; there are: {there or 'none'}", where="layer")
+    raise Error(
+        f"there is no layer {name!r}; there are: {there or 'none'}", where="layer", code="layer-unknown"
+    )
 
 
 def _why_nothing(design: Design, path: str, chosen) -> str:

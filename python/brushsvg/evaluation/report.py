@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from .. import _core
+from ..errors import Notice
 from ..units import clock
 from .error_causes import reason
 from .uncertainty import Uncertainty
@@ -67,11 +68,9 @@ class Report:
     strokes: tuple[Figures, ...]
     total: Figures
     time_s: float
-    warnings: tuple[tuple[str, str], ...] = ()
-    refused: tuple[tuple[str, str], ...] = ()  # strokes that are not among those of the report
-    forbidden: tuple[
-        tuple[str, str], ...
-    ] = ()  # of the warnings, those for which no program would be written
+    warnings: tuple[Notice, ...] = ()
+    refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
+    forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
     sure: Uncertainty | None = None  # None: nothing is known of how sure the brush is
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
@@ -200,9 +199,9 @@ def to_json(report: Report) -> str:
                 "uncertainty_from": None if sure is None else sure.source,
                 "total": figures(report.total, None if sure is None else sure.total),
                 "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
-                "warnings": [{"where": where, "sentence": sentence} for where, sentence in report.warnings],
-                "refused": [{"where": where, "sentence": sentence} for where, sentence in report.refused],
-                "forbidden": [{"where": where, "sentence": sentence} for where, sentence in report.forbidden],
+                "warnings": [notice.as_json() for notice in report.warnings],
+                "refused": [notice.as_json() for notice in report.refused],
+                "forbidden": [notice.as_json() for notice in report.forbidden],
                 "groups": [
                     {"strokes": list(group.strokes), "overlap": round(group.overlap, 6)}
                     for group in report.groups
@@ -266,10 +265,10 @@ def to_text(report: Report) -> str:
         lines += ["", report.advice]
     if report.refused:
         lines += ["", f"Left out, since they cannot be painted: {len(report.refused)}"]
-        lines += ["  " + ": ".join(refusal) for refusal in report.refused]
+        lines += ["  " + ": ".join((notice.where, notice.told)) for notice in report.refused]
     if report.warnings:
         lines += ["", f"Warnings: {len(report.warnings)}"]
-        lines += ["  " + ": ".join(filter(None, warning)) for warning in report.warnings]
+        lines += ["  " + ": ".join(filter(None, (notice.where, notice.told))) for notice in report.warnings]
     return "\n".join([*lines, ""])
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Error
+from ..errors import Error, Notice
 from .cell import NEEDED_BY, RELOADS, Cell, Station, robot_from_paper, value_mm
 from .frames import moved, normal_tilt_deg
 from .move_extents import from_origin, ways
@@ -23,9 +23,10 @@ def check(cell: Cell) -> None:
         raise Error(
             f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}",
             where="heights.clearance_mm",
+            code="cell-heights",
         )
     if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
-        raise Error(f"language {cell.language!r} needs a table {table}", where=table)
+        raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
     _check_paper(cell)
     _check_workspace(cell)
     if cell.servo:
@@ -35,9 +36,17 @@ def check(cell: Cell) -> None:
 
 def _check_paper(cell: Cell) -> None:
     if cell.paper.taught_mm and len(cell.paper.taught_mm) not in (3, 4):
-        raise Error(f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4", where="paper.taught_mm")
+        raise Error(
+            f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4",
+            where="paper.taught_mm",
+            code="paper-taught",
+        )
     if cell.paper.taught_mm and (any(cell.paper.origin_mm) or any(cell.paper.rotation_deg)):
-        raise Error("the paper has both a pose and taught points: one must go", where="paper.taught_mm")
+        raise Error(
+            "the paper has both a pose and taught points: one must go",
+            where="paper.taught_mm",
+            code="paper-taught",
+        )
     try:
         tilt_deg = normal_tilt_deg(robot_from_paper(cell))
     except Error as refusal:
@@ -48,33 +57,40 @@ def _check_paper(cell: Cell) -> None:
         raise Error(
             f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
             where="paper",
+            code="paper-tilted",
         )
 
 
 def _check_workspace(cell: Cell) -> None:
     box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
     if box_mm and not all(low < high for low, high in zip(*box_mm, strict=True)):
-        raise Error("the first corner must be the lower one in x, y and z", where="workspace.box_mm")
+        raise Error(
+            "the first corner must be the lower one in x, y and z",
+            where="workspace.box_mm",
+            code="cell-workspace",
+        )
     for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
         if not all(low < high for low, high in zip(*corners, strict=True)):
             sentence = f"box {number}: the first corner must be the lower one in x, y and z"
-            raise Error(sentence, where="workspace.keep_out_mm")
+            raise Error(sentence, where="workspace.keep_out_mm", code="cell-workspace")
     if reach_mm and not reach_mm[0] < reach_mm[1]:
-        raise Error("the least distance must be below the greatest", where="workspace.reach_mm")
+        raise Error(
+            "the least distance must be below the greatest", where="workspace.reach_mm", code="cell-workspace"
+        )
 
 
 LARGEST_SHEET_MM = 1e5
 
 
-def out_of_reach(cell: Cell) -> list[tuple[str, str]]:
-    """(key, sentence) where no sheet of any size has a point that the tool may go to, on it or above it."""
-    found: list[tuple[str, str]] = []
+def out_of_reach(cell: Cell) -> list[Notice]:
+    """A notice of the key where no sheet of any size has a point that the tool may go to, on it or above it."""
+    found: list[Notice] = []
     for height_mm in (0.0, cell.heights.safe_mm):
         found = found or _beyond(cell, height_mm)
     return found
 
 
-def _beyond(cell: Cell, height_mm: float) -> list[tuple[str, str]]:
+def _beyond(cell: Cell, height_mm: float) -> list[Notice]:
     box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
     ends = (-cell.workspace.margin_mm, LARGEST_SHEET_MM)
     sheet = np.array([(ends[a], ends[b], height_mm) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
@@ -86,7 +102,7 @@ def _beyond(cell: Cell, height_mm: float) -> list[tuple[str, str]]:
             left = _clipped(left, sign * (left[:, axis] - bound))
             if not len(left):
                 sentence = f"{at} has {name} {where} {bound:g} mm, outside the range [{low:g}, {high:g}] mm of the box"
-                return [("workspace.box_mm", sentence)]
+                return [Notice("workspace.box_mm", sentence, code="sheet-out-of-reach")]
     if reach_mm:
         nearest_mm, farthest_mm = _distances_mm(left)
         if nearest_mm > reach_mm[1] or farthest_mm < reach_mm[0]:
@@ -97,7 +113,7 @@ def _beyond(cell: Cell, height_mm: float) -> list[tuple[str, str]]:
             )
             bounds = "[{:g}, {:g}] mm".format(*reach_mm)
             sentence = f"{at} lies {away} from the robot's origin, outside the range {bounds} of its reach"
-            return [("workspace.reach_mm", sentence)]
+            return [Notice("workspace.reach_mm", sentence, code="sheet-out-of-reach")]
     return []
 
 
@@ -131,33 +147,46 @@ def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
     lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
     if NEEDED_BY.get(cell.language) == "servo" and not lies_level:
-        raise Error("a servo's heights are those over the paper: it must lie level, at z 0", where="paper")
+        raise Error(
+            "a servo's heights are those over the paper: it must lie level, at z 0",
+            where="paper",
+            code="paper-tilted",
+        )
     table = np.array(cell.servo.table)
     steps = np.diff(table, axis=0)
     if len(table) < 2 or not ((steps[:, 0] > 0).all() or (steps[:, 0] < 0).all()):
-        raise Error("at least two heights are needed, steadily rising or falling", where="servo.table")
+        raise Error(
+            "at least two heights are needed, steadily rising or falling",
+            where="servo.table",
+            code="servo-table",
+        )
     if not ((steps[:, 1] > 0).all() or (steps[:, 1] < 0).all()):
-        raise Error("the values must steadily rise or fall with the height", where="servo.table")
+        raise Error(
+            "the values must steadily rise or fall with the height", where="servo.table", code="servo-table"
+        )
     if (table[:, 1] < 0).any():
-        raise Error(f"value {table[:, 1].min():g} is below 0", where="servo.table")
+        raise Error(f"value {table[:, 1].min():g} is below 0", where="servo.table", code="servo-table")
     low, high = table[:, 0].min(), table[:, 0].max()
     if not (low <= cell.heights.lowest_mm and cell.heights.safe_mm <= high):
         raise Error(
             f"the heights [{low:g}, {high:g}] mm must hold lowest_mm {cell.heights.lowest_mm:g} and "
             f"safe_mm {cell.heights.safe_mm:g}",
             where="servo.table",
+            code="servo-table",
         )
     if (value := value_mm(cell)) > COARSEST_VALUE_MM:
         raise Error(
             f"one value changes the height by {value:.2g} mm, outside the range [0, {COARSEST_VALUE_MM:g}] mm: depths "
             "would be off by half of it",
             where="servo.table",
+            code="servo-coarse",
         )
     if cell.heights.clearance_mm < 2 * value:
         raise Error(
             f"clearance_mm {cell.heights.clearance_mm:g} is outside the range [{2 * value:.2g}, "
             f"{cell.heights.safe_mm:g}] mm: one value of the servo changes the height by {value:.2g} mm",
             where="heights.clearance_mm",
+            code="cell-heights",
         )
 
 
@@ -166,40 +195,53 @@ def _check_paint(cell: Cell) -> None:
     for number, station in enumerate(cell.stations, 1):
         where = f"station {number}"
         if names.index(station.name) != number - 1:
-            raise Error(f"the name {station.name!r} is given twice", where=where)
+            raise Error(f"the name {station.name!r} is given twice", where=where, code="name-taken")
         _check_heights_of(station, cell, where)
         for colour in station.colours:
             if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
-                raise Error(f"colour {colour[:24]!r} is not written as #rrggbb", where=where)
+                raise Error(
+                    f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid"
+                )
         if station.by_hand and (station.depth_mm or station.wipe_mm):
-            raise Error("a person dips here: depth_mm and wipe_mm have no meaning", where=where)
+            raise Error(
+                "a person dips here: depth_mm and wipe_mm have no meaning", where=where, code="cell-station"
+            )
         if (
             not station.by_hand
             and not station.depth_mm
             and station.name != getattr(cell.reload, "wash", None)
         ):
-            raise Error("depth_mm 0 takes no paint", where=where)
+            raise Error("depth_mm 0 takes no paint", where=where, code="cell-station")
     if cell.stations and not cell.reload:
-        raise Error("stations need a table reload that says when to visit them", where="reload")
+        raise Error(
+            "stations need a table reload that says when to visit them", where="reload", code="cell-reload"
+        )
     if not cell.reload:
         return
     if cell.reload.when not in RELOADS:
-        raise Error(f"{cell.reload.when!r} is none of {', '.join(RELOADS)}", where="reload.when")
+        raise Error(
+            f"{cell.reload.when!r} is none of {', '.join(RELOADS)}", where="reload.when", code="cell-reload"
+        )
     if not cell.stations:
-        raise Error("there is no station to reload at", where="reload")
+        raise Error("there is no station to reload at", where="reload", code="cell-reload")
     if cell.reload.when == "length" and not cell.reload.every_mm > 2 * cell.reload.backtrack_mm:
         raise Error(
             f"every_mm {cell.reload.every_mm:g} must be more than twice backtrack_mm {cell.reload.backtrack_mm:g}",
             where="reload.every_mm",
+            code="cell-reload",
         )
     if cell.reload.wash and cell.reload.wash not in names:
-        raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash")
+        raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash", code="cell-reload")
 
 
 def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
     if station.by_hand:
         if cell.servo:
-            raise Error("a servo's brush falls while the program waits: by_hand cannot be", where=where)
+            raise Error(
+                "a servo's brush falls while the program waits: by_hand cannot be",
+                where=where,
+                code="cell-station",
+            )
         return
     top = cell.heights.safe_mm - cell.heights.clearance_mm
     if not station.surface_mm <= station.rim_mm <= top:
@@ -207,16 +249,22 @@ def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
             f"rim_mm {station.rim_mm:g} is outside the range [{station.surface_mm:g}, {top:g}] mm, from the paint's "
             f"surface to clearance_mm below the safe height",
             where=where,
+            code="cell-station",
         )
     bottom = station.surface_mm - station.depth_mm
     if bottom < cell.heights.lowest_mm:
-        raise Error(f"it dips to {bottom:g} mm, below lowest_mm {cell.heights.lowest_mm:g}", where=where)
+        raise Error(
+            f"it dips to {bottom:g} mm, below lowest_mm {cell.heights.lowest_mm:g}",
+            where=where,
+            code="cell-station",
+        )
     for point in station.wipe_mm:
         if not station.rim_mm <= point[2] <= cell.heights.safe_mm:
             raise Error(
                 f"a wipe at {point[2]:g} mm is outside the range [{station.rim_mm:g}, {cell.heights.safe_mm:g}] mm, "
                 f"from the rim to the safe height",
                 where=where,
+                code="cell-station",
             )
 
 
@@ -240,32 +288,38 @@ USUAL = (  # (key, least, greatest, what is unusual beyond them)
 )
 
 
-def remarks(cell: Cell) -> list[tuple[str, str]]:
-    """(key, sentence) for what is odd, and yet may be meant so."""
+OF_EXAMPLE = Notice(
+    "paper",
+    "the paper's place is an example: teach where yours lies",
+    code="paper-example",
+    advice="brushsvg cell new --taught writes a cell with it",
+)
+
+
+def remarks(cell: Cell) -> list[Notice]:
+    """A notice of the key for what is odd, and yet may be meant so."""
     found = []
     for key, least, greatest, why in USUAL:
         table, _, name = key.partition(".")
         value = getattr(getattr(cell, table), name, None)
         if value is not None and not least <= value <= greatest:
-            found.append((key, f"{value:g} is outside the usual range [{least:g}, {greatest:g}]: {why}"))
+            sentence = f"{value:g} is outside the usual range [{least:g}, {greatest:g}]: {why}"
+            found.append(Notice(key, sentence, code="unusual-value", about=key))
     if cell.servo and (value := value_mm(cell)) > 0.1:
-        found.append(
-            ("servo.table", f"one value changes the height by {value:.2g} mm: depths are off by half of it")
-        )
+        sentence = f"one value changes the height by {value:.2g} mm: depths are off by half of it"
+        found.append(Notice("servo.table", sentence, code="servo-coarse"))
     if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
-        found.append(
-            (
-                "tool.tcp_mm",
-                f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm",
-            )
-        )
+        sentence = f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm"
+        found.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
     if cell.paper.example:
-        found.append(("paper", "its place is an example: teach yours (brushsvg cell new --taught ...)"))
+        found.append(OF_EXAMPLE)
     return found + _corner(cell)
 
 
-def _corner(cell: Cell) -> list[tuple[str, str]]:
+def _corner(cell: Cell) -> list[Notice]:
     """The sheet's corner may be out of reach, where nothing is painted near it."""
     corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
-    sentences = astray(corner, robot_from_paper(cell), replace(cell, servo=None))
-    return [("workspace", f"over the sheet's lower left corner {said}") for said in sentences]
+    return [
+        replace(each, where="workspace", sentence=f"over the sheet's lower left corner {each.sentence}")
+        for each in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
+    ]

@@ -40,7 +40,9 @@ def read_cell(path: str | os.PathLike) -> Cell:
     try:
         return parse_cell(data.decode("utf-8"))
     except UnicodeDecodeError:
-        raise Error("the file is not a cell: it is not text in UTF-8", file=str(path)) from None
+        raise Error(
+            "the file is not a cell: it is not text in UTF-8", file=str(path), code="not-toml"
+        ) from None
     except Error as refusal:
         refusal.file = str(path)
         raise
@@ -51,20 +53,24 @@ def parse_cell(text: str) -> Cell:
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:  # ValueError: also a whole number of thousands of digits
-        raise Error(f"the cell file is not TOML: {str(problem)[:200]}") from None
+        raise Error(f"the cell file is not TOML: {str(problem)[:200]}", code="not-toml") from None
     if document.pop("format", None) != FORMAT:
-        raise Error(f'the file is not a cell: format = "{FORMAT}" is missing', where="format")
+        raise Error(
+            f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown"
+        )
     if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
         raise Error(
-            f"version {str(version)[:40]} of the cell file is not known; known: {VERSION}", where="version"
+            f"version {str(version)[:40]} of the cell file is not known; known: {VERSION}",
+            where="version",
+            code="version-unknown",
         )
     parts = {name: document.pop(name) for name in TABLES if name in document}
     stations = document.pop("stations", [])
     if not isinstance(stations, list):
-        raise Error("stations are written as [[stations]]", where="stations")
+        raise Error("stations are written as [[stations]]", where="stations", code="wrong-type")
     for name in TABLES:
         if name not in parts and name not in OPTIONAL_TABLES:
-            raise Error(f"the cell file lacks the table {name}", where=name)
+            raise Error(f"the cell file lacks the table {name}", where=name, code="key-missing")
     cell = Cell(
         **_read(Cell, document, ""),
         **{name: TABLES[name](**_read(TABLES[name], part, name)) for name, part in parts.items()},
@@ -90,15 +96,17 @@ def _read(table, values, where: str) -> dict:
     known = entries(table)
     prefix = f"{where}." if where else ""
     if not isinstance(values, dict):
-        raise Error(f"{where} must be a table", where=where)
+        raise Error(f"{where} must be a table", where=where, code="wrong-type")
     for key in values:
         if key not in known:
             raise Error(
-                f"a cell has no key {prefix}{key}; known here: {', '.join(known)}", where=prefix + key
+                f"a cell has no key {prefix}{key}; known here: {', '.join(known)}",
+                where=prefix + key,
+                code="key-unknown",
             )
     for key in required(table):
         if key not in values:
-            raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key)
+            raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
     return {key: _value(known[key], value, prefix + key) for key, value in values.items()}
 
 
@@ -107,11 +115,15 @@ def _value(entry: Entry, value, where: str):
         return _text(value, where)
     if entry.kind == "texts":
         if not isinstance(value, list):
-            raise Error(f"{where} must be a list of texts, not {str(value)[:40]}", where=where)
+            raise Error(
+                f"{where} must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type"
+            )
         return tuple(_text(item, where) for item in value)
     if entry.kind == "yes":
         if not isinstance(value, bool):
-            raise Error(f"{where} must be true or false, not {str(value)[:40]}", where=where)
+            raise Error(
+                f"{where} must be true or false, not {str(value)[:40]}", where=where, code="wrong-type"
+            )
         return value
     if entry.kind in ("number", "whole"):
         return _number(entry, value, where)
@@ -120,7 +132,7 @@ def _value(entry: Entry, value, where: str):
 
 def _text(value, where: str) -> str:
     if not isinstance(value, str) or not value.isprintable() or not value or len(value) > 200:
-        raise Error(f"{where} must be one line of text", where=where)
+        raise Error(f"{where} must be one line of text", where=where, code="wrong-type")
     return value
 
 
@@ -128,10 +140,14 @@ def _number(entry: Entry, value, where: str):
     wanted = int if entry.kind == "whole" else int | float
     if isinstance(value, bool) or not isinstance(value, wanted) or value != value or abs(value) == math.inf:
         said = "a whole number" if entry.kind == "whole" else "a finite number"
-        raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where)
+        raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
         said = str(value)[:40] if isinstance(value, int) else f"{value:g}"
-        raise Error(f"{where} {said} is outside the range [{entry.least:g}, {entry.greatest:g}]", where=where)
+        raise Error(
+            f"{where} {said} is outside the range [{entry.least:g}, {entry.greatest:g}]",
+            where=where,
+            code="out-of-range",
+        )
     return value if entry.kind == "whole" else float(value)
 
 
@@ -139,7 +155,7 @@ def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
     count = shape[0]
     if not isinstance(value, list) or (count is not None and len(value) != count) or len(value) > 1000:
         wanted = "a list" if count is None else f"{count} {'numbers' if len(shape) == 1 else 'rows'}"
-        raise Error(f"{where} must be {wanted}, not {str(value)[:40]}", where=where)
+        raise Error(f"{where} must be {wanted}, not {str(value)[:40]}", where=where, code="wrong-type")
     if len(shape) == 1:
         return tuple(_number(entry, item, where) for item in value)
     return tuple(_rows(entry, shape[1:], item, where) for item in value)

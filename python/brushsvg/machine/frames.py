@@ -46,14 +46,16 @@ def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
     for name, side in (("second", x), ("third", y)):
         if np.linalg.norm(side) < LEAST_TAUGHT_MM:
             raise Error(
-                f"the {name} point lies {np.linalg.norm(side):.1f} mm from the first, less than {LEAST_TAUGHT_MM:g} mm"
+                f"the {name} point lies {np.linalg.norm(side):.1f} mm from the first, less than {LEAST_TAUGHT_MM:g} mm",
+                code="paper-taught",
             )
     x /= np.linalg.norm(x)
     across = y - x * (x @ y)
     if np.linalg.norm(across) < LEAST_TAUGHT_MM:
         raise Error(
             f"the third point lies {np.linalg.norm(across):.1f} mm beside the line of the other two, "
-            f"less than {LEAST_TAUGHT_MM:g} mm"
+            f"less than {LEAST_TAUGHT_MM:g} mm",
+            code="paper-taught",
         )
     frame = np.eye(4)
     frame[:3, 0] = x
@@ -65,7 +67,8 @@ def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
         if off_mm > flatness_mm:
             raise Error(
                 f"the fourth point lies {off_mm:.2f} mm off the plane of the other three, outside the range "
-                f"[0, {flatness_mm:g}] mm of flatness_mm: the paper is not flat, or a point was taught wrongly"
+                f"[0, {flatness_mm:g}] mm of flatness_mm: the paper is not flat, or a point was taught wrongly",
+                code="paper-not-flat",
             )
     return frame
 

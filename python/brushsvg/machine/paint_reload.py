@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, Notice
 from .cell import Cell, Station
 
 
@@ -49,15 +49,19 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
     return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
 
 
-def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[tuple[str, str]]:
-    """(stroke, sentence) for parts that are longer than a load of paint lasts, unless they may not be cut."""
+def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
+    """A notice of the stroke for parts that are longer than a load of paint lasts, unless they may not be cut."""
     if not cell.reload or cell.reload.when != "length":
         return []
     every_mm, deepest_mm = cell.reload.every_mm, brush.depth_range_mm[1]
     last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the lift comes back over its own mark
     sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
     return [
-        (a_pass.stroke, f"{length_mm:.0f} {sentence} {every_mm:g}] mm of a load of paint")
+        Notice(
+            a_pass.stroke,
+            f"{length_mm:.0f} {sentence} {every_mm:g}] mm of a load of paint",
+            code="load-too-long",
+        )
         for a_pass in loads.loads
         if (length_mm := painted_mm(a_pass)) > last_mm and _asked(a_pass) is not False
     ]
@@ -130,4 +134,5 @@ def _station_for(a_pass, cell: Cell) -> Station:
     raise Error(
         f"no station of cell {cell.name} has paint of colour {colour or 'none'}; there are {served}",
         a_pass.stroke,
+        code="colour-not-served",
     )

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, Notice
 from .cell import Cell, robot_from_paper
 from .corner_blending import blend_radii, blended
 from .paint_reload import PlanInLoads
@@ -46,18 +46,24 @@ def check_rounding(cell: Cell, tolerance_mm: float) -> None:
             f"{cell.decimals} decimals of cell {cell.name} round places by up to {rounded_mm:g} mm, outside the "
             f"range [0, {tolerance_mm / 5:g}] mm, a fifth of the tolerance",
             where="decimals",
+            code="decimals-too-few",
         )
 
 
-def off_sheet(marks, brush, sheet_mm) -> list[tuple[str, str]]:
-    """(stroke, sentence) for each side of the sheet [mm] that a stroke's paint crosses."""
+def off_sheet(marks, brush, sheet_mm) -> list[Notice]:
+    """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses."""
     found = []
     for trace in marks.passes:
         bounds_mm = _core.painted_bounds(trace, brush)
         if not np.isfinite(bounds_mm).all():
             continue  # nothing touches the paper
         found += [
-            (trace.stroke, f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet")
+            Notice(
+                trace.stroke,
+                f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet",
+                code="mark-off-sheet",
+                about=side,
+            )
             for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
             if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
         ]
@@ -69,12 +75,12 @@ def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
     bounds = np.array([_core.painted_bounds(trace, brush) for trace in marks.passes]).reshape(-1, 4)
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     if not len(bounds):
-        raise Error("nothing touches the paper: there is no border")
+        raise Error("nothing touches the paper: there is no border", code="nothing-painted")
     return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
 
 
-def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float) -> list[tuple[str, str]]:
-    """(stroke, sentence) where cutting corners as the cell does moves the mark by more than the tolerance.
+def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float) -> list[Notice]:
+    """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance.
 
     The path as it is run is simulated, and where the brush is taut its widest section compared with what was meant.
     """
@@ -99,7 +105,7 @@ def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float
                     f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
                     f"mark by {shift_mm:.3g} mm, outside the range [0, {tolerance_mm:g}] mm of the tolerance"
                 )
-                found.append((a_pass.stroke, sentence))
+                found.append(Notice(a_pass.stroke, sentence, code="shifted-by-blends"))
     return found
 
 

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from ..errors import Error
+from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .motion import Arc, Move, Program, Section, Wait, rise_over
@@ -41,20 +41,22 @@ POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and 
 @dataclass(frozen=True)
 class Walked:
     """A job that was gone through before it is run. job: with its visits; made: all that the machine does, without a
-    header; problems: (stroke or station, sentence) for whatever forbids to run it, empty when the robot may."""
+    header; problems: a notice of the stroke or station for whatever forbids to run it, empty when the robot may."""
 
     loads: PlanInLoads
     job: Job
     made: Program
-    problems: list[tuple[str, str]]
+    problems: list[Notice]
 
     def allowed(self) -> Program:
         """What is run. Error, naming stroke and range, where something forbids it."""
-        for where, sentence in self.problems:
-            raise Error(sentence, where=where)
+        for notice in self.problems:
+            raise Error(notice.sentence, where=notice.where, code=notice.code)
         first, count = self.job.first_stroke, len(self.loads.loads)
         if not 1 <= first <= count:
-            raise Error(f"stroke {first} is outside the range [1, {count}] of this job")
+            raise Error(
+                f"stroke {first} is outside the range [1, {count}] of this job", code="stroke-unknown"
+            )
         return self.made
 
 
@@ -68,7 +70,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     try:
         job = replace(job, visits=visits(loads, cell, job.first_stroke))
     except Error as unserved:
-        problems.append((unserved.where, str(unserved)))
+        problems.append(unserved.notice())
     made = _held(unchecked_program(loads, brush, cell, job), loads)
     problems += broken_limits(loads.loads, loads.sheet_mm, brush, cell)
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in loads.loads):
@@ -80,7 +82,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
             problems += walked_astray(one, made.robot_from_frame, cell, loads.sheet_mm)
     if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
-        problems = [(drawn.get(where, where), sentence) for where, sentence in problems]
+        problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, list(dict.fromkeys(problems)))
 
 
@@ -92,12 +94,12 @@ def _held(made: Program, loads: PlanInLoads) -> Program:
     return replace(made, sections=lambda: iter(sections()))
 
 
-def astray_in(made: Program, sheet_mm) -> list[tuple[str, str]]:
-    """The sentences for a program's ways, its rise before the first move included."""
+def astray_in(made: Program, sheet_mm) -> list[Notice]:
+    """The same for a program's ways, its rise before the first move included."""
     found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
     post = POSTS.get(made.cell.language)
     if post and post.in_robot_frame:  # else it rises to the safe height over the paper
-        found += [("", said) for said in height_astray(made.rise_in_robot_mm, made.cell)]
+        found += height_astray(made.rise_in_robot_mm, made.cell)
     return found
 
 

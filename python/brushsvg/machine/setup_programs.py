@@ -67,14 +67,16 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
     if lowest_mm < cell.heights.lowest_mm or -lowest_mm > brush.depth_range_mm[1]:
         least = max(cell.heights.lowest_mm, -brush.depth_range_mm[1])
         raise Error(
-            f"height {lowest_mm:g} mm is outside the range [{least:g}, {highest_mm:g}] mm of brush and cell"
+            f"height {lowest_mm:g} mm is outside the range [{least:g}, {highest_mm:g}] mm of brush and cell",
+            code="height-out-of-range",
         )
     starts = _lanes(len(heights), sheet_mm)
     safe, speeds = cell.heights.safe_mm, cell.speeds
     clearance = max(cell.heights.clearance_mm, highest_mm + 0.5)
     if clearance > safe:
         raise Error(
-            f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height"
+            f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height",
+            code="height-out-of-range",
         )
     speed = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press = min(speeds.press_mm_s, speed)
@@ -111,7 +113,8 @@ def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarra
     count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
     if not 2 <= count <= 100:
         raise Error(
-            f"from {highest_mm:g} to {lowest_mm:g} mm by {step_mm:g} mm are {count} strokes, not 2 to 100"
+            f"from {highest_mm:g} to {lowest_mm:g} mm by {step_mm:g} mm are {count} strokes, not 2 to 100",
+            code="strokes-out-of-range",
         )
     return highest_mm - step_mm * np.arange(count)
 
@@ -124,11 +127,14 @@ def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
     columns = int((width - LANE_MM) // pitch)
     if rows * columns < count:
         room = max(rows * columns, 0)
-        raise Error(f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}")
+        raise Error(
+            f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}",
+            code="strokes-out-of-range",
+        )
     return [(LANE_MM + pitch * (k // rows), height - LANE_MM * (1 + k % rows)) for k in range(count)]
 
 
 def _refuse_astray(made: Program, sheet_mm) -> Program:
-    for _, sentence in astray_in(made, sheet_mm):
-        raise Error(sentence)
+    for notice in astray_in(made, sheet_mm):
+        raise Error(notice.sentence, code=notice.code)
     return made

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from ..errors import Notice
 from .cell import Cell
 from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
@@ -18,30 +20,32 @@ def touching_mm_s(brush, cell: Cell) -> float:
     return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
 
 
-def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[tuple[str, str]]:
-    """(stroke or station, sentence) for each limit that passes break wherever the paper lies.
+def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[Notice]:
+    """A notice of the stroke or station for each limit that passes break wherever the paper lies.
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    problems = [] if passes else [("", "there is nothing to paint")]
+    problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
     limit = touching_mm_s(brush, cell)
     whose = f"brush {brush.name}" if limit == brush.max_speed_mm_s else f"cell {cell.name}"
     for a_pass in passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         if len(poses) == 0:
-            sentences = ["the pass has no poses"]
+            found = [Notice("", "the pass has no poses", code="pass-empty")]
         elif not np.isfinite(poses).all():
-            sentences = ["a pose is not a finite number"]
+            found = [Notice("", "a pose is not a finite number", code="not-a-number")]
         else:
-            sentences = [*_heights(poses, cell)]
+            found = [*_heights(poses, cell)]
             if not (poses[:, 2] < 0).any():
-                sentences.append("the brush is never pressed to the paper: nothing would be painted")
+                sentence = "the brush is never pressed to the paper: nothing would be painted"
+                found.append(Notice("", sentence, code="never-pressed"))
             if cell.servo:
-                sentences += _too_steep(poses, cell, limit)
+                found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
         if not 0 < speed <= limit:
-            sentences.append(f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}")
-        problems += [(a_pass.stroke, sentence) for sentence in sentences]
+            sentence = f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}"
+            found.append(Notice("", sentence, code="speed-out-of-range"))
+        problems += [replace(each, where=a_pass.stroke) for each in found]
     for station in cell.stations:
         if station.by_hand:
             continue  # at the safe height
@@ -49,21 +53,21 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[tuple[str, str]]:
         on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         if any(place_inside(ways([[point]]), *on_sheet) is not None for point in path):
-            problems.append((station.name, f"its place lies on the sheet of {width:g} x {height:g} mm"))
+            sentence = f"its place lies on the sheet of {width:g} x {height:g} mm"
+            problems.append(Notice(station.name, sentence, code="station-on-sheet"))
         elif place_inside(ways([path]), *on_sheet) is not None:
-            problems.append((station.name, f"its wipe goes over the sheet of {width:g} x {height:g} mm"))
+            sentence = f"its wipe goes over the sheet of {width:g} x {height:g} mm"
+            problems.append(Notice(station.name, sentence, code="station-on-sheet"))
     return problems
 
 
-def walked_astray(
-    sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None
-) -> list[tuple[str, str]]:
-    """(stroke or station, sentence) for each limit of place that the moves of sections break anywhere on their way, and
-    those from one section to the next. frame: (4, 4) that of the moves, which is the paper's, in the robot's.
+def walked_astray(sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None) -> list[Notice]:
+    """A notice of the stroke or station for each limit of place that the moves of sections break anywhere on their way,
+    and those from one section to the next. frame: (4, 4) that of the moves, which is the paper's, in the robot's.
 
     Where the tool is before the first move nobody knows: that way is not looked at.
     """
-    problems: list[tuple[str, str]] = []
+    problems: list[Notice] = []
     here = None
     for some in _groups(section for section in sections if section.moves):
         # most keep every limit: all together are asked first, ways between them included
@@ -89,12 +93,12 @@ def _groups(sections: Iterable[Section]) -> Iterator[list[Section]]:
         yield group
 
 
-def _one_by_one(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iterator[tuple[str, str]]:
+def _one_by_one(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iterator[Notice]:
     for section in sections:
         moves = section.moves
         said = [] if here is None else astray_between(here, moves[0].points_mm[0], frame, cell)
         said += astray(_ways_of(moves, None), frame, cell, sheet_mm)
-        yield from ((section.name, sentence) for sentence in said)
+        yield from (replace(each, where=section.name) for each in said)
         here = moves[-1].points_mm[-1]
 
 
@@ -112,54 +116,57 @@ def _ways_of(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
     return ways([points], circles)
 
 
-def astray_between(here, there, frame: np.ndarray, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[str]:
-    """The sentences for a straight way between two places, unless one of these says them itself."""
+def astray_between(here, there, frame: np.ndarray, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[Notice]:
+    """The same for a straight way between two places, unless one of these says it itself."""
     ends = astray(ways([[here], [there]]), frame, cell, None, slack_mm)
     said = [] if ends else astray(ways([[here, there]]), frame, cell, None, slack_mm)
-    return [f"on the way there {sentence}" for sentence in said]
+    return [replace(each, sentence=f"on the way there {each.sentence}") for each in said]
 
 
 def astray(
     some: Ways, frame: np.ndarray, cell: Cell, sheet_mm=None, slack_mm: float = ROUNDING_MM
-) -> list[str]:
-    """A sentence for each limit of place that moves of the paper's frame, (4, 4) in the robot's, break anywhere on
-    their way: of the sheet with the margin round it, the cell's box, reach and boxes to keep out of, and the heights
-    that a servo knows. slack_mm: what rounding may have moved them by."""
-    sentences = [] if sheet_mm is None else [*_sheet(*bounds(some), sheet_mm, cell, slack_mm)]
+) -> list[Notice]:
+    """A notice, of no element yet, for each limit of place that moves of the paper's frame, (4, 4) in the robot's,
+    break anywhere on their way: of the sheet with the margin round it, the cell's box, reach and boxes to keep out of,
+    and the heights that a servo knows. slack_mm: what rounding may have moved them by."""
+    found = [] if sheet_mm is None else [*_sheet(*bounds(some), sheet_mm, cell, slack_mm)]
     some = ways_in(frame, some)
     if cell.workspace.box_mm or cell.servo:
-        sentences += _box(*bounds(some), cell, slack_mm)
+        found += _box(*bounds(some), cell, slack_mm)
     # Corners that are cut stay in the triangle of their joint. Its third side is r sin(turn) / 2 away from the other
     # two, which is at most twice the r tan(turn / 4) by which the corner is cut. What is convex holds it anyway.
     cut_mm = 2 * cell.blending.tolerance_mm - slack_mm
     if cell.workspace.reach_mm:
-        sentences += _reach(*from_origin(some), cell, cut_mm, slack_mm)
-    return [*sentences, *_kept_out(some, cell, cut_mm)]
+        found += _reach(*from_origin(some), cell, cut_mm, slack_mm)
+    return [*found, *_kept_out(some, cell, cut_mm)]
 
 
-def height_astray(height_mm: float, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[str]:
-    """The sentence for a height in the robot's frame to which the tool rises from wherever it is."""
+def height_astray(height_mm: float, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[Notice]:
+    """The same for a height in the robot's frame to which the tool rises from wherever it is."""
     if not cell.workspace.box_mm:
         return []
     (low, high), away = np.array(cell.workspace.box_mm)[:, 2], float(height_mm)
     if low - slack_mm <= away <= high + slack_mm:
         return []
-    return [
+    sentence = (
         f"before the first move the tool goes to z {_told(away, low, high)} mm, outside the range "
         f"[{low:g}, {high:g}] mm of the box of cell {cell.name}"
-    ]
+    )
+    return [Notice("", sentence, code="out-of-box")]
 
 
-def _heights(poses: np.ndarray, cell: Cell) -> Iterator[str]:
+def _heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
     lowest, highest = poses[:, 2].min(), poses[:, 2].max()
     if highest > 0:
-        yield f"height {highest:.3f} mm inside a pass is above the paper: a pass stays at z <= 0"
+        sentence = f"height {highest:.3f} mm inside a pass is above the paper: a pass stays at z <= 0"
+        yield Notice("", sentence, code="above-paper")
     elif lowest < cell.heights.lowest_mm:
-        yield f"height {lowest:.1f} mm is outside the range [{cell.heights.lowest_mm:.1f}, 0.0] mm of cell {cell.name}"
+        reach = f"[{cell.heights.lowest_mm:.1f}, 0.0] mm of cell {cell.name}"
+        yield Notice("", f"height {lowest:.1f} mm is outside the range {reach}", code="too-low")
 
 
-def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[str]:
-    """A sentence for a way that a servo could not go: its values change along with moves beside the lift, whose parts
+def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:
+    """A notice for a way that a servo could not go: its values change along with moves beside the lift, whose parts
     must be left by the rounding, and whose feed must not be below grbl's least."""
     unit_mm, steps = 10.0**-cell.decimals, np.diff(poses, axis=0)
     flat_mm, way_mm = np.linalg.norm(steps[:, :2], axis=1), np.linalg.norm(steps, axis=1)
@@ -170,58 +177,63 @@ def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[s
     )
     for k in np.flatnonzero(goes & is_steep)[:1]:
         x, y, _ = poses[k]
-        yield (
+        sentence = (
             f"near x {x:.1f}, y {y:.1f} mm the height changes by {abs(steps[k, 2]):.2f} mm over {flat_mm[k]:.2g} mm: "
             f"too steep for the servo of cell {cell.name}; on the spot it could be done"
         )
+        yield Notice("", sentence, code="too-steep")
 
 
 LEAST_MM_MIN = 1.0  # grbl runs a lower feed at this one
 
 
-def _sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_mm: float) -> Iterator[str]:
+def _sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_mm: float) -> Iterator[Notice]:
     margin = cell.workspace.margin_mm
     for side, beyond in beyond_edges((*low[:2], *high[:2]), sheet_mm).items():
         if beyond - margin > slack_mm:
-            yield (
+            sentence = (
                 f"the TCP goes {beyond - margin:.2f} mm beyond the {side} edge of the workspace, "
                 f"which is the sheet and {margin:.1f} mm around it"
             )
+            yield Notice("", sentence, code="tool-off-sheet", about=side)
 
 
-def _box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -> Iterator[str]:
+def _box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -> Iterator[Notice]:
     for axis, name in enumerate("xyz" if cell.workspace.box_mm else ""):
         low, high = cell.workspace.box_mm[0][axis], cell.workspace.box_mm[1][axis]
         if least[axis] < low - slack_mm or greatest[axis] > high + slack_mm:
             worst = least[axis] if low - least[axis] > greatest[axis] - high else greatest[axis]
-            yield (
+            sentence = (
                 f"the tool goes to {name} {_told(worst, low, high)} mm, outside the range "
                 f"[{low:g}, {high:g}] mm of the box of cell {cell.name}"
             )
+            yield Notice("", sentence, code="out-of-box", about=name)
     if cell.servo:  # its paper lies level, and a height beyond the table would silently become its end
         heights = [row[0] for row in cell.servo.table]
         low, high = min(heights), max(heights)
         for height in (least[2], greatest[2]):
             if not low - slack_mm <= height <= high + slack_mm:
-                yield (
+                sentence = (
                     f"height {_told(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the servo "
                     f"of cell {cell.name}"
                 )
+                yield Notice("", sentence, code="servo-out-of-range")
 
 
-def _reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm: float) -> Iterator[str]:
+def _reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm: float) -> Iterator[Notice]:
     least, greatest = cell.workspace.reach_mm
     # a reach from 0 on forbids nothing near the origin, however corners are cut
     nearest = max(nearest - max(cut_mm, 0.0), 0.0)
     if nearest < least - max(-cut_mm, 0.0) or farthest > greatest + slack_mm:
         worst = nearest if least - nearest > farthest - greatest else farthest
-        yield (
+        sentence = (
             f"the tool goes {_told(worst, least, greatest)} mm away from the robot's origin, outside the range "
             f"[{least:g}, {greatest:g}] mm of the reach of cell {cell.name}"
         )
+        yield Notice("", sentence, code="out-of-reach")
 
 
-def _kept_out(some: Ways, cell: Cell, cut_mm: float) -> Iterator[str]:
+def _kept_out(some: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
     for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
         low, high = np.array(corners)
         grown = np.maximum(cut_mm, (low - high) / 4)  # however thin a box, slack leaves half of it
@@ -231,7 +243,8 @@ def _kept_out(some: Ways, cell: Cell, cut_mm: float) -> Iterator[str]:
         box = ", ".join(
             f"{axis} {a:g} to {b:g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True)
         )
-        yield f"the tool goes through {told} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
+        sentence = f"the tool goes through {told} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
+        yield Notice("", sentence, code="in-kept-out-box", about=str(number))
 
 
 def _told(value: float, low: float, high: float) -> str:

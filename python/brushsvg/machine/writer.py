@@ -28,13 +28,16 @@ def post_for(suffix: str, cell: Cell) -> Post:
             f"no program can be written in {cell.language!r}, the language of cell {cell.name}; "
             f"known: {', '.join(POSTS)}",
             where="language",
+            code="language-unknown",
         )
     if suffix not in post.extensions:
         other = cells_for(suffix)
         raise Error(
             f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
             f"{post.title}, which cell {cell.name} speaks"
-            + (f"; for {suffix} give --cell {' or '.join(other)}" if other else "")
+            + (f"; {suffix} is for cell {' or '.join(other)}" if other else ""),
+            code="program-format",
+            advice="give --cell" if other else "",
         )
     return post
 

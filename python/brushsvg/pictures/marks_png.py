@@ -43,7 +43,7 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], b
         _lay(image, paint, known_colour(colours[first]))
         first = last
     if image is None:
-        raise Error("there is nothing to draw")
+        raise Error("there is nothing to draw", code="nothing-to-show")
     if band is not None:
         _draw_band(image, band, window, px_per_mm)
     return _png(image)

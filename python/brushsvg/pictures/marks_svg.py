@@ -51,9 +51,15 @@ def check_picture(marks, sheet_mm: tuple[float, float], colours: list[str]) -> N
     need(marks, _core.Marks, "marks, as simulate returns them")
     need(sheet_mm, (tuple, list), "a sheet's width and height")
     if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
-        raise Error(f"a sheet of {sheet_mm} mm cannot be drawn: both sides must lie within (0, 1e6] mm")
+        raise Error(
+            f"a sheet of {sheet_mm} mm cannot be drawn: both sides must lie within (0, 1e6] mm",
+            code="out-of-range",
+        )
     if len(colours) != len(marks.passes):
-        raise Error(f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}")
+        raise Error(
+            f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}",
+            code="wrong-type",
+        )
 
 
 def _band(band, width: float, height: float) -> list[str]:

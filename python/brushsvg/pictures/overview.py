@@ -169,12 +169,12 @@ def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Ru
 
 def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
     told = [
-        (colour, where, sentence)
+        (colour, notice)
         for is_damage, colour in ((True, WARNING), (False, TEXT))
-        for where, sentence in folded((n.where, n.sentence) for n in notices if n.damaged == is_damage)
+        for notice in folded(notice for notice in notices if notice.damaged == is_damage)
     ]
-    for colour, where, sentence in told[:LISTED]:
-        for line in textwrap.wrap(f"{where}: {sentence}", WRAPPED, subsequent_indent="    "):
+    for colour, notice in told[:LISTED]:
+        for line in textwrap.wrap(f"{notice.where}: {notice.told}", WRAPPED, subsequent_indent="    "):
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
     if len(told) > LISTED:

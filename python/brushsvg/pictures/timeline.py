@@ -82,7 +82,7 @@ def timeline(program: Program, marks) -> Timeline:
             rows += len(block)
             now_s, here = block[-1, 0], block[-1, 1:4]
     if not rows:
-        raise Error("there is nothing to play")
+        raise Error("there is nothing to play", code="nothing-to-show")
     table = np.vstack(blocks)
     return Timeline(
         time_s=table[:, 0],

@@ -103,6 +103,5 @@ def suits(
         rows, total = report.measure(
             work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
         )
-        refused = [(notice.where, notice.sentence) for notice in work.refused]
-        found.append(size_advice.suit(brush.name, rows, total.overlap if rows else 0.0, refused))
+        found.append(size_advice.suit(brush.name, rows, total.overlap if rows else 0.0, work.refused))
     return size_advice.best_first(found)

@@ -26,7 +26,9 @@ def _read(parse, what: str, path: str | os.PathLike):
     try:
         return parse(read_bytes(path).decode("utf-8"))
     except UnicodeDecodeError:
-        raise Error(f"the file is not {what}: it is not text in UTF-8", file=os.fspath(path)) from None
+        raise Error(
+            f"the file is not {what}: it is not text in UTF-8", file=os.fspath(path), code="not-json"
+        ) from None
     except Error as refusal:
         refusal.file = os.fspath(path)
         raise

@@ -47,7 +47,7 @@ def misses_picture(suffix: str, work: Work, marks) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
     outlines. Error for a plan, which does not say what was wanted."""
     if work.strokes is None:
-        raise Error("a plan does not say what was wanted: give the drawing")
+        raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
     if suffix == ".svg":
         wanted = report.wanted_rings(work.strokes)
         return misses_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
@@ -82,10 +82,10 @@ def reported(
     seconds=None,
     advice="",
 ) -> report.Report:
-    """The figures of a work. warnings: (where, sentence), None for those of the work; forbidden:
+    """The figures of a work. warnings: None for those of the work; forbidden:
     those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
     that is known better than from the plan; advice: on the size."""
-    known = warnings if warnings is not None else [(n.where, n.sentence) for n in work.notices]
+    known = warnings if warnings is not None else work.notices
     is_drawing = work.strokes is not None
     rows, total = report.measure(
         work.plan,
@@ -107,7 +107,7 @@ def reported(
         if seconds is None
         else seconds,
         warnings=tuple(known),
-        refused=tuple((notice.where, notice.sentence) for notice in work.refused),
+        refused=tuple(work.refused),
         forbidden=tuple(forbidden),
         sure=uncertainty(work.plan, work.brush, marks),
         groups=report.groups(marks, work.brush, work.strokes),

@@ -157,7 +157,7 @@ def _sorted_out(painted, wanted, step):
         try:
             step(pair[:1])
         except Error as error:
-            refused.append(Notice(pair[0].id, str(error)))
+            refused.append(replace(error.notice(pair[0].id), code=error.code or "stroke-refused"))
             left_out.append(pair[1])
         else:
             sound.append(pair)
@@ -165,9 +165,12 @@ def _sorted_out(painted, wanted, step):
 
 
 def _widths(warnings, may_advise: bool) -> list[Notice]:
-    advice = "; --width MM gives all strokes one width"
+    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored."""
+    advice = "--width MM gives all strokes one width" if may_advise else ""
     return [
-        Notice(where, said + advice * (may_advise and said.endswith("was measured")))
+        Notice(where, said, code="depth-not-measured", advice=advice)
+        if where
+        else Notice(where, said, code="widths-ignored")
         for where, said in warnings
     ]
 
@@ -184,7 +187,11 @@ def _with_speeds(plan, strokes):
 def _other_brushes(strokes, brush) -> list[Notice]:
     asked = ((stroke.id, json.loads(stroke.settings).get("brush", brush.name)) for stroke in strokes)
     return [
-        Notice(name, f"the drawing asks for brush {other}, all is painted with {brush.name}")
+        Notice(
+            name,
+            f"the drawing asks for brush {other}, all is painted with {brush.name}",
+            code="brush-asked-for",
+        )
         for name, other in asked
         if other != brush.name
     ]
@@ -205,7 +212,7 @@ def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
             f"near x {miss.at_mm[0]:.1f}, y {miss.at_mm[1]:.1f} mm"
         )
         turns = ": it turns too sharply there for the brush"
-        found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place))
+        found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place, code="off-middle-line"))
     return found
 
 
@@ -214,9 +221,21 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
     brush = options.brush or find_brush(plan.brush)
     notices = []
     if brush.name != plan.brush:
-        notices.append(Notice("brush", f"the plan was made for brush {plan.brush}, not for {brush.name}"))
+        notices.append(
+            Notice(
+                "brush",
+                f"the plan was made for brush {plan.brush}, not for {brush.name}",
+                code="plan-of-other-brush",
+            )
+        )
     elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
-        notices.append(Notice("brush_sha256", f"the plan was made with another file of brush {brush.name}"))
+        notices.append(
+            Notice(
+                "brush_sha256",
+                f"the plan was made with another file of brush {brush.name}",
+                code="plan-of-other-brush",
+            )
+        )
     return Work("", brush, plan, None, (), options, tuple(notices))
 
 

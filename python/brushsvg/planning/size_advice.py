@@ -140,7 +140,7 @@ def scaled(stroke, factor: float):
 
 
 def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
-    """From the figures of a report; refused: (stroke, why)."""
+    """From the figures of a report; refused: notices of strokes."""
     known = [row for row in rows if row.overlap is not None]
     worst = min(known, key=lambda row: row.overlap, default=None)
     return Suit(
@@ -150,7 +150,7 @@ def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
         worst and worst.overlap,
         len(refused),
         len(rows) + len(refused),
-        ": ".join(refused[0]) if refused else "",
+        f"{refused[0].where}: {refused[0].told}" if refused else "",
     )
 
 

@@ -31,7 +31,8 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
     if wide == "refuse":
         for stroke, (_, worst) in ((strokes[k], found) for k, found in beyond.items() if found):
             sentence = f"width {2 * worst:.3g} mm of its outline is outside the range {reach}"
-            raise Error(sentence, where=stroke.id, value=2 * worst, range=(2 * least, 2 * greatest))
+            bounds = (2 * least, 2 * greatest)
+            raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
     wider = [k for k, found in beyond.items() if found and found[1] > greatest]
     filled = _filled(strokes, wider, least, greatest) if wide == "passes" and wider else {}
     painted, wanted, notices = [], [], []
@@ -41,9 +42,15 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
             count, worst = beyond[k]
             if k not in filled:
                 made, how = [_clamped(stroke, least, greatest)], "painted at the nearest"
-            if wide == "clamp" and worst > greatest:
-                how += "; --wide passes fills it"
-            notices.append(Notice(stroke.id, f"{count} {2 * worst:.3g} mm, outside the range {reach}: {how}"))
+            notices.append(
+                Notice(
+                    stroke.id,
+                    f"{count} {2 * worst:.3g} mm, outside the range {reach}: {how}",
+                    code="width-out-of-reach",
+                    about="wider" if worst > greatest else "narrower",
+                    advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
+                )
+            )
         painted += made
         wanted += meant
     return painted, wanted, notices

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, Notice
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
@@ -20,8 +20,8 @@ STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a bru
 def with_plan(
     ran: Ran, expected: PlanInLoads, cell: Cell, first_stroke: int = 1
 ) -> tuple[list[int | None], Problems]:
-    """For each pass that was read which load it is (None: none), and (stroke, sentence) for whatever is missing, in
-    another order, elsewhere, at another speed or with other paint.
+    """For each pass that was read which load it is (None: none), and a notice for whatever is missing, in another
+    order, elsewhere, at another speed or with other paint.
 
     Passes before the program's first stroke were painted before. Error when the plan has no such stroke.
     """
@@ -58,13 +58,19 @@ def _partners(passes, due) -> tuple[list[int | None], Problems]:
         else:
             partners.append(None)
     problems = [
-        (name, "the drawing has no such stroke") for name, k in zip(names, partners, strict=True) if k is None
+        Notice(name, "the drawing has no such stroke", code="stroke-not-drawn")
+        for name, k in zip(names, partners, strict=True)
+        if k is None
     ]
-    problems += [(due[k].stroke, "the program does not paint this stroke") for k in left]
+    problems += [
+        Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted")
+        for k in left
+    ]
     found = [k for k in partners if k is not None]
     if not problems and found != sorted(found):
         at = next(place for place, k in enumerate(found) if k != place)
-        problems.append((names[at], f"it is painted where the drawing asks for {wanted[at]}"))
+        sentence = f"it is painted where the drawing asks for {wanted[at]}"
+        problems.append(Notice(names[at], sentence, code="stroke-order"))
     return partners, problems
 
 
@@ -87,13 +93,13 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
         at = follows(found, asked, limit_mm)
         if at is not None:
             away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
-            problems.append(
-                (a_pass.stroke, f"line {lines[owner[min(at, len(owner) - 1)]]}: {_astray(away_mm, limit_mm)}")
-            )
+            sentence = f"line {lines[owner[min(at, len(owner) - 1)]]}: {_astray(away_mm, limit_mm)}"
+            problems.append(Notice(a_pass.stroke, sentence, code="path-elsewhere"))
     is_dab = not np.ptp(meant.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
     if a_pass.speed_mm_s > meant.speed_mm_s + 0.1 and not is_dab:
         asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
-        problems.append((a_pass.stroke, f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"))
+        sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"
+        problems.append(Notice(a_pass.stroke, sentence, code="stroke-too-fast"))
     return problems
 
 
@@ -289,5 +295,6 @@ def _paint(ran: Ran, due, asked) -> Problems:
     for a_pass, found, wanted in zip(due, ran.visits, asked, strict=True):
         if found != wanted:
             told = [" and ".join(station.name for station in each) or "nothing" for each in (found, wanted)]
-            return [(a_pass.stroke, f"before it the program visits {told[0]}, the cell asks for {told[1]}")]
+            sentence = f"before it the program visits {told[0]}, the cell asks for {told[1]}"
+            return [Notice(a_pass.stroke, sentence, code="other-station")]
     return []

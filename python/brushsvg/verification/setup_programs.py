@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..errors import Notice
 from ..machine.cell import Cell
 from ..machine.header_lines import border_header, height_header
 from ..machine.motion import Program, duration_s
@@ -19,7 +20,7 @@ from .simulate_program import Problems, slack_mm, walked
 
 @dataclass(frozen=True)
 class Looked:
-    """problems: (section, sentence) for each thing that must not be; time_s: how long it takes."""
+    """problems: a notice for each thing that must not be; time_s: how long it takes."""
 
     problems: Problems
     time_s: float
@@ -55,16 +56,12 @@ def _looked(
 ) -> Looked:
     problems: Problems = []
     for section, track, said in sections:
-        problems += [(section.title, sentence) for sentence in said]
+        problems += [replace(each, where=section.title) for each in said]
         at = int(np.argmin(track.points[:, 2])) if len(track.points) else None
         if at is not None and track.points[at, 2] < lowest_mm - slack_mm(cell):
             line, height_mm = section.steps[track.step[at]].line, track.points[at, 2]
-            problems.append(
-                (
-                    section.title,
-                    f"line {line}: height {height_mm:.2f} mm is below the {what}, {lowest_mm:g} mm",
-                )
-            )
+            sentence = f"line {line}: height {height_mm:.2f} mm is below the {what}, {lowest_mm:g} mm"
+            problems.append(Notice(section.title, sentence, code="too-low"))
     if changed := differing_line(text, read, again, cell):
-        problems.append(("", changed))
+        problems.append(Notice("", changed, code="program-changed"))
     return Looked(problems, duration_s(again))

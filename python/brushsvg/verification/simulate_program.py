@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, Notice
 from ..machine.cell import Blending, Cell, robot_from_paper, value_mm
 from ..machine.corner_blending import blend_radii
 from ..machine.frames import moved
@@ -28,14 +28,14 @@ from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
-Problems = list[tuple[str, str]]
+Problems = list[Notice]
 
 
 @dataclass(frozen=True)
 class Ran:
     """What a program paints: its passes as they are programmed and as they are run, with corners cut.
 
-    problems: (stroke, sentence) for each thing that must not be; visits: for each stroke the stations that are visited
+    problems: one for each thing that must not be; visits: for each stroke the stations that are visited
     before it; lines: for each pass the line of the program that leads to each pose; waits_s: what is waited for behind
     it.
     """
@@ -60,16 +60,17 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     slack = slack_mm(cell)
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
-        problems += [(name, sentence) for sentence in said]
+        problems += [replace(each, where=name) for each in said]
         stroke = _stroke(section)
         track = track if cell.servo else _with_ends_on_paper(track, slack)
         found = list(_touches(track, slack))
         if stroke and len(found) != 1:
             times = f"{len(found)} times, not once" if found else "never"
-            problems.append((name, f"the brush touches the paper {times}"))
+            problems.append(Notice(name, f"the brush touches the paper {times}", code="touches-miscounted"))
         elif found and not stroke and not section.title.startswith("paint: "):
             line = section.steps[track.step[found[0].start]].line
-            problems.append((name, f"line {line}: the brush touches the paper outside of any stroke"))
+            sentence = f"line {line}: the brush touches the paper outside of any stroke"
+            problems.append(Notice(name, sentence, code="touches-outside-stroke"))
         for on in found if stroke else ():
             poses, radii, speed, arcs = _pass(section, track, on, cell)
             deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
@@ -94,15 +95,16 @@ def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
             number += 1
             if (int(found[1]), int(found[2])) != (number, count):
                 told = f"line {section.line}: stroke {found[1]} of {found[2]}"
-                return [(_name(section), f"{told} stands where stroke {number} of {count} should")]
+                sentence = f"{told} stands where stroke {number} of {count} should"
+                return [Notice(_name(section), sentence, code="stroke-misnumbered")]
     left = f"stroke {count} is" if number == count - 1 else f"strokes {number + 1} to {count} are"
-    return [("", f"{left} missing at the end")] if number < count else []
+    return [Notice("", f"{left} missing at the end", code="strokes-missing")] if number < count else []
 
 
 def walked(
     read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, paper_mm: float = 0.0
-) -> Iterator[tuple[ReadSection, Track, list[str]]]:
-    """Each section with its way in the paper's frame and a sentence for whatever on it is careless or astray.
+) -> Iterator[tuple[ReadSection, Track, Problems]]:
+    """Each section with its way in the paper's frame and a notice for whatever on it is careless or astray.
 
     paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
     """
@@ -123,8 +125,8 @@ def _rounded(cell: Cell) -> Cell:
 
 def _astray(
     section: ReadSection, track: Track, here: np.ndarray | None, cell: Cell, sheet_mm, z_offset_mm: float
-) -> list[str]:
-    """Sentences for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
+) -> Problems:
+    """Notices for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
     slack, points = slack_mm(cell), track.points
     said = []
     for step in section.steps:  # without a place: from wherever the tool is, straight up to here
@@ -287,8 +289,8 @@ def _arcs(owner: np.ndarray, centres: list) -> list:
 
 def _careless(
     section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
-) -> Iterator[str]:
-    """Sentences for what is fast while it touches, or goes sideways too low in the air."""
+) -> Iterator[Notice]:
+    """Notices for what is fast while it touches, or goes sideways too low in the air."""
     if not len(track.points):
         return
     slack, safe = slack_mm(cell), cell.heights.safe_mm
@@ -310,11 +312,13 @@ def _careless(
         line = f"line {steps[k].line}"
         if careless[k]:
             how = "while the brush touches" if touches[k] else f"at {low[k]:.2f} mm, below the safe height"
-            yield f"{line}: a rapid move {how}"
+            yield Notice("", f"{line}: a rapid move {how}", code="rapid-too-low")
         elif fast[k]:
-            yield f"{line}: speed {speed[k]:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+            sentence = f"{line}: speed {speed[k]:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+            yield Notice("", sentence, code="speed-out-of-range")
         else:
-            yield f"{line}: the tool travels at {low[k]:.2f} mm, below the safe height {safe:g} mm"
+            sentence = f"{line}: the tool travels at {low[k]:.2f} mm, below the safe height {safe:g} mm"
+            yield Notice("", sentence, code="travel-too-low")
     if cell.servo:
         first, last = np.diff(np.r_[False, touches, False].astype(int)).nonzero()[0].reshape(-1, 2).T
         for on in map(slice, first, last):
@@ -324,8 +328,8 @@ def _careless(
 
 def _ahead(
     steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
-) -> Iterator[str]:
-    """A sentence where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
+) -> Iterator[Notice]:
+    """A notice where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
     way beside the lift alone, and its heights go in steps: over any number of moves the tip may be no more than two
     steps and a value ahead of what the limit allows for their time."""
     lead_mm = 2 * cell.servo.step_mm + value_mm(cell) + 1e-6
@@ -346,10 +350,11 @@ def _ahead(
             k = int(ahead[0])
             line = f"line {steps[k + count - 1].line}"
             if path_mm[k] > 10 * limit * seconds[k]:
-                yield f"{line}: the height changes by {rise_mm[k]:.2f} mm at once while the brush touches"
+                said = f"the height changes by {rise_mm[k]:.2f} mm at once while the brush touches"
             else:
                 speed = path_mm[k] / seconds[k]
-                yield f"{line}: speed {speed:.1f} mm/s of the tip while the brush touches, limit {limit:.1f} mm/s"
+                said = f"speed {speed:.1f} mm/s of the tip while the brush touches, limit {limit:.1f} mm/s"
+            yield Notice("", f"{line}: {said}", code="speed-out-of-range")
             return
 
 

@@ -22,7 +22,7 @@ def converted(*words) -> list[str]:
     try:
         convert_file(parse(["convert", *map(str, words)]))
     except RefusedError as refused:
-        return [": ".join(line[1:]) for line in refused.lines]
+        return [f"{notice.where}: {notice.told}" for notice in refused.why]
     return []
 
 
@@ -61,7 +61,7 @@ def quick_check():
         try:
             command.check_file(copy.copy(asked[words]))
         except RefusedError as refused:
-            return [": ".join(line[1:]) for line in refused.lines]
+            return [f"{notice.where}: {notice.told}" for notice in refused.why]
         except Exception as mistake:
             return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
         return []

@@ -39,15 +39,15 @@ def read_chart(data: bytes) -> Chart:
     """A chart without its labels. Error names the key."""
     content = json_fields.document(data, FORMAT, VERSION)
     if content.get("dictionary") != DICTIONARY:
-        raise Error(f"the markers must be of {DICTIONARY}", "dictionary")
+        raise Error(f"the markers must be of {DICTIONARY}", "dictionary", code="chart-markers")
     if not isinstance(content.get("plan"), dict):
-        raise Error("the chart has no plan", "plan")
+        raise Error("the chart has no plan", "plan", code="key-missing")
     plan = _core.read_plan(json.dumps(content["plan"]))
     rows = json_fields.objects
     markers = [_marker(row, f"markers[{i}]") for i, row in enumerate(rows(content.get("markers"), "markers"))]
     strokes = [_stroke(row, f"strokes[{i}]") for i, row in enumerate(rows(content.get("strokes"), "strokes"))]
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
-        raise Error("the strokes are not those of the plan, in its order", "strokes")
+        raise Error("the strokes are not those of the plan, in its order", "strokes", code="chart-strokes")
     return Chart(plan, tuple(strokes), tuple(markers), ())
 
 
@@ -55,14 +55,14 @@ def _marker(row: dict, where: str) -> Marker:
     number, corners = row.get("id"), row.get("corners_mm")
     is_numbered = isinstance(number, int) and not isinstance(number, bool)
     if not is_numbered or not isinstance(corners, list) or len(corners) != 4:
-        raise Error("a marker needs an id and four corners_mm", where)
+        raise Error("a marker needs an id and four corners_mm", where, code="wrong-type")
     at = f"{where}.corners_mm"
     return Marker(number, tuple(json_fields.numbers(each, f"{at}[{i}]", 2) for i, each in enumerate(corners)))
 
 
 def _stroke(row: dict, where: str) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
-        raise Error("a stroke needs an id and a kind, in words", where)
+        raise Error("a stroke needs an id and a kind, in words", where, code="wrong-type")
     depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm")
     return Stroke(
         row["id"], row["kind"], depth_mm, json_fields.numbers(row.get("box_mm"), f"{where}.box_mm", 4)

@@ -108,7 +108,11 @@ def chart(
     less than the brush. Error for a pen, and where the sheet is too small, with the size that would do.
     """
     if brush.is_rigid():
-        raise Error(f"brush {brush.name} is a pen: it has no lag that could be calibrated", "brush")
+        raise Error(
+            f"brush {brush.name} is a pen: it has no lag that could be calibrated",
+            "brush",
+            code="lag-not-calibrated",
+        )
     side = min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
     below = side + QUIET * side + 2 * EDGE_MM  # edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - below
@@ -116,6 +120,7 @@ def chart(
         raise Error(
             f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners",
             "sheet",
+            code="sheet-too-small",
         )
     best = None
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
@@ -129,9 +134,10 @@ def chart(
         _, used = _packed(units, widest, side)
         raise Error(
             f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for a chart of brush {brush.name} at "
-            f"{depths} depths, which needs {math.ceil(widest + 2 * EDGE_MM)} x {math.ceil(used + below)} mm"
-            + ("; --strokes few needs less" if strokes in ("normal", "many") else ""),
+            f"{depths} depths, which needs {math.ceil(widest + 2 * EDGE_MM)} x {math.ceil(used + below)} mm",
             "sheet",
+            code="sheet-too-small",
+            advice="--strokes few needs less" if strokes in ("normal", "many") else "",
         )
     return _laid_out(brush, sheet_mm, best, side)
 

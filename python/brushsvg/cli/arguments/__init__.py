@@ -40,6 +40,12 @@ class _Version(argparse.Action):
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="brushsvg", description="Vector lettering to brush strokes that a robot can paint.")
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    parser.add_argument(
+        "--messages",
+        choices=("text", "json"),
+        default="text",
+        help="warnings and refusals as lines of text, or of JSON with their codes; default: text",
+    )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     drawings.add_convert(commands)
     drawings.add_predict(commands)

@@ -7,7 +7,7 @@ import os
 from ..._core import remarks, write_brush
 from ...brush.describe import LAWS, one_line, page, reach
 from ...brush.library import brush_names, find_brush
-from ...errors import Error
+from ...errors import Error, Notice
 from ...files import read_bytes
 from ..console import RefusedError, about, tell, warn
 from .outputs import check_places, suffix_of, tell_list, write
@@ -25,7 +25,7 @@ def brush_show(args) -> None:
 def brush_check(args) -> None:
     with about(args.input):
         brush = find_brush(args.input)
-        odd = remarks(brush)
+        odd = [Notice(*each) for each in remarks(brush)]
     warn(args.input, odd)
     tell(f"{args.input}: brush {brush.name} can be used\n")
 
@@ -37,17 +37,21 @@ def brush_new(args) -> None:
     path = args.name if suffix_of(args.name) == ".json" else f"{args.name}.json"
     name = os.path.splitext(os.path.basename(path))[0]
     if not os.path.basename(args.name).strip(". "):
-        raise RefusedError([(args.name, "", "a brush needs a name, as in brushsvg brush new mine")])
+        why = Notice("", "a brush needs a name, as in brushsvg brush new mine", code="name-invalid")
+        raise RefusedError(args.name, [why])
     check_places(path)
     if os.path.exists(path):
-        raise RefusedError([(path, "", "the file is there already: it might be somebody's brush")])
+        why = Notice("", "the file is there already: it might be somebody's brush", code="file-exists")
+        raise RefusedError(path, [why])
     widths = list(args.width_at)
     if args.widths:
         with about(args.widths):
             widths += read_widths(read_bytes(args.widths).decode("utf-8", "replace"))
     with about(path):
         if name in brush_names():
-            raise Error(f"a brush named {name} comes along: give yours another name", "name")
+            raise Error(
+                f"a brush named {name} comes along: give yours another name", "name", code="name-taken"
+            )
         brush = new_brush(name, args.lag, widths, args.depth_max, args.speed)
         text = write_brush(brush)
     write(args, {path: text})

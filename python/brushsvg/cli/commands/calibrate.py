@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from ..._core import remarks, write_brush
+from ...errors import Notice
 from ...files import read_bytes
 from ..console import about, tell, warn
 from .outputs import check_places, suffix_of, write
@@ -26,7 +27,7 @@ def calibrate_file(args) -> None:
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, suffix_of(args.plot))
-    warn(args.output, remarks(made.brush))
+    warn(args.output, [Notice(*each) for each in remarks(made.brush)])
     write(args, files)
     tell(report(made))
 

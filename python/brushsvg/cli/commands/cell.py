@@ -6,10 +6,11 @@ import os
 from dataclasses import replace
 
 from ...brush.describe import cell_page
+from ...errors import Notice
 from ...machine import cell_check as cell_checks
 from ...machine.cell_file import DEFAULT_CELL, cell_names, find_cell, parse_cell, write_cell
 from ...machine.posts import POSTS
-from ..console import RefusedError, about, say, tell, warn
+from ..console import RefusedError, about, tell, warn
 from .outputs import check_places, tell_list, write
 
 
@@ -27,13 +28,10 @@ def cell_check(args) -> None:
         cell = find_cell(args.input)
     if cell.language not in POSTS:
         known = ", ".join(POSTS)
-        say(
-            args.input,
-            "language",
-            f"no program can be written in {cell.language!r} yet, only plans; known: {known}",
-        )
+        sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known}"
+        warn(args.input, [Notice("language", sentence, code="language-unknown")])
     if problems := cell_checks.out_of_reach(cell):
-        raise RefusedError([(args.input, *problem) for problem in problems])
+        raise RefusedError(args.input, problems)
     warn(args.input, cell_checks.remarks(cell))
     tell(f"{args.input}: cell {cell.name} can be used\n")
 
@@ -41,7 +39,8 @@ def cell_check(args) -> None:
 def cell_new(args) -> None:
     check_places(args.output)
     if os.path.exists(args.output):
-        raise RefusedError([(args.output, "", "the file is there already: it might be somebody's machine")])
+        why = Notice("", "the file is there already: it might be somebody's machine", code="file-exists")
+        raise RefusedError(args.output, [why])
     with about(args.like or DEFAULT_CELL):
         cell = find_cell(args.like or DEFAULT_CELL)
     name = os.path.splitext(os.path.basename(args.output))[0]

@@ -37,7 +37,7 @@ def chart_file(args) -> None:
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.look(loads, brush, marks, painting, tolerance_mm, Job(args.z_offset))
         if walk.problems:
-            raise RefusedError([(args.output, *problem) for problem in folded(walk.problems)])
+            raise RefusedError(args.output, folded(walk.problems))
         title = f"calibration chart of brush {brush.name}"
         files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
     if args.page:

@@ -6,7 +6,7 @@ import json
 
 from ...brush.library import brush_names, find_brush
 from ...drawing import settings_in
-from ...errors import Error
+from ...errors import Error, Notice
 from ...evaluation import report
 from ...files import read_bytes
 from ...machine import preflight
@@ -35,7 +35,9 @@ def check_file(args) -> None:
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(args, kind) is None and name not in names:
                 raise Error(
-                    f"the program names {kind} {name!r}, which does not come along: give --{kind} FILE"
+                    f"the program names {kind} {name!r}, which does not come along",
+                    code=f"{kind}-unknown",
+                    advice=f"give --{kind} FILE",
                 )
         cell = exact_cell(args.cell if args.cell is not None else made.cell, made.tolerance_mm)
         brush = brush_of(args.brush) or find_brush(made.brush)
@@ -47,7 +49,10 @@ def check_file(args) -> None:
     with about(args.program):
         sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
         if sheet_mm is None:
-            raise Error("its header does not say how large the sheet is: give --sheet or the drawing")
+            raise Error(
+                "its header does not say how large the sheet is: give --sheet or the drawing",
+                code="sheet-unknown",
+            )
         ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
         problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
         strokes, drawn, speeds = None, None, None
@@ -69,7 +74,7 @@ def check_file(args) -> None:
                 against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
             )
         changed = again and against_regenerated.differing_line(text, read, again, cell, least_s)
-        problems = problems + ([("", changed)] if changed else [])
+        problems = problems + ([Notice("", changed, code="program-changed")] if changed else [])
         shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
         if args.preview:
             outlined = prediction.outlined(ran.marks, brush, stage)
@@ -102,11 +107,13 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
 
     with about(args.program):
         if args.preview:
-            raise Error("it paints no drawing: there is no picture of it")
+            raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
         if made.heights_mm and args.input:
-            raise Error("it finds the paper's height and paints no drawing: check it alone")
+            raise Error(
+                "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
+            )
         if made.sheet_mm is None:
-            raise Error("its header does not say how large the sheet is")
+            raise Error("its header does not say how large the sheet is", code="sheet-unknown")
     work = _as_made(args, made, cell, brush) if args.input else None
     with about(args.program):
         if made.border_mm:
@@ -130,7 +137,7 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
     _refuse_or_allow(args, problems, work is None and made.border_mm)
 
 
-def _beside(made, work: preparation.Work) -> list[tuple[str, str]]:
+def _beside(made, work: preparation.Work) -> list[Notice]:
     """A sentence where an air run does not go round what a drawing's paint needs."""
     from ...machine.setup_programs import around
 
@@ -143,15 +150,15 @@ def _beside(made, work: preparation.Work) -> list[tuple[str, str]]:
         f"the program goes round {place.format(*found)}, the drawing is painted within {place.format(*needed)}: it was "
         "changed, or made with other flags or of another drawing"
     )
-    return [("", sentence)]
+    return [Notice("", sentence, code="border-elsewhere")]
 
 
 STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
 
 
-def _refuse_or_allow(args, problems: list[tuple[str, str]], is_alone: bool) -> None:
+def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
     if problems:
-        raise RefusedError([(args.program, *problem) for problem in folded(problems)])
+        raise RefusedError(args.program, folded(problems))
     if not args.json:
         known = "; without its drawing nobody can say whether it is the right one" if is_alone else ""
         tell(f"{args.program}: nothing forbids to run it{known}\n")

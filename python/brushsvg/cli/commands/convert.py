@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...evaluation import report
 from ...machine import preflight, writer
 from ...machine.paint_reload import in_loads, too_long
@@ -21,7 +23,7 @@ def convert_file(args) -> None:
     is_program = suffix != ".json"
     cell = writer.painting_cell(suffix, work.options.cell)
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
-    warn(args.input, [(n.where, n.sentence) for n in work.notices if n not in damaged])
+    warn(args.input, [notice for notice in work.notices if notice not in damaged])
     job = Job(args.z_offset, args.from_stroke if is_program else 1)
     notes = outputs.notes(work)
     if args.order == "nearest":
@@ -35,12 +37,11 @@ def convert_file(args) -> None:
         marks = prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
         loads = in_loads(work.plan, brush, cell)
         walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job)
-        problems = folded([*walk.problems, *((n.where, n.sentence) for n in damaged)])
+        problems = folded([*walk.problems, *damaged])
         if damaged:
-            where, sentence = problems[-1]
-            problems[-1] = (where, f"{sentence} (--lenient draws what is sound)")
+            problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
         if problems:
-            raise RefusedError([(args.input, *problem) for problem in problems])
+            raise RefusedError(args.input, problems)
         files = {args.output: writer.encoded(suffix, work.plan, walk, brush, work.title, notes)}
         if args.preview:
             files[args.preview] = outputs.picture(suffix_of(args.preview), work, marks)

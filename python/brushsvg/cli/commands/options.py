@@ -9,10 +9,11 @@ from ...drawing import ReadOptions, settings_in
 from ...drawing.layout import Layout
 from ...errors import Error
 from ...machine.cell import Cell
+from ...machine.cell_check import OF_EXAMPLE
 from ...machine.cell_file import cell_names, find_cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ...pipeline import preparation
-from ..console import about, say
+from ..console import about, warn
 from .outputs import suffix_of
 
 
@@ -54,8 +55,10 @@ def settled(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
             if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
                 raise Error(
                     f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
-                    f"{', '.join(names)}: give --{kind}",
+                    f"{', '.join(names)}",
                     where="svg",
+                    code=f"{kind}-unknown",
+                    advice=f"give --{kind}",
                 )
     return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
 
@@ -106,5 +109,4 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
 
 def warn_of_example(args, cell: Cell) -> None:
     if cell.paper.example and suffix_of(args.output) != ".json":
-        sentence = "the paper's place is an example: teach yours (brushsvg cell new --taught ...)"
-        say(cell.name, "paper", sentence)
+        warn(cell.name, [OF_EXAMPLE])

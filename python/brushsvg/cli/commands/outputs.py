@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+from ...errors import Notice
 from ...files import write_files
 from ...units import clock
 from ..console import RefusedError, about, clear_stage, say, stage, tell
@@ -25,7 +26,8 @@ def check_places(*paths: str | None) -> None:
         elif not os.access(folder, os.W_OK | os.X_OK):
             reason = "its directory is not writable"
         if reason:
-            raise RefusedError([(path, "", f"the file cannot be written: {reason}")])
+            why = Notice("", f"the file cannot be written: {reason}", code="file-unwritable")
+            raise RefusedError(path, [why])
 
 
 def write(args, files, strokes: int | None = None, seconds: float | None = None, overlap=None) -> None:

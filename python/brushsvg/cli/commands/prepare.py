@@ -5,14 +5,14 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 
-from ...errors import Error
+from ...errors import Error, Notice
 from ...machine import preflight, writer
 from ...machine.cell import Cell
 from ...machine.motion import duration_s
 from ...machine.paint_reload import PlanInLoads, in_loads, too_long
 from ...machine.program import Walked
 from ...pipeline import prediction, preparation
-from ..console import about, say, stage, warn
+from ..console import about, stage, warn
 from .options import Choices, options_of
 from .outputs import suffix_of
 
@@ -23,7 +23,8 @@ def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool 
     if suffix_of(chosen.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
             if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None:
-                say(chosen.input, f"--{flag} has no effect on a plan, whose poses are fixed")
+                sentence = f"--{flag} has no effect on a plan, whose poses are fixed"
+                warn(chosen.input, [Notice("", sentence, code="flag-without-effect", about=flag)])
     options = options_of(chosen, cell, brush)
     with about(chosen.input):
         return preparation.prepare(chosen.input, options, stage, partly)
@@ -51,8 +52,8 @@ class Looked:
     work: preparation.Work
     loads: PlanInLoads
     marks: object
-    warnings: list[tuple[str, str]]
-    forbidden: list[tuple[str, str]]
+    warnings: list[Notice]
+    forbidden: list[Notice]
 
 
 def look(
@@ -64,7 +65,7 @@ def look(
         loads = in_loads(work.plan, brush, cell)
         plan = loads.as_plan() if at_loads else work.plan
         marks = prediction.marks_of(plan, brush, outlines, stage, whole)
-        warnings, forbidden = [(n.where, n.sentence) for n in work.notices], []
+        warnings, forbidden = [*work.notices], []
         if work.plan.passes or not work.refused:
             forbidden = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm).problems
         warnings += forbidden

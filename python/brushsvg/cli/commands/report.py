@@ -36,8 +36,7 @@ def report_file(args) -> None:
     elif advice:
         tell(advice + "\n")
     if work.refused:
-        refused = folded((notice.where, notice.sentence) for notice in work.refused)
-        raise RefusedError([(args.input, *each) for each in refused])
+        raise RefusedError(args.input, folded(work.refused))
 
 
 def _all_brushes(args) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ...drawing import read_drawing
-from ...drawing.design import Notice
 from ...drawing.layout import arrange
 from ...errors import Error
 from ...pipeline import outputs
@@ -54,9 +53,9 @@ def import_file(args) -> None:
         except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
             if args.editable:
                 raise
-            strokes, notices = [], [Notice(nothing.where, str(nothing))]
+            strokes, notices = [], [nothing.notice()]
         notices = [*design.notices, *notices]
-        warn(args.input, [(notice.where, notice.sentence) for notice in notices])
+        warn(args.input, notices)
         if args.editable:
             from ...pictures.editable_svg import lines_svg
 

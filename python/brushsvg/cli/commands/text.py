@@ -25,7 +25,7 @@ def text_file(args) -> None:
             width_mm=args.width,
             sheet_mm=args.sheet,
         )
-    warn(args.font, [(notice.where, notice.sentence) for notice in notices])
+    warn(args.font, notices)
     write(args, {args.output: drawing.encode()})
 
 
@@ -39,5 +39,6 @@ def _font(name: str) -> bytes:
             "there is no such file; fonts of single lines come with Inkscape and are found by name, such as "
             f"EMSAllure.svg, where they lie in {_INKSCAPES}",
             file=name,
+            code="file-unreadable",
         )
     return read_bytes(name)

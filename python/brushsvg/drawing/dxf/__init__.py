@@ -34,7 +34,7 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     lowest, highest = min(z.min() for z in heights), max(z.max() for z in heights)
     if highest - lowest > _FLAT_MM:
         sentence = f"the drawing is not flat: heights from {lowest:.6g} to {highest:.6g} mm are left out"
-        notices.append(Notice("z", sentence))
+        notices.append(Notice("z", sentence, code="dxf-not-flat"))
     dashes = Dashes()
     elements = [dashes.cut(element_of(piece), piece.pen) for piece in chained(pieces)]
     notices += dashes.notices

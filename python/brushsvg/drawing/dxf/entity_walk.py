@@ -97,7 +97,7 @@ class Walk:
         self.top = _Place(np.diag([mm_per_unit, mm_per_unit, mm_per_unit, 1.0]))
         self.pieces: list[Piece] = []
         self.notices: list[Notice] = []
-        self._counts: Counter[tuple[str, str, str | None]] = Counter()
+        self._counts: Counter[tuple[str, str, str | None, str]] = Counter()
         self._known: dict[tuple[str | None, float], list[Curve] | None] = {}
         self._told: set[tuple[str, str]] = set()
         self._entities = self._cubics = 0
@@ -108,11 +108,13 @@ class Walk:
         for layout in self.document.layouts:
             if not layout.is_modelspace:
                 count = sum(entity.dxftype() not in _SILENT for entity in layout)
-                self._counts[shown(layout.name), "paper space is not painted", None] += count
-        for (where, why, layer), count in self._counts.items():
+                self._leave_out(
+                    shown(layout.name), "paper space is not painted", code="paper-space", count=count
+                )
+        for (where, why, layer, code), count in self._counts.items():
             if count:
                 entities = "1 entity" if count == 1 else f"{count} entities"
-                self.notices.append(Notice(where, f"{why}: {entities} left out", layer=layer))
+                self.notices.append(Notice(where, f"{why}: {entities} left out", layer=layer, code=code))
         self.notices += self.letters.notices
 
     def _walk(self, entities, place: _Place) -> None:
@@ -123,6 +125,7 @@ class Walk:
                     f"the drawing unfolds to more than {_MOST_ENTITIES} entities, blocks in blocks counted "
                     "each time they are inserted",
                     where=_top(place.name),
+                    code="drawing-too-large",
                 )
             kind = shown(entity.dxftype(), 40)
             name = f"{place.name}/" if place.name else ""
@@ -132,7 +135,7 @@ class Walk:
                 if kind in _SILENT:
                     continue
                 if not isinstance(entity, ezdxf.entities.DXFGraphic):
-                    self._leave_out(kind, not_read(kind))
+                    self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
                     continue
                 if kind == "ATTDEF" and place.blocks and not (entity.is_const and not entity.is_invisible):
                     continue  # what stands in its place is an ATTRIB of the INSERT
@@ -142,19 +145,26 @@ class Walk:
             except Error:
                 raise
             except NoFontError:
-                self._leave_out(kind, _TEXT_ADVICE, layer)
+                self._leave_out(kind, _TEXT_ADVICE, layer, code="text-unread")
             except Exception as problem:  # whatever ezdxf meets in numbers that anyone may have written
-                self._note(name, f"it is damaged ({reason(problem)}): left out", layer, damaged=True)
+                self._note(
+                    name,
+                    f"it is damaged ({reason(problem)}): left out",
+                    layer,
+                    damaged=True,
+                    code="geometry-damaged",
+                )
 
     def _entity(self, entity, kind: str, name: str, pen: Pen, place: _Place) -> None:
         if entity.dxf.get("invisible", 0):
-            self._leave_out("invisible", "entities made invisible are not painted")
+            self._leave_out("invisible", "entities made invisible are not painted", code="hidden")
         elif kind == "INSERT":
             self._insert(entity, name, pen, place)
         elif pen.hidden:
-            self._leave_out(pen.layer, pen.hidden, pen.layer)
+            self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
         elif kind == "ATTDEF" and not place.blocks:
-            self._leave_out(kind, "attribute definitions are no text of the drawing", pen.layer)
+            sentence = "attribute definitions are no text of the drawing"
+            self._leave_out(kind, sentence, pen.layer, code="attribute-definition")
         elif kind in _TEXT:
             lines = self.letters.outlines(entity, name, pen.layer)
             self._piece(entity, kind, name, pen, place, lines)
@@ -163,16 +173,16 @@ class Walk:
             # its letters know their colour: "by block" is the block that the whole text is in
             self._parts(parts, name, place.pen, place)
         elif kind in _ENDLESS:
-            self._leave_out(kind, f"{kind} has no ends")
+            self._leave_out(kind, f"{kind} has no ends", code="line-without-ends")
         elif (lines := self._curves(entity, place.stretch)) is not None:
             self._piece(entity, kind, name, pen, place, lines)
         elif isinstance(entity, ezdxf.protocols.SupportsVirtualEntities):
             parts = list(ezdxf.protocols.virtual_entities(entity))
             if not parts:
-                self._leave_out(kind, not_read(kind))
+                self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
             self._parts(parts, name, pen, place)
         else:
-            self._leave_out(kind, not_read(kind))
+            self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
 
     def _parts(self, parts: list, name: str, pen: Pen | None, place: _Place) -> None:
         self._deeper(name, place)
@@ -188,25 +198,31 @@ class Walk:
 
     def _insert(self, insert, name: str, pen: Pen, place: _Place) -> None:
         if pen.frozen:
-            self._leave_out(pen.layer, pen.hidden, pen.layer)
+            self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
             return
         shown_here = [attribute for attribute in insert.attribs if not attribute.is_invisible]
         self._parts([_lines_of(attribute) for attribute in shown_here], name, pen, place)
         block = insert.block()
         block_name = shown(insert.dxf.get("name", ""), 40)
         if block is None:
-            self._note(name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True)
+            self._note(
+                name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True, code="dxf-block"
+            )
             return
         if block.block.is_xref:
-            self._note(
-                name, f"block {block_name!r} is kept in another file, which is not read: left out", pen.layer
-            )
+            sentence = f"block {block_name!r} is kept in another file, which is not read: left out"
+            self._note(name, sentence, pen.layer, code="dxf-block")
             return
         key = insert.dxf.name.casefold()
         if key in place.blocks:
-            raise Error(f"block {block_name!r} inserts itself", where=_top(name))
+            raise Error(f"block {block_name!r} inserts itself", where=_top(name), code="dxf-block")
         if ezdxf.xclip.XClip(insert).is_clipping_enabled:
-            self._note(name, "its clipping (XCLIP) is not read: it counts as whole", pen.layer)
+            self._note(
+                name,
+                "its clipping (XCLIP) is not read: it counts as whole",
+                pen.layer,
+                code="clipping-unread",
+            )
         self._deeper(name, place)
         matrix = np.array(list(insert.matrix44())).reshape(4, 4)
         for suffix, shift in self._array(insert, name):
@@ -223,7 +239,9 @@ class Walk:
         rows, columns = max(rows, 1), max(columns, 1)
         if rows * columns > _MOST_ENTITIES:
             raise Error(
-                f"{rows} rows of {columns} columns are more than {_MOST_ENTITIES} entities", where=_top(name)
+                f"{rows} rows of {columns} columns are more than {_MOST_ENTITIES} entities",
+                where=_top(name),
+                code="drawing-too-large",
             )
         if rows == columns == 1:
             return [("", np.zeros(3))]
@@ -239,7 +257,9 @@ class Walk:
 
     def _deeper(self, name: str, place: _Place) -> None:
         if len(place.blocks) >= _DEEPEST:
-            raise Error(f"blocks are nested more than {_DEEPEST} deep", where=_top(name))
+            raise Error(
+                f"blocks are nested more than {_DEEPEST} deep", where=_top(name), code="drawing-too-large"
+            )
 
     def _piece(self, entity, kind: str, name: str, pen: Pen, place: _Place, lines: list[Curve]) -> None:
         fill_rule = "nonzero" if kind in _TEXT else "evenodd" if kind in dxf_curves.FILLED else ""
@@ -247,22 +267,24 @@ class Walk:
         for line in lines:
             self._cubics += len(line.cubics)
             if self._cubics > _MOST_CUBICS:
-                raise Error(f"the drawing unfolds to more than {_MOST_CUBICS} curves", where=_top(name))
+                raise Error(
+                    f"the drawing unfolds to more than {_MOST_CUBICS} curves",
+                    where=_top(name),
+                    code="drawing-too-large",
+                )
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
             widths = None if line.widths is None else place.widths_mm(line, entity.dxf.extrusion.normalize())
             if not (np.abs(cubics).max() <= _FARTHEST_MM and np.ptp(cubics, axis=(0, 1)).max() <= LARGEST_MM):
-                self._note(
-                    name, "its geometry is not finite or beyond 1e6 mm: left out", pen.layer, damaged=True
-                )
+                sentence = "its geometry is not finite or beyond 1e6 mm: left out"
+                self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
             if widths is not None and not (widths.min() >= 0 and widths.max() <= LARGEST_MM):
-                self._note(
-                    name, "its widths are outside the range [0, 1e6] mm: left out", pen.layer, damaged=True
-                )
+                sentence = "its widths are outside the range [0, 1e6] mm: left out"
+                self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
             found.append(Curve(cubics, line.closed, widths))
         if not found:
-            self._note(name, "it has no geometry: left out", pen.layer)
+            self._note(name, "it has no geometry: left out", pen.layer, code="geometry-empty")
             return
         filling = pen
         if kind == "MPOLYGON":
@@ -272,9 +294,13 @@ class Walk:
             filling = self.pens.filling(entity, pen, place.pen) if entity.dxf.solid_fill else pen
         if kind in ("HATCH", "MPOLYGON"):
             if not entity.dxf.solid_fill:
-                self._note(name, "its pattern is not read: it counts as filled", pen.layer)
+                self._note(
+                    name, "its pattern is not read: it counts as filled", pen.layer, code="paint-unread"
+                )
             elif entity.gradient is not None and entity.gradient.number_of_colors:
-                self._note(name, "its gradient is not read: it counts as filled", pen.layer)
+                self._note(
+                    name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread"
+                )
         self._tell_what_is_not_painted(
             entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None
         )
@@ -284,9 +310,10 @@ class Walk:
     def _tell_what_is_not_painted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
         header, dxf = self.document.header, entity.dxf
         if pen.see_through:
-            self._note(name, "it is see-through: it counts as opaque", pen.layer)
+            self._note(name, "it is see-through: it counts as opaque", pen.layer, code="opacity-unread")
         if dxf.hasattr("thickness") and dxf.thickness and np.hypot(*dxf.extrusion.vec2) > 1e-9:
-            self._note(name, "its thickness, which would show from above, is not read", pen.layer)
+            sentence = "its thickness, which would show from above, is not read"
+            self._note(name, sentence, pen.layer, code="thickness-unread")
         if kind == "POINT" and (mode := header.get("$PDMODE", 0)):
             self._once("$PDMODE", f"points are shown as marks of kind {mode}: they are painted as dabs")
         if filled and kind not in _TEXT and not header.get("$FILLMODE", 1):
@@ -298,10 +325,14 @@ class Walk:
     def _once(self, where: str, sentence: str) -> None:
         if (where, sentence) not in self._told:
             self._told.add((where, sentence))
-            self._note(where, sentence, None)
+            self._note(where, sentence, None, code="shown-otherwise")
 
-    def _leave_out(self, where: str, why: str, layer: str | None = None) -> None:
-        self._counts[where, why, layer] += 1
+    def _leave_out(
+        self, where: str, why: str, layer: str | None = None, *, code: str, count: int = 1
+    ) -> None:
+        self._counts[where, why, layer, code] += count
 
-    def _note(self, where: str, sentence: str, layer: str | None, damaged: bool = False) -> None:
-        self.notices.append(Notice(where, sentence, damaged, layer))
+    def _note(
+        self, where: str, sentence: str, layer: str | None, damaged: bool = False, *, code: str
+    ) -> None:
+        self.notices.append(Notice(where, sentence, damaged, layer, code=code))

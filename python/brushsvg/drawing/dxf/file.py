@@ -27,18 +27,20 @@ class _Auditor(ezdxf.audit.Auditor):
 def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     """The document and a few notices on its damage. Error if it is no DXF, or damaged beyond repair."""
     if data[:4] == b"AC10" and data[4:6].isdigit():
-        raise Error("the file is a DWG, not a DXF: save it as DXF in the program that made it")
+        raise Error(
+            "the file is a DWG, not a DXF: save it as DXF in the program that made it", code="dxf-damaged"
+        )
     if b"ENTITIES" not in data:
-        raise Error("the file is not a DXF, or cut short: it has no ENTITIES")
+        raise Error("the file is not a DXF, or cut short: it has no ENTITIES", code="dxf-damaged")
     read = _binary if data.startswith(_BINARY) else _text
     try:
         document, notices = read(data)
         auditor = _Auditor(document)
         auditor.run()
     except ezdxf.DXFError as problem:
-        raise Error(f"the DXF is damaged beyond repair: {reason(problem)}") from None
+        raise Error(f"the DXF is damaged beyond repair: {reason(problem)}", code="dxf-damaged") from None
     except Exception:  # whatever ezdxf meets in bytes that anyone may have written
-        raise Error("the DXF is damaged beyond repair, or cut short") from None
+        raise Error("the DXF is damaged beyond repair, or cut short", code="dxf-damaged") from None
     return document, notices + _some([("file", error.message) for error in auditor.errors], damaged=False)
 
 
@@ -63,7 +65,11 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     damage += [(shown(name), f"it is damaged ({shown(why)}): left out") for name, why in entities.broken]
     damage += [("file", message) for _, message in (*recovered.errors, *recovered.fixes)]
     counts = [
-        Notice(shown(kind), f"{not_read(shown(kind))}: {n} {'entity' if n == 1 else 'entities'} left out")
+        Notice(
+            shown(kind),
+            f"{not_read(shown(kind))}: {n} {'entity' if n == 1 else 'entities'} left out",
+            code="dxf-entity-unread",
+        )
         for kind, n in entities.left_out.items()
     ]
     return document, _some(damage, damaged=True) + counts
@@ -105,4 +111,4 @@ def _some(told: list[tuple[str, str]], damaged: bool) -> list[Notice]:
     kept = [(where, shown(sentence).rstrip(".")) for where, sentence in told[:_MOST_NOTICES]]
     if more := len(told) - len(kept):
         kept.append(("file", f"and {more} more such problems"))
-    return [Notice(where, sentence, damaged) for where, sentence in kept]
+    return [Notice(where, sentence, damaged, code="dxf-repaired", about=sentence) for where, sentence in kept]

@@ -30,13 +30,22 @@ class Dashes:
         if not any(lengths):
             return element
         if not 0 < sum(pattern) < math.inf:
-            unread = Notice(pen.line_type.name, "the line type is not read: its lines count as unbroken")
+            unread = Notice(
+                pen.line_type.name,
+                "the line type is not read: its lines count as unbroken",
+                code="dashes-unread",
+            )
             if unread not in self.notices:
                 self.notices.append(unread)
             return element
         if any(subpath.widths is not None for subpath in element.subpaths):
             self.notices.append(
-                Notice(element.id, "its dashes are not read: its width varies", layer=element.layer)
+                Notice(
+                    element.id,
+                    "its dashes are not read: its width varies",
+                    layer=element.layer,
+                    code="dashes-unread",
+                )
             )
             return element
         pieces = []
@@ -47,9 +56,9 @@ class Dashes:
             try:
                 pieces += dashed(subpath, pattern, 0.0, self._left - len(pieces))
             except Error as error:
-                raise Error(str(error), where=element.id) from None
+                raise Error(str(error), where=element.id, code=error.code) from None
         self._left -= len(pieces)
         if len(pieces) > len(element.subpaths):
             sentence = f"it is dashed: {len(pieces)} strokes, one for each dash"
-            self.notices.append(Notice(element.id, sentence, layer=element.layer))
+            self.notices.append(Notice(element.id, sentence, layer=element.layer, code="dashed"))
         return replace(element, subpaths=tuple(pieces))

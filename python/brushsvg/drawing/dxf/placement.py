@@ -36,7 +36,9 @@ def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
             kept.append(piece)
         else:
             sentence = "its geometry lies beyond 1e6 mm: left out"
-            notices.append(Notice(piece.id, sentence, damaged=True, layer=piece.pen.layer))
+            notices.append(
+                Notice(piece.id, sentence, damaged=True, layer=piece.pen.layer, code="geometry-out-of-range")
+            )
     return kept, notices
 
 

@@ -49,11 +49,25 @@ class Letters:
             more = self._count[font, layer] - 1
             said = f"text {shown(text, 40)!r}" + (f" and {more} more" if more else "")
             why = f": {font.why}" if font.why else ""
-            found.append(Notice(where, f"{said} became the outlines of font {font.name}{why}", layer=layer))
+            found.append(
+                Notice(
+                    where,
+                    f"{said} became the outlines of font {font.name}{why}",
+                    layer=layer,
+                    code="text-outlined",
+                )
+            )
         for (font, layer), letters in self._missing.items():
             listed = ", ".join(repr(c) for c in list(letters)[:5]) + (" ..." if len(letters) > 5 else "")
             where = self._drawn[font, layer][0]
-            found.append(Notice(where, f"font {font.name} has no glyph for {listed}: left out", layer=layer))
+            found.append(
+                Notice(
+                    where,
+                    f"font {font.name} has no glyph for {listed}: left out",
+                    layer=layer,
+                    code="glyph-missing",
+                )
+            )
         return found
 
     def outlines(self, entity, name: str, layer: str) -> list[Curve]:
@@ -127,13 +141,17 @@ class Letters:
         )
 
     def _not_read(self, name: str, sentence: str, layer: str) -> None:
-        self._unread.append(Notice(name, sentence, layer=layer))
+        self._unread.append(Notice(name, sentence, layer=layer, code="text-unread"))
 
     def _count_letters(self, text: str, name: str) -> None:
         self._left -= len(text)
         if self._left < 0:
             where = name.partition("/")[0]
-            raise Error(f"the drawing's text unfolds to more than {_MOST_LETTERS} letters", where=where)
+            raise Error(
+                f"the drawing's text unfolds to more than {_MOST_LETTERS} letters",
+                where=where,
+                code="drawing-too-large",
+            )
 
 
 _SET_IN_A_LINE = "its letters one below the other are not read: they are set in a line"

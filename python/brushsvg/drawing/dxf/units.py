@@ -44,9 +44,19 @@ def unit_of(document, asked_for: str | None) -> tuple[float, list[Notice]]:
     name, drawn = _UNITS.get(document.header.get("$INSUNITS", 0), ("", None))
     if asked_for is None:
         if drawn is None:
-            raise Error("the drawing does not say its unit: give --units mm or --units in", where="$INSUNITS")
+            raise Error(
+                "the drawing does not say its unit: give --units mm or --units in",
+                where="$INSUNITS",
+                code="unit-unknown",
+            )
         return drawn, []
     wanted_name, wanted = _ASKED_FOR[asked_for]
     if drawn is None or drawn == wanted:
         return wanted, []
-    return wanted, [Notice("$INSUNITS", f"the drawing is in {name}; read in {wanted_name}, as asked for")]
+    return wanted, [
+        Notice(
+            "$INSUNITS",
+            f"the drawing is in {name}; read in {wanted_name}, as asked for",
+            code="unit-overruled",
+        )
+    ]

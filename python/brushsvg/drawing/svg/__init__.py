@@ -27,7 +27,7 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     try:
         return _read(parse_xml(data), options)
     except RecursionError:
-        raise Error("its CSS is nested too deeply", where="style") from None
+        raise Error("its CSS is nested too deeply", where="style", code="css-too-complex") from None
 
 
 def settings_of(data: bytes, alone: bool = False) -> dict:
@@ -47,7 +47,7 @@ def settings_of(data: bytes, alone: bool = False) -> dict:
 def _root_of(document: Document) -> ET.Element:
     root = document.root
     if root.tag not in (SVG + "svg", "svg"):
-        raise Error(f"the root element is <{local(root)[:40]}>, not <svg>")
+        raise Error(f"the root element is <{local(root)[:40]}>, not <svg>", code="not-svg")
     return root
 
 
@@ -69,7 +69,7 @@ def _beside(document: Document, root: ET.Element, page: Page) -> list[Notice]:
     notices = []
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
-        notices.append(Notice("xml-stylesheet", sentence))
+        notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
     if any("Adobe Illustrator" in comment for comment in document.comments) and page.in_px:
         own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
         w, h = own.sheet_mm
@@ -78,5 +78,5 @@ def _beside(document: Document, root: ET.Element, page: Page) -> list[Notice]:
             f"{w * 96 / 72:.4g} x {h * 96 / 72:.4g} mm there, give its svg "
             f'width="{w / MM_PER["px"]:.6g}pt" height="{h / MM_PER["px"]:.6g}pt"'
         )
-        notices.append(Notice("svg", sentence))
+        notices.append(Notice("svg", sentence, code="illustrator-pixels"))
     return notices

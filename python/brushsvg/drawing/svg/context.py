@@ -54,10 +54,21 @@ class Notes:
         self.notices = notices
         self._ordinals: dict[ET.Element, int] = {}
 
-    def add(self, node: ET.Element, context: Context, sentence: str, damaged: bool = False) -> None:
+    def add(
+        self,
+        node: ET.Element,
+        context: Context,
+        sentence: str,
+        damaged: bool = False,
+        *,
+        code: str,
+        about: str = "",
+        advice: str = "",
+    ) -> None:
         """Say something of an element that is to be painted; of any other there is nothing to say."""
         if context.chosen or node is self.root:
-            self.notices.append(Notice(self.label(node), one_line(sentence), damaged, context.layer))
+            told = one_line(sentence)
+            self.notices.append(Notice(self.label(node), told, damaged, context.layer, code, about, advice))
 
     def label(self, node: ET.Element) -> str:
         """An element's id, or which one of its kind it is: "rect 3"."""

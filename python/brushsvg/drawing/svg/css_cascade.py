@@ -9,7 +9,7 @@ from operator import itemgetter
 
 import tinycss2
 
-from ...errors import Error
+from ...errors import Error, Notice
 from ...units import FONT_PX, NUMBER, length_px
 from .colour import parse_colour
 from .css_selectors import Declaration, declarations
@@ -79,8 +79,6 @@ _FONT_SIZES = {
 }
 _LONGEST_VALUE = 10_000  # of custom properties put into each other
 
-Problem = tuple[str, bool]  # a sentence, and whether geometry is damaged
-
 
 @dataclass(frozen=True)
 class Style:
@@ -100,7 +98,7 @@ INITIAL = Style(INHERITED, OWN, {})
 
 def cascade(
     parent: Style, attributes: dict[str, str], rules: list[Declaration], diagonal: float
-) -> tuple[Style, list[Problem]]:
+) -> tuple[Style, list[Notice]]:
     """An element's style, and what was wrong with it: what is not valid falls back to the parent's, as CSS asks.
 
     rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
@@ -121,7 +119,7 @@ def cascade(
     inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
     if "font-size" in said:  # others count in it
         said = {"font-size": said["font-size"], **said}
-    problems: list[Problem] = []
+    problems: list[Notice] = []
     for name, values in said.items():
         for text in reversed(values):  # the strongest that is valid
             value = text.strip()
@@ -130,7 +128,8 @@ def cascade(
                 if problem:  # CSS does not fall back to a weaker declaration here
                     sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
                     if name != "font-size":
-                        problems.append((sentence, name == "stroke-width" or name in _GEOMETRY))
+                        is_damage = name == "stroke-width" or name in _GEOMETRY
+                        problems.append(Notice("", sentence, is_damage, code="css-invalid", about=name))
                     break
             if name == "d":
                 if (text := _path_text(value)) is not None:
@@ -159,19 +158,31 @@ def cascade(
     return Style(inherited, own, geometry), problems
 
 
-def _problem(name: str, value: str, diagonal: float) -> Problem | None:
+def _problem(name: str, value: str, diagonal: float) -> Notice | None:
     """Why a value is not one of its property, as far as it matters."""
     if name in ("stroke", "fill", "color"):
         if not URL.match(value) and parse_colour(value) is None:
-            return f"{name} {value[:40]!r} is not a colour: it counts as not given", False
+            return Notice(
+                "",
+                f"{name} {value[:40]!r} is not a colour: it counts as not given",
+                code="colour-invalid",
+                about=name,
+            )
     elif name == "stroke-width":
         try:
             if length_px(value, diagonal) < 0:
-                raise Error(f"{value[:24]!r} is negative")
+                raise Error(f"{value[:24]!r} is negative", code="out-of-range")
         except Error as error:
-            return f"stroke-width: {error}; it counts as not given", True
+            return Notice(
+                "", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid"
+            )
     elif name in _OPACITIES and not _SHARE.fullmatch(value):
-        return f"{name} {value[:40]!r} is not a number: it counts as not given", False
+        return Notice(
+            "",
+            f"{name} {value[:40]!r} is not a number: it counts as not given",
+            code="css-invalid",
+            about=name,
+        )
     return None
 
 
@@ -245,12 +256,12 @@ def _path_text(value: str) -> str | None:
     return told[0].value if len(told) == 1 and told[0].type == "string" else None
 
 
-def unread_own(own: dict[str, str]) -> list[str]:
-    """Sentences about properties of an element or group that apply to all it holds and are not read."""
+def unread_own(own: dict[str, str]) -> list[tuple[str, str]]:
+    """(property, sentence) for those of an element or group that apply to all it holds and are not read."""
     effects = [name for name in _UNREAD if own[name] != OWN[name]]
-    sentences = [f"{name} is not read: it counts as {OWN[name] or 'not given'}" for name in effects]
+    told = [(name, f"{name} is not read: it counts as {OWN[name] or 'not given'}") for name in effects]
     if own["display"] == "contents":
-        sentences.append("display: contents is not read: it counts as inline")
+        told.append(("display", "display: contents is not read: it counts as inline"))
     if own["opacity"] != "1":
-        sentences.append("opacity is not read: it counts as 1")
-    return sentences
+        told.append(("opacity", "opacity is not read: it counts as 1"))
+    return told

@@ -30,7 +30,11 @@ class _Budget:
     def spend(self, steps: int) -> None:
         self.left -= steps
         if self.left < 0:
-            raise Error("its CSS selectors take too long on a drawing of this size", where="style")
+            raise Error(
+                "its CSS selectors take too long on a drawing of this size",
+                where="style",
+                code="css-too-complex",
+            )
 
 
 class _Node(ElementWrapper):
@@ -91,7 +95,11 @@ class Rules:
         self._tree = Tree(root) if sheets else None
         texts = ["".join(sheet.itertext()) for sheet in sheets]
         if (length := sum(map(len, texts))) > TEXT_LIMIT:
-            raise Error(f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}", where="style")
+            raise Error(
+                f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}",
+                where="style",
+                code="css-too-complex",
+            )
         for text in texts:
             self._add(tinycss2.parse_stylesheet(text, True, True))
 
@@ -109,14 +117,19 @@ class Rules:
                 if self._for_screens(rule.prelude):
                     self._add(tinycss2.parse_rule_list(rule.content, True, True))
             elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
-                self._note("@import names another file, which is not read")
+                self._note("@import names another file, which is not read", about="@import")
             elif rule.type == "at-rule" and rule.lower_at_keyword == "namespace":
                 if not any(each.type in ("url", "string") and each.value == _SVG for each in rule.prelude):
-                    self._note("@namespace is not read: its rules count for all elements")
+                    self._note("@namespace is not read: its rules count for all elements", about="@namespace")
             elif rule.type == "at-rule" and rule.lower_at_keyword not in _NO_STROKES:
-                self._note(f"@{rule.at_keyword[:40]} is not read: what it says is missing")
+                name = f"@{rule.at_keyword[:40]}"
+                self._note(f"{name} is not read: what it says is missing", about=name)
             elif rule.type == "error":
-                self._note(f"line {rule.source_line} is not CSS: {rule.message[:80]}")
+                self._note(
+                    f"line {rule.source_line} is not CSS: {rule.message[:80]}",
+                    code="css-invalid",
+                    about="syntax",
+                )
             elif rule.type == "qualified-rule":
                 self._add_rule(rule)
 
@@ -124,12 +137,14 @@ class Rules:
         text = tinycss2.serialize(rule.content)
         declared = declarations(text)
         if "{" in text:
-            self._note(f"rules in the rule {tinycss2.serialize(rule.prelude).strip()[:60]!r} are not read")
+            where = tinycss2.serialize(rule.prelude).strip()[:60]
+            self._note(f"rules in the rule {where!r} are not read", about="rules in rules")
         if not declared:
             return
         selectors = self._tree.compiled(rule.prelude)
         if selectors is None:
-            self._note(f"selector {tinycss2.serialize(rule.prelude).strip()[:60]!r} is not read")
+            selector = tinycss2.serialize(rule.prelude).strip()[:60]
+            self._note(f"selector {selector!r} is not read", about="selector")
         for selector in selectors or ():
             self._matcher.add_selector(selector, declared)
 
@@ -142,11 +157,14 @@ class Rules:
         queries = [" ".join(query.split()) for query in tinycss2.serialize(media).lower().split(",")]
         known = [_MEDIA.get(query.removeprefix("only ")) for query in queries]
         if True not in known and None in known:
-            self._note(f"@media {queries[known.index(None)][:60]} is not read: what it says is missing")
+            self._note(
+                f"@media {queries[known.index(None)][:60]} is not read: what it says is missing",
+                about="@media",
+            )
         return True in known
 
-    def _note(self, sentence: str) -> None:
-        self.notices.append(Notice("style", sentence))
+    def _note(self, sentence: str, *, code: str = "css-unread", about: str) -> None:
+        self.notices.append(Notice("style", sentence, code=code, about=about))
 
 
 # What media queries say, as far as it is known beforehand.

@@ -59,7 +59,10 @@ def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> M
         words = [word.strip() for word in call[2].split(",")] if call else []
         kinds = _KINDS.get(name, ())
         if not kinds or not (len(words) == len(kinds) or (len(kinds) == 2 and len(words) == 1)):
-            raise Error(f"transform is not read from character {at + 1} on: found {snippet(text, at)}")
+            raise Error(
+                f"transform is not read from character {at + 1} on: found {snippet(text, at)}",
+                code="transform-unread",
+            )
         values = [_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)]
         matrix = multiply(matrix, _MAKE[name](*values))
         at = call.end()
@@ -73,7 +76,7 @@ def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], 
         return IDENTITY
     kinds = _KINDS[name]
     if not 1 <= len(words) <= len(kinds):
-        raise Error(f"{name} {text[:40]!r} is not read")
+        raise Error(f"{name} {text[:40]!r} is not read", code="transform-unread")
     return _MAKE[name](*(_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)))
 
 
@@ -81,10 +84,10 @@ def origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: floa
     """The point that `transform-origin` names. is_css: whether lengths need units. Error if it is not CSS."""
     words = text.lower().split()
     if not 1 <= len(words) <= 3:
-        raise Error(f"transform-origin {text[:40]!r} is not read")
+        raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
     if len(words) == 3:  # above the paper
         if (depth := words.pop()).endswith("%"):
-            raise Error(f"transform-origin {text[:40]!r} is not read")
+            raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
         _length(depth, 0.0, is_css, em_px)
     if len(words) == 1:
         words = ["center", *words] if words[0] in _DOWN else [*words, "center"]
@@ -114,14 +117,20 @@ def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) 
             return float(found[1]) * _DEGREES[found[2].lower()]
         if _BARE.fullmatch(word) and float(word) == 0:
             return 0.0
-        raise Error(f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg")
+        raise Error(
+            f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg",
+            code="transform-unread",
+        )
     found = _SHARE.fullmatch(word)
     if not found or (found[2] and kind == "number"):
-        raise Error(f"transform: {word[:24]!r} is not a number")
+        raise Error(f"transform: {word[:24]!r} is not a number", code="transform-unread")
     return float(found[1]) / (100 if found[2] else 1)
 
 
 def _length(word: str, percent_of: float, is_css: bool, em_px: float) -> float:
     if is_css and _BARE.fullmatch(word) and float(word) != 0:
-        raise Error(f"transform: {word[:24]!r} has no unit, which CSS asks for: write {word[:24]}px")
+        raise Error(
+            f"transform: {word[:24]!r} has no unit, which CSS asks for: write {word[:24]}px",
+            code="transform-unread",
+        )
     return length_px(word, percent_of, em_px)

@@ -25,7 +25,9 @@ def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float, most: in
     count = end / period * len(pattern) / 2
     if count > most:
         raise Error(
-            f"its dashes of {period:.4g} mm would make {count:.3g} strokes where {most} are left of the drawing's limit"
+            f"its dashes of {period:.4g} mm would make {count:.3g} strokes where {most} are left of the drawing's "
+            "limit",
+            code="drawing-too-large",
         )
     ends = np.cumsum(pattern)
     first = -(offset_mm % period)

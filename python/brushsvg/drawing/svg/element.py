@@ -46,10 +46,12 @@ class Painted:
         stroke, of_stroke = self.paints.of(properties, "stroke")
         fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
-        power, sentences = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
+        power, told = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
-            self.notes.add(node, context, "its transforms flatten it to nothing: left out")
+            self.notes.add(
+                node, context, "its transforms flatten it to nothing: left out", code="geometry-empty"
+            )
             return
         mm_per_user = math.sqrt(greatest * least)
         width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
@@ -66,31 +68,33 @@ class Painted:
         if power is None and width_mm == 0:
             stroke = "none"
         if stroke == "none" and fill == "none":
-            self.notes.add(node, context, "it has neither stroke nor fill: left out")
+            self.notes.add(
+                node, context, "it has neither stroke nor fill: left out", code="neither-stroke-nor-fill"
+            )
             return
         if not width_mm <= LARGEST_MM:
             sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
-            self.notes.add(node, context, sentence, damaged=True)
+            self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
             return
-        told = len(self.notes.notices)
+        before = len(self.notes.notices)
         subpaths = self._drawn(node, tag, attributes, context, power, stroke != "none")
         if not subpaths:
             return
         if stroke != "none" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
-            self.notes.add(node, context, sentence)
-        sentences += of_fill * (fill != "none") + of_stroke * (stroke != "none")
+            self.notes.add(node, context, sentence, code="stretched-unevenly")
+        for each in told + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
+            self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
         if _WHITE in (fill, stroke):
-            sentences.append(
+            sentence = (
                 "it is white, and painted like any colour: what it hides in the drawing is painted, too"
             )
+            self.notes.add(node, context, sentence, code="white-paint")
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
-            sentences.append("markers are not read: left out")
-        for sentence in sentences:
-            self.notes.add(node, context, sentence)
+            self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
         self.elements.append(
             Element(
-                id=self._named(node, context, told),
+                id=self._named(node, context, before),
                 subpaths=subpaths,
                 stroke_width_mm=0.0 if stroke == "none" else width_mm,
                 colour=fill if stroke == "none" else stroke,
@@ -143,21 +147,29 @@ class Painted:
         self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
         if self.data > _MOST_DATA:
             raise Error(
-                f"the drawing has more than {_MOST_DATA} characters of path data", self.notes.label(node)
+                f"the drawing has more than {_MOST_DATA} characters of path data",
+                self.notes.label(node),
+                code="drawing-too-large",
             )
         try:
             commands = shapes.commands_of(tag, attributes, context.viewport, context.em_px)
             if not commands:
-                self.notes.add(node, context, "it has no geometry: left out")
+                self.notes.add(node, context, "it has no geometry: left out", code="geometry-empty")
         except shapes.DamageError as damage:
-            self.notes.add(node, context, str(damage), damaged=True)
+            self.notes.add(node, context, str(damage), damaged=True, code="geometry-damaged")
             commands = damage.commands
         line = trace(commands, context.matrix, greatest)
         if line.beyond is not None:
-            self.notes.add(node, context, _beyond(attributes, tag, line.beyond), damaged=True)
+            self.notes.add(
+                node,
+                context,
+                _beyond(attributes, tag, line.beyond),
+                damaged=True,
+                code="geometry-out-of-range",
+            )
         if line.lone_movetos:
             count = "a moveto" if line.lone_movetos == 1 else f"{line.lone_movetos} movetos"
-            self.notes.add(node, context, f"{count} without a line to follow: skipped")
+            self.notes.add(node, context, f"{count} without a line to follow: skipped", code="moveto-alone")
         return line.subpaths
 
     def _dashed(self, node, context: Context, subpaths, mm_per_user: float) -> tuple[SubPath, ...]:
@@ -172,24 +184,33 @@ class Painted:
             pattern = [context.length(word, context.diagonal) * scale for word in words]
             offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
-            self.notes.add(node, context, f"stroke-dasharray: {error}: the line counts as solid")
+            self.notes.add(
+                node, context, f"stroke-dasharray: {error}: the line counts as solid", code="dashes-unread"
+            )
             return subpaths
         if min(pattern, default=0.0) < 0:
-            self.notes.add(node, context, "stroke-dasharray has a negative length: the line counts as solid")
+            self.notes.add(
+                node,
+                context,
+                "stroke-dasharray has a negative length: the line counts as solid",
+                code="dashes-unread",
+            )
             return subpaths
         if not 0 < sum(pattern) < math.inf:
             return subpaths
         if subpaths[0].widths is not None:
-            self.notes.add(node, context, "its dashes are not read: its width varies")
+            self.notes.add(node, context, "its dashes are not read: its width varies", code="dashes-unread")
             return subpaths
         pieces: list[SubPath] = []
         try:
             for subpath in subpaths:
                 pieces += dashed(subpath, pattern, offset, self.dashes_left - len(pieces))
         except Error as error:
-            raise Error(str(error), where=self.notes.label(node)) from None
+            raise Error(str(error), where=self.notes.label(node), code=error.code) from None
         self.dashes_left -= len(pieces)
-        self.notes.add(node, context, f"it is dashed: {len(pieces)} strokes, one for each dash")
+        self.notes.add(
+            node, context, f"it is dashed: {len(pieces)} strokes, one for each dash", code="dashed"
+        )
         return tuple(pieces)
 
     def _path_scale(self, node, context: Context, subpaths, mm_per_user: float) -> float:
@@ -200,7 +221,9 @@ class Painted:
         try:
             said = number(text)
         except Error as error:
-            self.notes.add(node, context, f"pathLength: {error}; it counts as not given")
+            self.notes.add(
+                node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread"
+            )
             return 1.0
         if said < 0:
             return 1.0
@@ -215,12 +238,19 @@ class Painted:
         points = np.concatenate([extremes(subpath.cubics) for subpath in subpaths])
         (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
         if x0 > window[2] or x1 < window[0] or y0 > window[3] or y1 < window[1]:
-            self.notes.add(node, context, "it lies outside of the viewport that would show it: left out")
+            self.notes.add(
+                node,
+                context,
+                "it lies outside of the viewport that would show it: left out",
+                code="outside-viewport",
+            )
             return ()
         slack = 1e-6
         beyond = (window[0] - x0, window[1] - y0, x1 - window[2], y1 - window[3])
         if max(beyond) > slack:
-            self.notes.add(node, context, "its viewport cuts it off in the drawing: painted whole")
+            self.notes.add(
+                node, context, "its viewport cuts it off in the drawing: painted whole", code="viewport-cuts"
+            )
         return subpaths
 
 

@@ -6,7 +6,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 
-from ...errors import Error
+from ...errors import Error, Notice
 from ...units import length_px
 from .colour import parse_colour
 from .css_selectors import Declaration, declarations
@@ -25,28 +25,34 @@ class Paints:
         self._by_id = by_id
         self._rules = rules
         self._known: dict[
-            tuple[str, str], tuple[str, list[str]]
+            tuple[str, str], tuple[str, list[Notice]]
         ] = {}  # thousands of shapes share a long gradient
 
-    def of(self, properties: dict[str, str], name: str) -> tuple[str, list[str]]:
+    def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
         """What "stroke" or "fill" paints with: "#rrggbb" or "none", and what of it is not read."""
         key = properties[name] or "#000000", name
         if key not in self._known:
             self._known[key] = self._colour(*key)
-        colour, sentences = self._known[key]
-        sentences = [*sentences]
+        colour, told = self._known[key]
+        told = [*told]
         colour = properties["color"] if colour == "currentcolor" else colour
         opacity = float(properties[f"{name}-opacity"])
         alpha = int(colour[7:], 16) / 255 if len(colour) == 9 else 1.0
         if colour == "none" or alpha * opacity < UNSEEN:
             return "none", []
         if alpha < 1:
-            sentences.append(f"the {name}'s colour has an opacity of {alpha:.2g}: it counts as 1")
+            told.append(
+                Notice(
+                    "",
+                    f"the {name}'s colour has an opacity of {alpha:.2g}: it counts as 1",
+                    code="opacity-unread",
+                )
+            )
         if opacity < 1:
-            sentences.append(f"{name}-opacity is not read: it counts as 1")
-        return colour[:7], sentences
+            told.append(Notice("", f"{name}-opacity is not read: it counts as 1", code="opacity-unread"))
+        return colour[:7], told
 
-    def _colour(self, value: str, name: str) -> tuple[str, list[str]]:
+    def _colour(self, value: str, name: str) -> tuple[str, list[Notice]]:
         """A reference to nothing, or to what is no paint, counts as its fallback, as SVG asks."""
         found = URL.match(value)
         if not found:
@@ -65,7 +71,8 @@ class Paints:
         elif tag not in _NOT_IN_BROWSERS:
             return spare, []
         colour = spare[:7] if spare.startswith("#") else "#000000"
-        return colour, [f"the {name}'s paint {reference[:40]} is not read: it counts as {colour}"]
+        sentence = f"the {name}'s paint {reference[:40]} is not read: it counts as {colour}"
+        return colour, [Notice("", sentence, code="paint-unread", about=name)]
 
     def _stop(self, stop: ET.Element) -> str | None:
         """The colour of a gradient's stop, None if it is not said plainly."""

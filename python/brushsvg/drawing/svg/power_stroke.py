@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...errors import Notice
 from ...geometry.arc_length import knots
 from ..design import SubPath
 from .path_data import numbers
@@ -51,7 +52,7 @@ def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
 
 def drawn_line(
     node: ET.Element, by_id: dict[str, ET.Element], in_group: bool
-) -> tuple[PowerStroke | None, list[str]]:
+) -> tuple[PowerStroke | None, list[Notice]]:
     """The line under a PowerStroke, None if there is none, and what of the element's effects is not read.
 
     in_group: whether a group around it has path effects.
@@ -66,29 +67,32 @@ def drawn_line(
     kinds = [re.sub("[^A-Za-z0-9_]", "", str(effect.get("effect")))[:40] for effect in effects]
     if not power:
         others = [kind for kind in kinds if kind not in _LINES]
-        return None, [f"path effect {kind} is not read: its outline counts" for kind in others]
+        return None, [_unread(f"path effect {kind} is not read: its outline counts") for kind in others]
     if in_group or len(effects) > 1:
         others = [kind for kind in kinds if kind != "powerstroke"] + ["of a group"] * in_group
         also = ", ".join(others) or "a second one"
-        return None, [f"its PowerStroke is not read beside path effect {also}: its outline counts"]
+        return None, [_unread(f"its PowerStroke is not read beside path effect {also}: its outline counts")]
     (said,) = power
     pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
     scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
     numbered = [*pairs, *(each and [*each, 0.0] for each in scales)]
     if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in numbered):
-        return None, ["its PowerStroke has no offset points that can be read: its outline counts"]
+        return None, [_unread("its PowerStroke has no offset points that can be read: its outline counts")]
     scale = numbers(said.get("scale_width", "1").strip()) or [1.0]
     beta = numbers(said.get("interpolator_beta", "0.2").strip()) or [0.2]
     offsets = np.array(pairs) * [1.0, scale[0]]
     if said.get("sort_points", "true") == "true":
         offsets = offsets[np.argsort(offsets[:, 0], kind="stable")]
-    sentences = []
+    told = []
     interpolator = said.get("interpolator_type", "Linear")
     if interpolator not in _INTERPOLATORS:
-        sentences.append(
-            f"the width of its PowerStroke is interpolated {re.sub('[^A-Za-z]', '', interpolator)[:30]}, read as Linear"
-        )
-    return PowerStroke(original, offsets, interpolator, beta[0]), sentences
+        how = re.sub("[^A-Za-z]", "", interpolator)[:30]
+        told.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
+    return PowerStroke(original, offsets, interpolator, beta[0]), told
+
+
+def _unread(sentence: str) -> Notice:
+    return Notice("", sentence, code="path-effect-unread")
 
 
 def with_widths(power: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: float) -> tuple[SubPath, ...]:

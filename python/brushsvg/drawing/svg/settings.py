@@ -48,14 +48,14 @@ def _speed_mm_s(text: str) -> float:
     try:
         value = number(text)
     except Error:
-        raise Error(f"{text[:24]!r} is not a speed in mm/s") from None
+        raise Error(f"{text[:24]!r} is not a speed in mm/s", code="setting-invalid") from None
     return _in_range(value, 0.001, 10000, "mm/s")
 
 
 def _whole(least: int, greatest: int):
     def read(text: str) -> int:
         if not re.fullmatch("[+-]?[0-9]{1,18}", text):  # int() reads other alphabets' digits, too
-            raise Error(f"{text[:24]!r} is not a whole number")
+            raise Error(f"{text[:24]!r} is not a whole number", code="setting-invalid")
         return _in_range(int(text), least, greatest)
 
     return read
@@ -63,20 +63,20 @@ def _whole(least: int, greatest: int):
 
 def _yes(text: str) -> bool:
     if text.lower() not in ("yes", "no", "true", "false", "1", "0"):
-        raise Error(f"{text[:24]!r} is neither yes nor no")
+        raise Error(f"{text[:24]!r} is neither yes nor no", code="setting-invalid")
     return text.lower() in ("yes", "true", "1")
 
 
 def _name(text: str) -> str:
     if not text:
-        raise Error("it is empty")
+        raise Error("it is empty", code="setting-invalid")
     return text
 
 
 def _one_of(*known: str):
     def read(text: str) -> str:
         if text not in known:
-            raise Error(f"{text[:24]!r} is none of {', '.join(known)}")
+            raise Error(f"{text[:24]!r} is none of {', '.join(known)}", code="setting-invalid")
         return text
 
     return read
@@ -89,7 +89,9 @@ def _tolerance_mm(text: str) -> float:
 def _in_range(value, least, greatest, unit: str = ""):
     if not (math.isfinite(value) and least <= value <= greatest):
         unit = unit and f" {unit}"
-        raise Error(f"{value:g}{unit} is outside the range [{least:g}, {greatest:g}]{unit}")
+        raise Error(
+            f"{value:g}{unit} is outside the range [{least:g}, {greatest:g}]{unit}", code="out-of-range"
+        )
     return value
 
 

@@ -29,8 +29,8 @@ _DEFINITIONS = "defs symbol marker mask pattern clipPath filter linearGradient r
 _DESCRIPTIONS = "title desc metadata view font font-face color-profile style script"
 _ANIMATIONS = frozenset("animate set animateTransform animateMotion animateColor".split())
 _SILENT = frozenset(f"{_DEFINITIONS} {_DESCRIPTIONS}".split()) | _ANIMATIONS
-_TEXT = (
-    "text is not read: turn it into paths first, in Inkscape with Path > Object to Path, or with "
+_TEXT_ADVICE = (
+    "turn it into paths first, in Inkscape with Path > Object to Path, or with "
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg"
 )
 _TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
@@ -53,7 +53,7 @@ class Walk:
             animations += local(node) in _ANIMATIONS
         if animations:
             sentence = f"animations are not read: {animations} left out, what they move or show counts as without them"
-            notices = [*notices, Notice("svg", sentence)]
+            notices = [*notices, Notice("svg", sentence, code="animations-unread")]
         self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
         paints = Paints(self.by_id, self.rules.of)
         self.painted = Painted(self.by_id, self.notes, paints, in_effects_of_groups(root))
@@ -104,7 +104,11 @@ class Walk:
         if context.used:
             self.copies += 1
             if self.copies > _MOST_USED:
-                raise Error(f"use copies more than {_MOST_USED} elements", where=self.notes.label(node))
+                raise Error(
+                    f"use copies more than {_MOST_USED} elements",
+                    where=self.notes.label(node),
+                    code="drawing-too-large",
+                )
         style, problems = cascade(context.style, node.attrib, self.rules.of(node), context.diagonal)
         if node in self.layer_names and not context.used:
             context = context._replace(layer=self.layer_names[node])
@@ -136,7 +140,12 @@ class Walk:
         elif inner.settings.get("skip"):
             self._leave_out("to be skipped, by data-brushsvg-skip")
         elif tag not in shapes.TAGS:
-            self.notes.add(node, inner, _TEXT if tag == "text" else f"{tag[:40]} is not read: left out")
+            if tag == "text":
+                self.notes.add(node, inner, "text is not read", code="text-unread", advice=_TEXT_ADVICE)
+            else:
+                self.notes.add(
+                    node, inner, f"{tag[:40]} is not read: left out", code="element-unread", about=tag
+                )
         else:
             self.painted.add(node, tag, inner)
 
@@ -148,16 +157,24 @@ class Walk:
         settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
         if float(style.own["opacity"]) < UNSEEN:
-            self.notes.add(node, context, "it is fully transparent: left out")
+            self.notes.add(node, context, "it is fully transparent: left out", code="transparent")
             return None
-        for sentence, damaged in [*problems, *((sentence, True) for sentence in invalid)]:
-            self.notes.add(node, context, sentence, damaged)
-        for sentence in unread_own(style.own):
-            self.notes.add(node, context, sentence)
+        for each in problems:
+            self.notes.add(node, context, each.sentence, each.damaged, code=each.code, about=each.about)
+        for sentence in invalid:
+            self.notes.add(node, context, sentence, damaged=True, code="setting-invalid")
+        for name, sentence in unread_own(style.own):
+            self.notes.add(node, context, sentence, code="css-unread", about=name)
         if matrix := self._transform(node, context):
             context = context._replace(matrix=multiply(context.matrix, matrix))
         if not all(map(math.isfinite, context.matrix)):
-            self.notes.add(node, context, "its transforms lead beyond all numbers: left out", damaged=True)
+            self.notes.add(
+                node,
+                context,
+                "its transforms lead beyond all numbers: left out",
+                damaged=True,
+                code="geometry-out-of-range",
+            )
             return None
         return context
 
@@ -169,7 +186,8 @@ class Walk:
             return None
         if node is self.root and not context.used:
             sentence = "programs disagree on a transform of the drawing itself, which counts as none: put it on a group"
-            self.notes.add(node, context, sentence + " around all that is drawn", damaged=True)
+            sentence += " around all that is drawn"
+            self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
             return None
 
         @cache  # one transform can ask for it a thousand times
@@ -199,7 +217,9 @@ class Walk:
         try:
             return read(*words)
         except Error as error:
-            self.notes.add(node, context, f"{error}; it counts as not given", damaged=True)
+            self.notes.add(
+                node, context, f"{error}; it counts as not given", damaged=True, code="transform-unread"
+            )
             return None
 
     def _reference_box(self, node: ET.Element, context: Context) -> ReferenceBox:
@@ -210,7 +230,7 @@ class Walk:
         bounds = self.painted.bounds(node, context) if local(node) in shapes.TAGS else None
         if bounds is None or kind in ("stroke-box", "border-box"):
             sentence = f"transform-box {kind} is not read on {local(node)[:40]}: it counts as view-box"
-            self.notes.add(node, context, sentence, damaged=True)
+            self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
             return (0.0, 0.0, *context.viewport)
         return bounds
 
@@ -220,13 +240,13 @@ class Walk:
         try:
             found = nested_viewport(attributes, context.viewport, context.size or (None, None), context.em_px)
         except Error as error:
-            self.notes.add(node, context, f"{error}: left out", damaged=True)
+            self.notes.add(node, context, f"{error}: left out", damaged=True, code=error.code)
             return
         if found is None:
             return
         inner, viewport, corners, notices = found
         for notice in notices:
-            self.notes.add(node, context, notice.sentence)
+            self.notes.add(node, context, notice.sentence, code=notice.code)
         window = context.window_mm
         if context.style.own["overflow"] not in ("visible", "auto"):
             window = overlap(window, box_of(context.matrix, corners))
@@ -242,17 +262,21 @@ class Walk:
             if context.style.inherited["visibility"] != "visible":
                 return
             if not reference:
-                self.notes.add(node, context, "it has no href, so it uses nothing: left out")
+                self.notes.add(
+                    node, context, "it has no href, so it uses nothing: left out", code="use-of-nothing"
+                )
                 return
             shown = repr(reference[:40])
             lacking = (
                 "is nowhere in the drawing" if reference.startswith("#") else "lies outside of the drawing"
             )
-            self.notes.add(node, context, f"what it uses, {shown}, {lacking}: left out")
+            self.notes.add(
+                node, context, f"what it uses, {shown}, {lacking}: left out", code="use-of-nothing"
+            )
             return
         if target in self.entered or target is node:
             sentence = f"it uses {reference[:40]}, in which it lies itself: left out"
-            self.notes.add(node, context, sentence, damaged=True)
+            self.notes.add(node, context, sentence, damaged=True, code="use-of-itself")
             return
         attributes = {**node.attrib, **context.style.geometry}
         try:
@@ -261,7 +285,7 @@ class Walk:
                 for axis, name in enumerate(("x", "y"))
             )
         except Error as error:
-            self.notes.add(node, context, f"{error}: left out", damaged=True)
+            self.notes.add(node, context, f"{error}: left out", damaged=True, code=error.code)
             return
         inner = context._replace(
             matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),

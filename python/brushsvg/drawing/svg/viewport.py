@@ -76,7 +76,10 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
         width, height = width or sheet_mm[0], height or sheet_mm[1]
     if width is None or height is None:
         if box is None:
-            raise Error("the drawing says neither width and height nor a viewBox, so its size is unknown")
+            raise Error(
+                "the drawing says neither width and height nor a viewBox, so its size is unknown",
+                code="size-unknown",
+            )
         if width is None and height is None:
             width, height = box[2] * MM_PER["px"], box[3] * MM_PER["px"]
             reason = "no width and height in absolute units: its viewBox is read in px at 96 to the inch"
@@ -84,7 +87,9 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
             lacking = "width" if width is None else "height"
             reason = f"no {lacking} in absolute units: it follows from the viewBox"
             width, height = width or height * box[2] / box[3], height or width * box[3] / box[2]
-        notices.append(Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm"))
+        notices.append(
+            Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm", code="size-assumed")
+        )
     for name, value in (("width", width), ("height", height)):
         if not 0 < value <= LARGEST_MM:
             raise Error(
@@ -92,6 +97,7 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
                 where="svg",
                 value=value,
                 range=(0.0, LARGEST_MM),
+                code="out-of-range",
             )
     if box is None:
         px = MM_PER["px"]
@@ -109,9 +115,11 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
         return None
     values = numbers(text.strip())
     if values is None or len(values) != 4 or not all(map(math.isfinite, values)):
-        raise Error(f"viewBox {snippet(text, 0, 40)} is not four numbers", where="svg")
+        raise Error(
+            f"viewBox {snippet(text, 0, 40)} is not four numbers", where="svg", code="viewbox-invalid"
+        )
     if values[2] <= 0 or values[3] <= 0:
-        raise Error(f"viewBox {snippet(text, 0, 40)} has no area", where="svg")
+        raise Error(f"viewBox {snippet(text, 0, 40)} has no area", where="svg", code="viewbox-invalid")
     return tuple(values)
 
 
@@ -121,7 +129,7 @@ def _extent(text: str | None, name: str) -> float | None:
     try:
         return length_mm(text, "px")
     except Error as error:
-        raise Error(f"the page's {name}: {error}", where="svg") from None
+        raise Error(f"the page's {name}: {error}", where="svg", code=error.code) from None
 
 
 _ALIGN = re.compile(r"(?:defer )?(?:(none)|x(Min|Mid|Max)Y(Min|Mid|Max))(?: (meet|slice))?")
@@ -134,7 +142,13 @@ def _fit(box, width: float, height: float, text: str | None, notices: list[Notic
     align = _ALIGN.fullmatch(" ".join((text or "").split() or ["xMidYMid"]))
     if not align:
         unknown = snippet(text, 0, 40)
-        notices.append(Notice("svg", f"preserveAspectRatio {unknown} is not known: read as xMidYMid meet"))
+        notices.append(
+            Notice(
+                "svg",
+                f"preserveAspectRatio {unknown} is not known: read as xMidYMid meet",
+                code="aspect-ratio-unread",
+            )
+        )
         align = _ALIGN.fullmatch("xMidYMid")
     if align[1]:
         return (sx, 0.0, 0.0, sy, -x * sx, -y * sy)

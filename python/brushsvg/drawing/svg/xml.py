@@ -36,7 +36,7 @@ def parse_xml(data: bytes) -> Document:
     Error, with the line where there is one, for what is not XML, reads other files or inflates itself.
     """
     if not data.strip():
-        raise Error("the file is empty")
+        raise Error("the file is empty", code="file-empty")
     data = _unpacked(data) if data.startswith(b"\x1f\x8b") else data
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
@@ -60,14 +60,20 @@ def parse_xml(data: bytes) -> Document:
         nonlocal elements
         elements += 1
         if elements > _MOST_ELEMENTS:
-            raise Error(f"{line()}: the document has more than {_MOST_ELEMENTS} elements")
+            raise Error(
+                f"{line()}: the document has more than {_MOST_ELEMENTS} elements", code="drawing-too-large"
+            )
         builder.start(full(tag), {full(name): value for name, value in attributes.items()})
 
     def entity(name, is_parameter, value, _base, system_id, _public_id, _notation) -> None:
         if system_id is not None:
-            raise Error(f"{line()}: entity {name!r} lies in another file, which is not read")
+            raise Error(
+                f"{line()}: entity {name!r} lies in another file, which is not read", code="xml-entity"
+            )
         if is_parameter or re.search("&[^#]", value):
-            raise Error(f"{line()}: entity {name!r} is built from other entities, which is refused")
+            raise Error(
+                f"{line()}: entity {name!r} is built from other entities, which is refused", code="xml-entity"
+            )
         bound("entities", data.count(b"&") * len(value))
 
     def attribute_default(_element, _name, _type, default, _required) -> None:
@@ -82,6 +88,7 @@ def parse_xml(data: bytes) -> Document:
                 f"beyond the limit of {EXPANSION_LIMIT}",
                 value=length,
                 range=(0, EXPANSION_LIMIT),
+                code="xml-entity",
             )
 
     parser.StartElementHandler = start
@@ -95,11 +102,13 @@ def parse_xml(data: bytes) -> Document:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         reason = expat.errors.messages.get(error.code, "unreadable")
-        raise Error(f"this is not XML: {reason} in line {error.lineno}, column {error.offset + 1}") from None
+        raise Error(
+            f"this is not XML: {reason} in line {error.lineno}, column {error.offset + 1}", code="not-xml"
+        ) from None
     except (LookupError, ValueError) as error:
         if isinstance(error, Error):
             raise
-        raise Error(f"this is not XML that can be read: {error}") from None
+        raise Error(f"this is not XML that can be read: {error}", code="not-xml") from None
     return Document(builder.close(), instructions, comments)
 
 
@@ -109,9 +118,14 @@ def _unpacked(data: bytes) -> bytes:
     try:
         plain = unpacking.decompress(data, _LARGEST_UNPACKED + 1)
     except zlib.error:
-        raise Error("the file is compressed (SVGZ), but what it holds is damaged") from None
+        raise Error(
+            "the file is compressed (SVGZ), but what it holds is damaged", code="svgz-damaged"
+        ) from None
     if len(plain) > _LARGEST_UNPACKED:
-        raise Error(f"the file is compressed (SVGZ) and unpacks to more than {_LARGEST_UNPACKED} bytes")
+        raise Error(
+            f"the file is compressed (SVGZ) and unpacks to more than {_LARGEST_UNPACKED} bytes",
+            code="file-too-large",
+        )
     if not unpacking.eof:
-        raise Error("the file is compressed (SVGZ) and cut short")
+        raise Error("the file is compressed (SVGZ) and cut short", code="svgz-damaged")
     return plain

@@ -40,30 +40,46 @@ def text_svg(
     for side_mm in sheet_mm or ():
         _in_range("a side of the sheet", side_mm, 1e6, " mm")
     if not text:
-        raise Error("the text is empty", "text")
+        raise Error("the text is empty", "text", code="text-empty")
     if len(text) > _CHARACTERS:
         sentence = f"the text has {len(text)} characters, beyond the limit of {_CHARACTERS}"
-        raise Error(sentence, "text", len(text), (1, _CHARACTERS))
+        raise Error(sentence, "text", len(text), (1, _CHARACTERS), code="text-too-long")
     text, notices = _without_controls(text)
     setter = _setter(font)
     setting = setter.set_lines(font, text.split("\n"), size_mm)
     notices += setting.notices
     if setting.missing:
-        notices.append(Notice("text", f"the font has no glyph for {_listed(setting.missing)}: left out"))
+        notices.append(
+            Notice(
+                "text",
+                f"the font has no glyph for {_listed(setting.missing)}: left out",
+                code="glyph-missing",
+            )
+        )
     notices += _directions(text, setting.filled)
     if not any(setting.lines):
         said = "; ".join(notice.sentence for notice in notices if notice.where != "font")
-        raise Error("the text leaves nothing to paint" + (f": {said}" if said else ""), "text")
+        raise Error(
+            "the text leaves nothing to paint" + (f": {said}" if said else ""),
+            "text",
+            code="nothing-to-paint",
+        )
     if setting.filled and width_mm is not None:
         sentence = f"the width {width_mm:g} mm has no effect: the font has outlines, not single lines"
-        notices.append(Notice("font", sentence))
+        notices.append(Notice("font", sentence, code="width-without-effect"))
     stroke_mm = 0.0 if setting.filled else width_mm or 1.0
     return document(setting, text, line_spacing * size_mm, stroke_mm, sheet_mm), notices
 
 
 def _in_range(name: str, value: float, most: float, unit: str = "") -> None:
     if not (math.isfinite(value) and 0 < value <= most):
-        raise Error(f"{name} {value:g}{unit} is outside the range (0, {most:g}]{unit}", "", value, (0, most))
+        raise Error(
+            f"{name} {value:g}{unit} is outside the range (0, {most:g}]{unit}",
+            "",
+            value,
+            (0, most),
+            code="out-of-range",
+        )
 
 
 def _without_controls(text: str) -> tuple[str, list[Notice]]:
@@ -72,7 +88,13 @@ def _without_controls(text: str) -> tuple[str, list[Notice]]:
     if kept == text:
         return text, []
     dropped = dict.fromkeys(each for each in text if each != "\n" and _is_control(each))
-    return kept, [Notice("text", f"control characters are not painted: {_listed(tuple(dropped))} left out")]
+    return kept, [
+        Notice(
+            "text",
+            f"control characters are not painted: {_listed(tuple(dropped))} left out",
+            code="control-characters",
+        )
+    ]
 
 
 def _directions(text: str, shaped: bool) -> list[Notice]:
@@ -83,10 +105,16 @@ def _directions(text: str, shaped: bool) -> list[Notice]:
         if not kinds & {"R", "AL"}:
             continue
         if not shaped:
-            notices.append(Notice("text", f"line {number} is set from left to right, as SVG fonts are"))
+            notices.append(
+                Notice(
+                    "text",
+                    f"line {number} is set from left to right, as SVG fonts are",
+                    code="text-direction",
+                )
+            )
         elif kinds & {"L", "EN", "AN"}:
             sentence = f"line {number} holds writing in two directions and is set in one: check its order"
-            notices.append(Notice("text", sentence))
+            notices.append(Notice("text", sentence, code="text-direction"))
     return notices
 
 
@@ -106,7 +134,7 @@ def _listed(characters: tuple[str, ...]) -> str:
 
 def _setter(font: bytes):
     if not font.strip():
-        raise Error("the font file is empty")
+        raise Error("the font file is empty", code="file-empty")
     if font.startswith(_OUTLINES):
         try:
             from . import outline_font
@@ -115,4 +143,7 @@ def _setter(font: bytes):
         return outline_font
     if font.lstrip(b"\xef\xbb\xbf\xff\xfe\0 \t\r\n").startswith(b"<"):
         return svg_font
-    raise Error("this is not a font that can be read: known are SVG fonts (.svg), TrueType and OpenType")
+    raise Error(
+        "this is not a font that can be read: known are SVG fonts (.svg), TrueType and OpenType",
+        code="font-unknown",
+    )

@@ -28,14 +28,14 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     """
     setter = _Setter(_unpacked(data), size_mm)
     placed = tuple(map(setter.place, lines))
-    return Setting(placed, True, tuple(setter.missing), (Notice("font", _NOTICE),))
+    return Setting(placed, True, tuple(setter.missing), (Notice("font", _NOTICE, code="font-of-outlines"),))
 
 
 class _Setter:
     def __init__(self, data: bytes, size_mm: float):
         face = hb.Face(data)
         if not face.glyph_count:
-            raise Error("this is a damaged font: it holds no glyphs that can be read")
+            raise Error("this is a damaged font: it holds no glyphs that can be read", code="font-damaged")
         self.font = hb.Font(face)
         self.mm_per_unit = size_mm / face.upem
         self.shapes: dict[int, tuple[SubPath, ...]] = {}
@@ -101,7 +101,10 @@ class _Cubics(BasePen):
 def _unpacked(data: bytes) -> bytes:
     """The font as HarfBuzz reads it: WOFF is taken out of its compression."""
     if data.startswith(b"wOF2"):
-        raise Error("WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress")
+        raise Error(
+            "WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress",
+            code="font-unknown",
+        )
     if not data.startswith(b"wOFF"):
         return data
     try:
@@ -116,7 +119,7 @@ def _unpacked(data: bytes) -> bytes:
         raise
     except Exception as error:  # fontTools raises whatever it meets in damaged tables
         reason = str(error).splitlines() or [type(error).__name__]
-        raise Error(f"this is a damaged WOFF font: {reason[0][:120]}") from None
+        raise Error(f"this is a damaged WOFF font: {reason[0][:120]}", code="font-damaged") from None
     return out.getvalue()
 
 
@@ -127,5 +130,11 @@ def _inflated_length(packed: bytes, limit: int) -> int:
     except zlib.error:
         return len(packed)  # as it is: WOFF leaves alone what would not shrink
     if length > limit:
-        raise Error(f"the font unpacks to more than {_UNPACKED} bytes", "", length, (0, _UNPACKED))
+        raise Error(
+            f"the font unpacks to more than {_UNPACKED} bytes",
+            "",
+            length,
+            (0, _UNPACKED),
+            code="file-too-large",
+        )
     return length

@@ -31,11 +31,21 @@ def document(
     ]
     count = sum(len(subpath.cubics) for glyph, _ in placed for subpath in glyph.subpaths)
     if count > _CUBICS:
-        raise Error(f"the text takes {count} curves, beyond the limit of {_CUBICS}", "", count, (0, _CUBICS))
+        raise Error(
+            f"the text takes {count} curves, beyond the limit of {_CUBICS}",
+            "",
+            count,
+            (0, _CUBICS),
+            code="text-too-long",
+        )
     least, most = _extents(placed)
     size = most - least + width_mm
     if not (size < LARGEST_MM).all():
-        raise Error(f"the text is {size.max():.4g} mm long, beyond the range [0, 1e6] mm", "text")
+        raise Error(
+            f"the text is {size.max():.4g} mm long, beyond the range [0, 1e6] mm",
+            "text",
+            code="text-too-long",
+        )
     if sheet_mm is None:
         sheet = np.ceil((size + 2 * _MARGIN_MM) * 1e4 - 1e-3) / 1e4
     else:
@@ -45,6 +55,7 @@ def document(
                 f"the text takes {size[0]:.2f} x {size[1]:.2f} mm, more than the sheet's "
                 f"{sheet[0]:g} x {sheet[1]:g} mm",
                 "text",
+                code="text-does-not-fit",
             )
     shift = (sheet - least - most) / 2
     style = (
@@ -80,7 +91,7 @@ def _extents(placed: list[tuple[Placed, np.ndarray]]) -> tuple[np.ndarray, np.nd
             known[id(glyph.subpaths)] = points.min(axis=0), points.max(axis=0)
         corners += [corner + origin for corner in known[id(glyph.subpaths)]]
     if not corners:
-        raise Error("the text leaves nothing to paint", "text")
+        raise Error("the text leaves nothing to paint", "text", code="nothing-to-paint")
     return np.min(corners, axis=0), np.max(corners, axis=0)
 
 

@@ -40,10 +40,12 @@ def _read(data: bytes) -> _Font:
     root = parse_xml(data).root
     fonts = [node for node in root.iter() if _local(node) == "font"]
     if not fonts:
-        raise Error(f"this is no font: <{_local(root)[:40]}> holds no <font>")
+        raise Error(f"this is no font: <{_local(root)[:40]}> holds no <font>", code="font-unknown")
     font, notices = fonts[0], []
     if len(fonts) > 1:
-        notices.append(Notice("font", f"the file holds {len(fonts)} fonts: the first one is used"))
+        notices.append(
+            Notice("font", f"the file holds {len(fonts)} fonts: the first one is used", code="fonts-in-file")
+        )
     face = next((node for node in font if _local(node) == "font-face"), font)
     nodes: dict[str, ET.Element] = {}
     kerns = _Kerns()
@@ -54,11 +56,11 @@ def _read(data: bytes) -> _Font:
         elif _local(node) == "hkern":
             kerns.add(node)
     if not nodes:
-        raise Error("the font has no glyph for any character")
+        raise Error("the font has no glyph for any character", code="font-damaged")
     units = _number(face, "units-per-em", "1000")
     if not _UNITS[0] <= units <= _UNITS[1]:
         sentence = f"units-per-em {units:g} is outside the range [1, 1e6]"
-        raise Error(sentence, _local(face), units, _UNITS)
+        raise Error(sentence, _local(face), units, _UNITS, code="font-damaged")
     return _Font(nodes, kerns, units, font.get("horiz-adv-x"), tuple(notices))
 
 
@@ -71,7 +73,7 @@ def _number(node: ET.Element, name: str, default: str | None = None) -> float:
     values = numbers(text.strip()) if text else None
     if values is None or len(values) != 1 or not math.isfinite(values[0]):
         said = "is missing" if text is None else f"{snippet(text, 0)} is not a number"
-        raise Error(f"{name} {said}", _name(node))
+        raise Error(f"{name} {said}", _name(node), code="font-damaged")
     return values[0]
 
 
@@ -95,7 +97,7 @@ class _Setter:
         drawn = [subpath for shape in self.shapes.values() for subpath in shape]
         if drawn and all(subpath.closed for subpath in drawn):
             sentence = "every line of these letters is closed; if they are outlines, the outlines are painted"
-            self.notices.append(Notice("font", sentence))
+            self.notices.append(Notice("font", sentence, code="font-of-outlines"))
         return Setting(placed, False, tuple(self.missing), tuple(self.notices))
 
     def _line(self, line: str) -> tuple[Placed, ...]:
@@ -147,11 +149,13 @@ class _Setter:
             return ()
         if line.lone_movetos:
             count = "a moveto" if line.lone_movetos == 1 else f"{line.lone_movetos} movetos"
-            self.notices.append(Notice(_name(node), f"{count} without a line to follow: skipped"))
+            self.notices.append(
+                Notice(_name(node), f"{count} without a line to follow: skipped", code="moveto-alone")
+            )
         return line.subpaths
 
     def _skip(self, node: ET.Element, sentence: str, damaged: bool = True) -> None:
-        self.notices.append(Notice(_name(node), f"{sentence}; it is left out", damaged))
+        self.notices.append(Notice(_name(node), f"{sentence}; it is left out", damaged, code="glyph-damaged"))
 
 
 class _Kerns:

@@ -1,0 +1,54 @@
+"""docs/diagnostics.md lists the codes of all that a person is told, and nothing else."""
+
+import ast
+import re
+from fnmatch import fnmatch
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "python" / "brushsvg"
+WITHOUT = ("strokes", "verification")  # folders whose older refusals have no codes yet
+
+
+def codes_in(node: ast.AST):
+    """Texts of an expression; what an f-string leaves open is a *."""
+    if isinstance(node, ast.JoinedStr):
+        yield "".join(part.value if isinstance(part, ast.Constant) else "*" for part in node.values)
+    elif isinstance(node, ast.Constant) and node.value:
+        yield node.value
+    elif not isinstance(node, ast.Compare):
+        for child in ast.iter_child_nodes(node):
+            yield from codes_in(child)
+
+
+def in_sources() -> tuple[set[str], list[str]]:
+    """The codes, and the places of notices and refusals that have none."""
+    found, without = set(), []
+    for file in sorted(PACKAGE.rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(node, ast.Call):
+                continue
+            given = {word.arg: word.value for word in node.keywords}
+            found.update(codes_in(given["code"]) if "code" in given else ())
+            name = node.func.id if isinstance(node.func, ast.Name) else ""
+            whole = any(isinstance(arg, ast.Starred) for arg in node.args) or len(node.args) > 4
+            if name in ("Error", "Notice") and "code" not in given and not whole:
+                without.append(f"{file.relative_to(PACKAGE)}:{node.lineno}")
+    return found, [place for place in without if not place.startswith(WITHOUT)]
+
+
+def in_docs() -> list[str]:
+    rows = re.findall(r"^\| (`.*?) \|", (ROOT / "docs" / "diagnostics.md").read_text(), re.MULTILINE)
+    return re.findall("`([^`]+)`", " ".join(rows))
+
+
+def test_every_notice_and_refusal_has_a_code():
+    assert in_sources()[1] == []
+
+
+def test_the_table_lists_the_codes_that_there_are():
+    listed, (found, _) = in_docs(), in_sources()
+    assert len(listed) == len(set(listed)), "one stands twice"
+    assert all(re.fullmatch("[a-z]+(-[a-z]+)*", code) for code in listed)
+    assert sorted(code for code in found if not any(fnmatch(each, code) for each in listed)) == []
+    assert sorted(each for each in listed if not any(fnmatch(each, code) for code in found)) == []
