@@ -104,6 +104,6 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     suffix = Path(path).suffix.lower()
     cell = painting_cell(suffix, as_exact_as(cell, DEFAULT_TOLERANCE_MM))
-    loads, marks = in_loads(plan, brush, cell), _core.simulate(plan, brush)
+    marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)  # the former refuses other types
     walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
     write_files({path: encoded(suffix, plan, walk, brush, title)})
