@@ -32,7 +32,7 @@ def report(drawing, capsys, *flags):
 def test_the_report_says_how_far_off_and_where_from(drawing, capsys):
     told = report(drawing, capsys).out
     assert "middle +-  ends +-  width +-" in told
-    assert "95 %, no covariance: from RMSE; half_width not counted, nobody measured it." in told
+    assert "95 % confidence, no covariance: from RMSE; without half_width, not measured." in told
     found = json.loads(report(drawing, capsys, "--json").out)
     assert found["uncertainty_from"] == "RMSE"
     line, bow = (row["uncertainty_95"] for row in found["strokes"])
