@@ -35,7 +35,7 @@ class Sure:
 @dataclass(frozen=True)
 class Uncertainty:
     """source: COVARIANCE, or RMSE where the brush has none: laws as far off as single readings, independently. words:
-    the same for people, with the laws that do not count since nobody measured them."""
+    the same for people, with the laws that were not measured and do not count."""
 
     source: str
     words: str
