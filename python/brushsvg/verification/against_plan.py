@@ -25,7 +25,10 @@ def with_plan(ran: Ran, expected, cell: Cell, first_stroke: int = 1) -> tuple[li
     """
     first, count = first_stroke, len(expected.passes)
     if first > count:
-        raise Error(f"the program goes on with stroke {first}, the drawing has strokes 1 to {count}")
+        raise Error(
+            f"the program goes on with stroke {first}, the drawing has strokes 1 to {count}",
+            code="stroke-unknown",
+        )
     due = expected.passes[first - 1 :]
     partners, problems = _partners(ran.plan.passes, due)
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
