@@ -249,8 +249,8 @@ def to_text(report: Report) -> str:
         rule,
         table[-1],
         "",
-        "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
-        "of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
+        "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
         *_sure_words(report.sure),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
@@ -288,7 +288,7 @@ def _sure_words(sure: Uncertainty | None) -> list[str]:
     if sure is None:
         return ["No confidence intervals: the brush has neither covariance nor RMSE."]
     return [
-        "+-: half the confidence interval of the mark's middle across the line, of its ends along it, of its width:",
+        "+-: half the confidence interval of the mark's middle across the line, of its ends along it, of its width,",
         f"{sure.words}.",
     ]
 

@@ -79,11 +79,9 @@ def in_words(brush) -> str:
     source = known_from(brush)
     if source is None:
         return "no confidence band: the brush has neither covariance nor RMSE"
-    said = "from the brush's covariance" if source == COVARIANCE else "no covariance: from RMSE"
+    said = "from the brush's covariance" if source == COVARIANCE else "from RMSE, for lack of a covariance"
     missing = [law for law in LAWS if not _counts(brush, law)]
-    return f"95 % confidence, {said}" + (
-        f"; without {' and '.join(missing)}, not measured" if missing else ""
-    )
+    return f"95 %, {said}" + (f"; without {' and '.join(missing)}, not measured" if missing else "")
 
 
 def _counts(brush, law: str) -> bool:
