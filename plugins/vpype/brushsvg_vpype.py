@@ -97,7 +97,7 @@ def _compensated(document, brush_name, compensation, tolerance_mm, width_px):
     if missed and compensation == "closed":
         many = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
         click.echo(
-            f"brushsvg: {missed[0]}{many}: the mark leaves the line by more than {tolerance_mm:g} mm",
+            f"brushsvg: {missed[0]}{many}: tracking error above the tolerance of {tolerance_mm:g} mm",
             err=True,
         )
     return done, found

@@ -30,7 +30,7 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     assert (
         "tip_to_widest = " in told and "assumed: The widest section is taken to lie 1.8 half widths" in told
     )
-    assert "next: measure tip_to_widest, which nobody has" in told
+    assert "next: measure tip_to_widest, so far assumed" in told
     brush = find_brush(out)
     assert brush.name == "own" and picture.read_bytes().startswith(b"<?xml")
     assert [getattr(brush, law).assumed for law in ("lag", "tip_gap", "tip_to_widest", "half_width")] == [
@@ -49,13 +49,13 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     assert tuple(brush.depth_range_mm) == (0, 7)
 
 
-def test_a_wild_value_is_named_and_least_absolute_residuals_survive_it(tmp_path, capsys):
+def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, capsys):
     lines = [f"lag,{d},{4 + d + 0.01 * k}" for d in range(1, 9) for k in range(-2, 3)]
     lines += [f"width,{d},{d}" for d in range(1, 9)]
     (tmp_path / "m.csv").write_text("kind,depth_mm,value_mm\n" + "\n".join([*lines, "lag,4,14"]))
     call = ["calibrate", str(tmp_path / "m.csv"), "-o", str(tmp_path / "b.json")]
     assert main(call) == 0
-    assert "line 50 lies +" in capsys.readouterr().out
+    assert "line 50 is an outlier: +" in capsys.readouterr().out
     off = find_brush(tmp_path / "b.json").lag(4) - 8
     assert main([*call, "--norm", "absolute"]) == 0
     assert abs(find_brush(tmp_path / "b.json").lag(4) - 8) < 0.02 < abs(off) / 5
@@ -333,7 +333,7 @@ def test_of_exact_values_no_rounding_is_told(tmp_path, capsys):
     rows = {"lag": values(2 + 0.5 * DEPTHS), "width": values(DEPTHS)}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
-    assert "95 % +- 0, 0, 0 (ascending powers)" in capsys.readouterr().out
+    assert "95 % confidence intervals +- 0, 0, 0 (ascending powers)" in capsys.readouterr().out
 
 
 def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):
@@ -352,7 +352,7 @@ def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
     rows[4] = ("lag", 5, 70.0)
     table(tmp_path, rows + WIDTHS, "--norm", norm)
     told = "".join(capsys.readouterr())
-    assert "line 6 lies +" in told and "mm off the law of the others" in told
+    assert "line 6 is an outlier: +" in told and "studentized residual" in told
     assert "line 5 lies" not in told and "right order" not in told
 
 
@@ -361,15 +361,15 @@ def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
     code, out = table(tmp_path, rows + WIDTHS[:3] + [("width", 5.3, 5.3)])
     assert code == 1 and not out.exists()
     told = capsys.readouterr().err
-    assert "these values leave the lag open" in told and "measure it at more depths" in told
+    assert "these values do not determine the lag" in told and "measure it at more depths" in told
 
 
-def test_normal_noise_is_seldom_called_wild():
+def test_normal_noise_is_seldom_called_an_outlier():
     rng, depths = np.random.default_rng(1), np.linspace(1, 10, 12)
     columns = np.vander(depths, 5, increasing=True)
     off = np.eye(12) - columns @ np.linalg.pinv(columns)
     named = sum(
-        bool(plausibility.wild(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000)
+        bool(plausibility.outliers(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000)
     )
     assert named <= 6  # one in ten thousand values
 
@@ -409,7 +409,7 @@ WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
 
 
 @pytest.mark.parametrize("floored", [1, 3])
-def test_normal_noise_above_a_floor_is_seldom_called_wild(floored):
+def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
     """Readings where the law lies on its floor say nothing of its coefficients: 15 % of such calibrations were told to
     measure the first depth again."""
     rng, depths = np.random.default_rng(3), np.linspace(1, 10, 10)
@@ -418,7 +418,7 @@ def test_normal_noise_above_a_floor_is_seldom_called_wild(floored):
     for _ in range(300):
         found = plausibility.off_the_others(depths, law + rng.normal(0, 0.2, 10), (0.0, 10.0), 3)
         sizes += [size for size, _ in found.values()]
-        named += any(size > plausibility.WILD for size, _ in found.values())
+        named += any(size > plausibility.OUTLYING for size, _ in found.values())
     assert len(sizes) == 3000
     assert 0.03 <= np.mean(np.array(sizes) > 1.96) <= 0.07  # 0.05 of normal values
     assert named <= 1  # six in a hundred thousand values
@@ -429,7 +429,7 @@ def test_a_slip_above_a_floor_is_named():
     for k in range(10):
         values = np.maximum(0, WIDEST(depths)) + rng.normal(0, 0.05, 10)
         values[k] += 3.0
-        assert list(plausibility.wild_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
+        assert list(plausibility.outliers_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
 
 
 def test_a_fit_stays_as_it_was_when_the_brush_is_made():
@@ -489,7 +489,7 @@ def test_five_readings_have_a_band_that_holds_the_truth():
         brush.lag, brush.covariance = _core.Profile(found, degrees_of_freedom=2), covariance
         half, what = law_band(brush, "lag", at)
         held.append(np.abs(np.polynomial.polynomial.polyval(at, found - truth)) <= half)
-    assert what == "95 % of the law"
+    assert what == "half the 95 % confidence interval of the law"
     assert np.all(np.abs(np.mean(held, axis=0) - 0.95) < 0.015)
 
 

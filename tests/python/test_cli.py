@@ -457,8 +457,8 @@ def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     status, _, err = run(capsys, "convert", "x.svg", "out.ngc", "--quiet")
     assert (status, len(err)) == (0, 1)
     assert re.fullmatch(
-        r"brushsvg: x.svg: line: the widest point stays up to \d\.\d+ mm off the middle line, "
-        r"tolerance 0.05 mm, near x \d+\.\d, y \d+\.\d mm: it turns too sharply there for the brush",
+        r"brushsvg: x.svg: line: tracking error \d\.\d+ mm near x \d+\.\d, y \d+\.\d mm, above the tolerance of "
+        r"0.05 mm: it turns too sharply there for the brush",
         err[0],
     )
     flags = ("--compensation", "none", "--quiet")

@@ -31,7 +31,7 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
     assert (status, err) == (0, [])
     assert re.fullmatch(
         r"border\.\w+: goes round \d+\.\d\d to \d+\.\d\d mm, \d+\.\d\d to \d+\.\d\d mm of the sheet, in the air; "
-        r"takes about \d+ s\n.*: nothing forbids to run it; without its drawing nobody can say.*\n",
+        r"takes about \d+ s\n.*: nothing forbids to run it; it was not compared with a drawing\n",
         out,
     )
     status, out, err = call(capsys, "check", program, "two.svg", "--fit", "90x50")

@@ -68,7 +68,7 @@ def test_no_lag_is_a_pen():
     ("widths", "deepest", "said"),
     [
         ([], None, "there is no width"),
-        ([(3, 7), (8, 2)], None, "widths must not fall with depth"),
+        ([(3, 7), (8, 2)], None, "no brush fits these widths"),
         ([(3, -1)], None, "the width -1 mm is outside the range"),
         ([(0, 1)], None, "the depth 0 mm of a width is outside the range"),
         ([(3, float("nan"))], None, "the width nan mm"),
@@ -184,7 +184,7 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
         ("brush new mine --width-at 3=2", 2, "--lag"),
         ("brush new round-6 --lag 5 --width-at 3=2", 1, "comes along: give yours another name"),
         ("brush new mine --lag 5 --widths none.csv", 1, "none.csv: there is no such file"),
-        ("brush new mine --lag 5 --width-at 3=7 --width-at 8=2", 1, "must not fall with depth"),
+        ("brush new mine --lag 5 --width-at 3=7 --width-at 8=2", 1, "no brush fits these widths"),
         ("brush plot round-6 out.pdf", 2, ".png or .svg"),
     ],
 )

@@ -37,26 +37,32 @@ def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
 
 
 @pytest.mark.parametrize(
-    ("wanted", "says", "near"),
+    ("wanted", "code", "says", "near"),
     [
-        (stroke([(30, 40), (30, 40)], 2.0), "too short for the brush: a dab", (30, 40)),
-        (stroke([(30, 40), (60, 40)], 6, wanted=box(15, 30, 75, 50)), "12 mm wide there, wider than", None),
-        (stroke([(20, 40), (70, 40)], 0.3), "thinner than the finest line that was measured", None),
-        (stroke([(20, 40), (60, 40), (25, 50)], 1.5), "a corner of 164 degrees", (60, 40)),
-        (stroke(arc(4.0, 1.0, 60), 3.9, True), "turns tighter than", None),
+        (
+            stroke([(30, 40), (30, 40)], 2.0),
+            "shorter-than-footprint",
+            "too short for the brush: a dab",
+            (30, 40),
+        ),
+        (stroke([(30, 40), (60, 40)], 6, wanted=box(15, 30, 75, 50)), "wider-than-brush", "12 mm wide", None),
+        (stroke([(20, 40), (70, 40)], 0.3), "thinner-than-measured", "", None),
+        (stroke([(20, 40), (60, 40), (25, 50)], 1.5), "sharp-corner", "164 degrees", (60, 40)),
+        (stroke(arc(4.0, 1.0, 60), 3.9, True), "tighter-than-lag", "radius 4 mm", None),
         (
             stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True),
-            "a corner of 90 degrees",
+            "sharp-corner",
+            "90 degrees",
             None,
         ),
-        (stroke(arc(20.0, 1.0, 200), 1.5, True), "the mark's middle is up to 0.0", None),
-        (stroke([(20, 40), (70, 40)], 2.0), "it begins there", (19, 40)),
-        (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "it ends there", None),
+        (stroke(arc(20.0, 1.0, 200), 1.5, True), "off-middle-line", "tracking error up to 0.0", None),
+        (stroke([(20, 40), (70, 40)], 2.0), "stroke-start", "", (19, 40)),
+        (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "stroke-end", "", None),
     ],
 )
-def test_the_reason_is_told(wanted, says, near):
+def test_the_reason_is_told(wanted, code, says, near):
     worst = found(wanted)
-    assert says in worst.reason
+    assert worst.code == code and says in worst.reason
     if near:
         assert worst.place_mm == pytest.approx(near, abs=3.0)
 
@@ -74,20 +80,21 @@ def test_a_brush_of_one_width_is_told_to_be_one(half, is_missing):
 
 def test_a_round_nib_is_not_pointed_behind():
     square = stroke([(30, 40), (60, 40)], 0.5, wanted=box(28.8, 39.5, 60.4, 40.5))
-    assert found(square, name="rigid").reason == "it begins there: with the back of a footprint"
+    worst = found(square, name="rigid")
+    assert worst.code == "stroke-start" and "pointed" not in worst.reason
 
 
 def test_a_coarse_tolerance_is_the_reason():
     """With 5 mm it was the footprint on bends, where the middle was 2.5 mm off."""
     worst = found(stroke(arc(20.0, 1.0, 200), 2.0, True), "closed", tolerance_mm=5.0)
-    assert "the tolerance is 5 mm: the mark's middle is up to" in worst.reason
+    assert worst.code == "coarse-tolerance" and "the tolerance is 5 mm: tracking error up to" in worst.reason
     fine = found(stroke(arc(20.0, 1.0, 200), 2.0, True), "closed")
-    assert "tolerance" not in fine.reason
+    assert fine.code != "coarse-tolerance"
 
 
 def test_without_compensation_the_lag_is_the_reason():
     wanted = stroke([(20, 40), (60, 40), (60, 80)], 1.5)
-    assert "nothing makes up for the lag" in found(wanted, "none").reason
+    assert found(wanted, "none").code == "lag-not-compensated"
 
 
 def test_a_closed_line_has_a_corner_at_its_seam_too():

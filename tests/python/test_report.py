@@ -119,7 +119,7 @@ def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
     assert letter.overlap > max(row.overlap for row in rows) + 0.01  # each covers the other's pointed start
 
 
-WORST = Worst((12.34, 5.67), True, 0.5, "too short")
+WORST = Worst((12.34, 5.67), True, 0.5, "too short", "shorter-than-footprint")
 
 
 def test_the_worst_place_is_told():
@@ -133,6 +133,7 @@ def test_the_worst_place_is_told():
         "is_missing": True,
         "area_mm2": 0.5,
         "reason": "too short",
+        "code": "shorter-than-footprint",
     }
     assert read["total"]["worst"] is None
     assert read["groups"] == []

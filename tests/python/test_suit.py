@@ -34,7 +34,7 @@ def test_too_large_a_drawing_is_advised_to_shrink():
     found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
     assert found.best == 0.35
-    assert "0.98 in place of 0.00 (tried; --scale 0.35)" in size_advice.advice(found)
+    assert "0.98 at 0.35 times this size, in place of 0.00 (tried; --scale 0.35)" in size_advice.advice(found)
     assert "--scale 0.7)" in size_advice.advice(found, 2.0)
     assert "--scale" not in size_advice.advice(found, None)
 

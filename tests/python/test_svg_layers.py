@@ -94,7 +94,7 @@ def test_nothing_to_paint_names_every_reason():
     with pytest.raises(Error) as refused:
         read(body)
     assert str(refused.value) == (
-        "the drawing holds nothing to paint: 2 times: text is not read: turn it into paths first, in Inkscape with "
+        "the drawing holds nothing to paint: 2 times: text is not read; turn it into paths first, in Inkscape with "
         "Path > Object to Path, or with "
         "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg; image 1: image is not read: left out; "
         "p: a moveto without a line to follow: skipped; and 2 more reasons"

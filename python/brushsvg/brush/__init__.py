@@ -1,1 +1,1 @@
-"""The tool: brush files, their laws and footprints, how sure they are."""
+"""The tool: brush files, their laws, footprints and confidence."""

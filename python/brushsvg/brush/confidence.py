@@ -1,4 +1,4 @@
-"""How sure a law is at a depth: the 95 % band of its polynomial, from the covariance of a brush."""
+"""Confidence in a law at a depth: the 95 % band of its polynomial, from the covariance of a brush."""
 
 from __future__ import annotations
 
@@ -35,7 +35,9 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
     if len(brush.covariance):
         block = np.array(brush.covariance)[place, place]
         if np.any(block):
-            return half_interval_mm(block, depths, law.degrees_of_freedom), "95 % of the law"
+            return half_interval_mm(
+                block, depths, law.degrees_of_freedom
+            ), "half the 95 % confidence interval of the law"
     if law.rmse_mm is not None:
         return np.full_like(depths, law.rmse_mm), "RMSE of the data, not of the law"
     return None

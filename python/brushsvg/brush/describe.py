@@ -107,9 +107,9 @@ def cell_page(cell) -> str:
         ("travels at", f"{heights.safe_mm:g} mm above the paper, {speeds.travel_mm_s:g} mm/s"),
         (
             "comes down at",
-            f"{speeds.approach_mm_s:g} mm/s, below {heights.clearance_mm:g} mm {speeds.press_mm_s:g} mm/s",
+            f"{speeds.approach_mm_s:g} mm/s, the last {heights.clearance_mm:g} mm at {speeds.press_mm_s:g} mm/s",
         ),
-        ("paints at", f"{speeds.paint_mm_s:g} mm/s at most, never lower than {heights.lowest_mm:g} mm"),
+        ("paints at", f"at most {speeds.paint_mm_s:g} mm/s, heights from {heights.lowest_mm:g} to 0 mm"),
         ("accelerates by", f"{speeds.acceleration_mm_s2:g} mm/s2"),
         ("workspace", f"the sheet and {workspace.margin_mm:g} mm around it"),
     ]
@@ -118,8 +118,8 @@ def cell_page(cell) -> str:
     if workspace.reach_mm:
         rows.append(("", "{:g} to {:g} mm from the robot's origin".format(*workspace.reach_mm)))
     rows += [("", f"not in {_box(*corners)}") for corners in workspace.keep_out_mm]
-    joints = f"cut by {blending.tolerance_mm:g} mm at most" if blending.tolerance_mm else "met exactly"
-    rows.append(("joints of moves", joints))
+    joints = f"cut by at most {blending.tolerance_mm:g} mm" if blending.tolerance_mm else "exact"
+    rows.append(("corners", joints))
     if cell.tool:
         rows.append(("tool", f"tip at {_point(cell.tool.tcp_mm)} mm from the flange"))
     if cell.servo:

@@ -1,4 +1,4 @@
-"""A brush as a picture: its laws against depth with how sure they are, and its footprints. Needs the extra plot."""
+"""A brush as a picture: its laws against depth with confidence bands, and its footprints. Needs the extra plot."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
-WILD = 4.7  # standard deviations beyond which a point has no say
+OUTLYING = 4.7  # standard deviations beyond which a point is masked
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
@@ -107,8 +107,8 @@ def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, flo
     gain = 0.0
     for one, other in zip(pointed.marks, rounded.marks, strict=True):
         off = np.abs([one.distance_mm, other.distance_mm]) / noise
-        if np.mean(off > WILD) < FOREIGN:
-            squares = np.minimum(off, WILD) ** 2
+        if np.mean(off > OUTLYING) < FOREIGN:
+            squares = np.minimum(off, OUTLYING) ** 2
             gain += float(squares[0].sum() - squares[1].sum()) / alike
     return (rounded if gain > TELLS else pointed), gain
 
@@ -249,11 +249,11 @@ def _scale(fit, painted: Painted) -> SheetScale | None:
 
 
 def _refuse_unlike(fit, painted: Painted) -> None:
-    wild = [mark.stroke for mark, miss in zip(painted.marks, fit.marks, strict=True) if miss.outlier]
-    if 2 * len(wild) > len(painted.marks):
+    outliers, marks = sum(found.outlier for found in fit.marks), len(painted.marks)
+    if 2 * outliers > marks:
         raise Error(
-            f"{len(wild)} of {len(painted.marks)} marks are not what any brush paints along their strokes: are the "
-            "marks in mm, y up, each with the id of its stroke?",
+            f"{outliers} of {marks} marks are outliers, outside the range [0, {marks // 2}]: are the marks in mm, y "
+            "up, each with the id of its stroke?",
             "marks",
             code="marks-outlying",
         )
@@ -272,8 +272,8 @@ def _refuse_unsure(brush: _core.Brush, fit) -> None:
                 fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
             )
             raise Error(
-                f"these marks leave the {law.replace('_', ' ')} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at "
-                f"depth {depths[worst]:g} mm: {todo}",
+                f"these marks do not determine the {law.replace('_', ' ')}: {values[worst]:.1f} +- {half[worst]:.1f} "
+                f"mm (95 %) at depth {depths[worst]:g} mm: {todo}",
                 law,
                 code="law-undetermined",
             )

@@ -41,20 +41,20 @@ class Point:
 
 @dataclass(frozen=True)
 class Fitted:
-    """One law: its points and fit, None where it is assumed; remarks in sentences; wild_mm: points by index that lie
-    so far off the law of the others."""
+    """One law: its points and fit, None where it is assumed; remarks in sentences; outliers by index of their point."""
 
     name: str
     points: tuple[Point, ...]
     fit: object
     remarks: tuple[str, ...] = ()
-    wild_mm: dict[int, float] = field(default_factory=dict)
+    outliers: dict[int, plausibility.Outlier] = field(default_factory=dict)
 
-    def wild_told(self) -> list[str]:
-        """A sentence for each wild point, the wildest first."""
+    def outliers_told(self) -> list[str]:
+        """A sentence for each outlier, the farthest first."""
         return [
-            f"{self.points[k].where} lies {off_mm:+.2f} mm off the law of the others: measure it again"
-            for k, off_mm in sorted(self.wild_mm.items(), key=lambda item: -abs(item[1]))
+            f"{self.points[k].where} is an outlier: {found.off_mm:+.2f} mm off the law of the others, studentized "
+            f"residual {found.size:.1f}, bound {plausibility.OUTLYING:g}: measure it again"
+            for k, found in sorted(self.outliers.items(), key=lambda item: -abs(item[1].off_mm))
         ]
 
 
@@ -244,13 +244,16 @@ class _Maker:
             plausibility.refuse_unexplained(law, points, fit)
         if fit.held:
             what = "falls" if law == "half_width" else "is not positive"
-            remarks.append(f"held to its shape: the law that fits best {what} somewhere in the depth range")
+            remarks.append(
+                f"fitted with a constraint: without it the law {what} somewhere in the depth range"
+            )
         first = int(law in FROM_ZERO)
         if widest:
-            wild = plausibility.wild_above_floor(depths, values, self.range_mm, degree)
+            outliers = plausibility.outliers_above_floor(depths, values, self.range_mm, degree)
         else:
-            wild = plausibility.wild(depths, fit.residual_mm, len(fit.law.coefficients) - first, first)
-        self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), wild)
+            free = len(fit.law.coefficients) - first
+            outliers = plausibility.outliers(depths, fit.residual_mm, free, first)
+        self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), outliers)
 
     def _carry(self, wanted: str, known: str, rows: list[Row]) -> None:
         """What the law found from sums inherits from those it was corrected by: with sums y = S - K k + W w its

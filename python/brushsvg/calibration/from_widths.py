@@ -134,12 +134,10 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
         if miss <= CLOSE_MM:
             break
     if miss > FAR_MM:
-        sentence = (
-            f"no brush fits these widths: a law that never falls misses {2 * halves[worst]:g} mm at depth "
-        )
         raise Error(
-            f"{sentence}{depths[worst]:g} mm by {2 * miss:.2f} mm; widths must not fall with depth, are they in "
-            "the right order?",
+            f"no brush fits these widths: a law that never falls differs by {2 * miss:.2f} mm from the width "
+            f"{2 * halves[worst]:g} mm at depth {depths[worst]:g} mm, outside the range [0, {2 * FAR_MM:g}] mm: are "
+            "they in the right order?",
             "width",
             2 * halves[worst],
             code="width-falls",

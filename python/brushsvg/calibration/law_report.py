@@ -1,4 +1,4 @@
-"""What a calibration found: laws, how sure they are, what to measure next; in words and as a picture."""
+"""What a calibration found: laws, their confidence, what to measure next; in words and as a picture."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ def _law(brush, fitted) -> list[str]:
     depths = [point.depth_mm for point in fitted.points]
     known = f"{len(depths)} values at depths {min(depths):g} to {max(depths):g} mm"
     if law.rmse_mm is None:
-        known += ", none to spare: how sure it is cannot be said"
+        known += ", no degree of freedom left: no confidence interval"
     else:
         known += f", R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
     lines.append(f"  {known}")
     if law.half_interval_95:
         lines.append(
-            "  95 % +- "
+            "  95 % confidence intervals +- "
             + ", ".join(f"{half if half > EXACT else 0:.2g}" for half in law.half_interval_95)
             + " (ascending powers)"
         )
     lines += [f"  {remark}" for remark in fitted.remarks]
-    return [*lines, *(f"  {told}" for told in fitted.wild_told())]
+    return [*lines, *(f"  {told}" for told in fitted.outliers_told())]
 
 
 def _table(brush) -> list[str]:
@@ -65,7 +65,7 @@ def _next(made) -> list[str]:
     """Where one more measurement says most: the law that is least known for its size, at its widest place."""
     brush = made.brush
     if assumed := [fitted.name for fitted in made.laws if fitted.fit is None]:
-        return [f"next: measure {' and '.join(assumed)}, which nobody has"]
+        return [f"next: measure {' and '.join(assumed)}, so far assumed"]
     depths = np.linspace(*brush.depth_range_mm, 101)[1:]
     worst = (0.0, "", 0.0, 0.0)
     for fitted in made.laws:
@@ -77,7 +77,8 @@ def _next(made) -> list[str]:
         i = int(np.argmax(share))
         worst = max(worst, (float(share[i]), fitted.name, float(depths[i]), float(band[0][i])))
     _, name, depth, half = worst
-    return [f"next: measure {name} near depth {depth:.1f} mm, where it is least sure, +- {half:.2f} mm"]
+    widest = f"where its confidence interval is widest, +- {half:.2f} mm"
+    return [f"next: measure {name} near depth {depth:.1f} mm, {widest}"]
 
 
 def report_picture(made, suffix: str) -> bytes:

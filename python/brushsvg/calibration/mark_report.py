@@ -1,4 +1,4 @@
-"""What painted marks told of a brush: laws and how sure they are, what moved, what stays; in words and as a picture."""
+"""What painted marks told of a brush: laws, confidence, what moved, residuals; in words and as a picture."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from .. import _core
 from ..brush.confidence import law_band
 from ..brush.describe import LAWS, polynomial
 from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
-from .from_marks import LAG_TERMS, TELLS
+from .from_marks import LAG_TERMS, OUTLYING, TELLS
 
 TABLE_ROWS = 6
-FOREIGN = 0.1  # of all points, without a say: more than blots and gaps
+FOREIGN = 0.1  # of all points, masked: more than blots and gaps
 ALIKE = 0.5  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
 UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
@@ -31,7 +31,7 @@ def report(made) -> str:
         law = getattr(brush, name)
         lines.append(f"{name} = {polynomial(law.coefficients)}")
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
-        lines.append(f"  95 % +- {halves} (ascending powers)")
+        lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     remarks = [
@@ -39,7 +39,7 @@ def report(made) -> str:
         for sentence in [*_few_depths(made), *_unexpected(made), *_unlike(fit, overlap[1]), *fit.remarks]
     ]
     if not fit.converged:
-        remarks.append("note: the fit was still moving when it was stopped: look at the picture")
+        remarks.append("note: the fit had not converged when it was stopped: look at the picture")
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
 
 
@@ -58,8 +58,8 @@ def _few_depths(made) -> list[str]:
     if terms >= LAG_TERMS:
         return []
     return [
-        f"the lag is of degree {terms - 1} instead of {LAG_TERMS - 1}, for {made.painted.depths} depths were painted: "
-        "between them it may be off by more than its interval says"
+        f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {made.painted.depths} depths were "
+        "painted. Between them its error may exceed its confidence interval"
     ]
 
 
@@ -72,7 +72,8 @@ def _unexpected(made) -> list[str]:
     if limit > 0 and len(others) > 2 and _rms(aside) > limit > _rms(others):
         stroke = made.painted.marks[far].stroke
         out.append(
-            f"{stroke} lies {np.hypot(*aside[far]):.1f} mm aside, alone: is that the mark of this stroke?"
+            f"{stroke} is displaced by {np.hypot(*aside[far]):.1f} mm, the others by {_rms(others):.2g} mm (rms): is "
+            "it the mark of this stroke?"
         )
         aside = others
     found = (
@@ -82,8 +83,8 @@ def _unexpected(made) -> list[str]:
         ("turn_deg", "", math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad), UNLIKELY),
     )
     return out + [
-        f"{key} is {size:.2g}{which and ' ' + which} where {sigma:.2g} was expected, which pulls at the laws: give "
-        f'"expected": {{"{key}": {_rounded_up(size):g}}} if the sheet was painted and read so roughly'
+        f"{key} is {size:.2g}{which and ' ' + which}, expected was a standard deviation of {sigma:.2g}, which "
+        f'biases the laws: give "expected": {{"{key}": {_rounded_up(size):g}}} if that is how exact the sheet is'
         for key, which, size, sigma, times in found
         if size > times * sigma > 0
     ]
@@ -94,12 +95,14 @@ def _unlike(fit, moved: float) -> list[str]:
     out = []
     if fit.left_aside > FOREIGN:
         out.append(
-            f"{100 * fit.left_aside:.0f} % of the edges are not what this brush paints: the choice of the tail "
-            "and the intervals may be wrong, clean the outlines of blots, borders and slits"
+            f"{100 * fit.left_aside:.0f} % of the edge points are masked outliers, outside the range [0, "
+            f"{100 * FOREIGN:.0f}] %: the tail and the confidence intervals may be wrong; clean the outlines of blots, "
+            "borders and slits"
         )
     if moved <= ALIKE:
         out.append(
-            f"marks that overlap by {moved:.2f} do not look like their predictions: look at the picture before use"
+            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{ALIKE:g}, 1]: look at the "
+            "picture before use"
         )
     return out
 
@@ -125,7 +128,7 @@ def _table(brush) -> list[str]:
             half = f" +- {band[0][i]:.2f}" if band else ""
             cells.append(f"{getattr(brush, name)(depth):.2f}{half}".rjust(18))
         lines.append(f"{depth:7.2f}" + "".join(cells))
-    return [*lines, "  +-: 95 % of the law"]
+    return [*lines, "  +-: half the 95 % confidence interval of the law"]
 
 
 def _moved(made) -> list[str]:
@@ -153,31 +156,32 @@ def _stays(made, lying: float, moved: float) -> list[str]:
     fit = made.fit
     worst = int(np.argmax([miss.rms_mm for miss in fit.marks]))
     lines = [
-        f"painted edges lie {fit.noise_mm:.2f} mm off the predicted ones (standard deviation); {fit.samples:.0f} "
-        f"points compared, as good as {fit.effective_samples:.0f} independent ones",
-        f"worst: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
+        f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
+        f"{fit.effective_samples:.0f} independent ones",
+        f"largest residuals: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
         f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
         "taken away (mean of intersection over union)",
     ]
     if fit.left_aside > 0.01:
-        lines.append(f"{100 * fit.left_aside:.0f} % of the points lie so far off that they have no say")
+        bound = f"residual above {OUTLYING:g} standard deviations"
+        lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
     if fit.slim > 0.01:
         lines.append(
-            f"{100 * fit.slim:.0f} % of the points, beside ends hardly wider than that, have no say either"
-            if fit.left_aside > 0.01
-            else f"{100 * fit.slim:.0f} % of the points lie beside ends hardly wider than that and have no say"
+            f"masked: {100 * fit.slim:.0f} % of the points, beside ends hardly wider than the residuals"
         )
-    wild = [mark.stroke for mark, miss in zip(made.painted.marks, fit.marks, strict=True) if miss.outlier]
-    if wild:
+    outliers = [
+        mark.stroke for mark, found in zip(made.painted.marks, fit.marks, strict=True) if found.outlier
+    ]
+    if outliers:
         lines.append(
-            f"not what this brush paints, left aside: {', '.join(wild)}: look at them, and paint them again"
+            f"masked marks, outliers as a whole: {', '.join(outliers)}: look at them, and paint them again"
         )
     return lines
 
 
 def overlaps(made) -> tuple[float, float]:
     """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
-    the brush says where paint will be, which is more than how sure its laws are."""
+    the brush says where paint will be, which is more than the confidence of its laws."""
     marks, lying, moved = made.painted.marks, [], []
     predicted = _predicted(made, list(range(len(marks))))
     for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):

@@ -4,6 +4,7 @@ what to do."""
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,7 +19,7 @@ UNTURNED_DEG = 5.0  # by so much may an angle grow through its noise
 READ_TO_DEG = 6.0  # as the article read its own
 NOT_FROM_START = 0.5  # in lags: a series may seem to begin by so much earlier or later
 OPEN_PART = 0.25  # of the depths, at which a law may be nothing at all
-WILD = 4.0  # standard deviations of normal noise: one in ten thousand
+OUTLYING = 4.0  # standard deviations of normal noise: one in ten thousand
 SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
 # Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
 LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
@@ -82,7 +83,7 @@ def refuse_other_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
     left = columns @ found - fallen * np.sin(alpha)
     noise = max(math.sqrt(left @ left / max(len(s) - 2, 1)), math.radians(READ_TO_DEG))
     error = noise * math.sqrt(np.linalg.inv(columns.T @ columns)[0, 0])
-    if abs(found[0]) > max(NOT_FROM_START, WILD * error):
+    if abs(found[0]) > max(NOT_FROM_START, OUTLYING * error):
         raise Error(
             f"the angles fall as if the drag had begun {abs(found[0]):.2g} lags "
             f"{'before' if found[0] < 0 else 'after'} s_mm = 0, where it was {alpha0_deg:g} degrees: count s_mm from "
@@ -92,11 +93,19 @@ def refuse_other_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
         )
 
 
-def wild(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> dict[int, float]:
-    """Values that do not belong to the others: their index, and how far they lie off the law of the others [mm].
+@dataclass(frozen=True)
+class Outlier:
+    """size: the studentized residual, as the size of a normal value as unlikely; off_mm: from the law of the others."""
 
-    free: coefficients that were fitted, the least power powers_from. By studentised residuals of least squares, each
-    against the noise without it, where as unlikely as a normal value beyond WILD.
+    size: float
+    off_mm: float
+
+
+def outliers(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> dict[int, Outlier]:
+    """Values that do not belong to the others, by index.
+
+    free: coefficients that were fitted, the least power powers_from. By studentized residuals of least squares, each
+    against the noise without it, where as unlikely as a normal value beyond OUTLYING.
     """
     left, depths = np.array(residual_mm), np.array(depths_mm)
     spare = len(left) - free - 1
@@ -106,18 +115,20 @@ def wild(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> di
     apart = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
     apart = np.maximum(apart, 1e-9)
     others = np.maximum((left @ left - left**2 / apart) / spare, 1e-18)
-    studentised = left / np.sqrt(apart * others)
+    size = _core.as_normal(left / np.sqrt(apart * others), spare)
     return {
-        int(k): float(left[k] / apart[k]) for k in np.flatnonzero(_core.as_normal(studentised, spare) > WILD)
+        int(k): Outlier(float(size[k]), float(left[k] / apart[k])) for k in np.flatnonzero(size > OUTLYING)
     }
 
 
-def wild_above_floor(depths_mm, values_mm, range_mm: tuple[float, float], degree: int) -> dict[int, float]:
+def outliers_above_floor(
+    depths_mm, values_mm, range_mm: tuple[float, float], degree: int
+) -> dict[int, Outlier]:
     """The same for a law that is a polynomial or 0, whichever is greater."""
     return {
-        k: off
+        k: Outlier(size, off)
         for k, (size, off) in off_the_others(depths_mm, values_mm, range_mm, degree).items()
-        if size > WILD
+        if size > OUTLYING
     }
 
 
@@ -292,10 +303,10 @@ def refuse_open(brush, fitted) -> None:
     if np.mean(half > values) <= OPEN_PART:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))
-    todo = next(iter(fitted.wild_told()), "measure it at more depths, from shallow to the deepest")
+    todo = next(iter(fitted.outliers_told()), "measure it at more depths, from shallow to the deepest")
     raise Error(
-        f"these values leave the {fitted.name} open, {values[worst]:.1f} +- {half[worst]:.1f} mm at depth "
-        f"{depths[worst]:.3g} mm: {todo}",
+        f"these values do not determine the {fitted.name}: {values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at "
+        f"depth {depths[worst]:.3g} mm: {todo}",
         fitted.name,
         code="law-undetermined",
     )
@@ -315,7 +326,7 @@ def odd(brush, laws) -> list[str]:
             f"the lag is {share:.2g} half widths at depth {depth:g} mm, which is odd: check the units"
         )
     for fitted in laws:
-        if fitted.name != "lag" or fitted.fit is None or len(fitted.points) < 4 or fitted.wild_mm:
+        if fitted.name != "lag" or fitted.fit is None or len(fitted.points) < 4 or fitted.outliers:
             continue
         mean = np.mean([point.value_mm for point in fitted.points])
         rmse = fitted.fit.law.rmse_mm

@@ -1,1 +1,1 @@
-"""How well it will be painted, why not, and how sure that is."""
+"""How well it will be painted, why not, and with what confidence."""

@@ -1,6 +1,8 @@
-"""Why paint differs from what was drawn at a place, in words: what the stroke asks for there that a brush cannot."""
+"""Why paint differs from what was drawn at a place: what the stroke asks for there that a brush cannot."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +16,15 @@ GRAVE = 0.25  # of half the width: a middle that is so far off the line is what 
 POINTED = 0.3  # of its greatest width, a tenth of the way there from its tip: a disc has 0.44, a drop 0.1
 
 
-def reason(
+@dataclass(frozen=True)
+class Cause:
+    """In words, and as a code of docs/diagnostics.md."""
+
+    words: str
+    code: str
+
+
+def cause(
     stroke,
     line: np.ndarray,
     brush,
@@ -23,8 +33,8 @@ def reason(
     miss,
     tolerance_mm: float,
     compensation: str = "closed",
-) -> str:
-    """The first of the reasons that holds near a place [mm], the gravest first.
+) -> Cause:
+    """The first of the causes that holds near a place [mm], the gravest first.
 
     stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; is_missing: whether
     paint is missing there, else there is too much; miss: of the pass.
@@ -32,53 +42,71 @@ def reason(
     at = int(np.hypot(line[:, 0] - place_mm[0], line[:, 1] - place_mm[1]).argmin())
     s, half, length = line[at, 2], line[at, 3], line[-1, 2]
     halves = np.array([half for _, half in stroke.half_width])
+    off = f"tracking error up to {miss.largest_mm:.2g} mm"
     depth = _depth(brush, half)
     footprint = _length_of(brush, depth)
     if brush.width_follows_depth():
         least, greatest = brush.half_width_range_mm()
         finest = max(least, _finest_measured(brush))
         if half > greatest + SLIGHT:
-            return f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
+            words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
+            return Cause(words, code="wider-than-brush")
         if half < least - SLIGHT:
-            return (
+            words = (
                 f"{2 * half:.3g} mm wide there, thinner than the finest line of the brush, {2 * least:.3g} mm"
             )
+            return Cause(words, code="thinner-than-brush")
         if halves.max() < finest - SLIGHT:
-            return f"thinner than the finest line that was measured of the brush, {2 * finest:.3g} mm"
+            words = f"thinner than the finest line that was measured of the brush, {2 * finest:.3g} mm"
+            return Cause(words, code="thinner-than-measured")
     else:
         own = brush.half_width(depth)
         widths = f"{2 * half:.3g} mm wide there, the one width of the brush is {2 * own:.3g} mm"
         if (half - own if is_missing else own - half) > SEEN * own:
-            return widths
+            return Cause(widths, code="one-width")
     if compensation in ("none", "constant") and miss.largest_mm > max(tolerance_mm, GRAVE * half):
-        how = "nothing makes up for the lag" if compensation == "none" else "one lag does not fit everywhere"
-        return f"{how}: the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
+        how = (
+            "the lag is not compensated"
+            if compensation == "none"
+            else "one lag does not fit all of the stroke"
+        )
+        return Cause(f"{how}: {off}", code="lag-not-compensated")
     if min(tolerance_mm, miss.largest_mm) > GRAVE * half:
-        return f"the tolerance is {tolerance_mm:g} mm: the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
+        return Cause(f"the tolerance is {tolerance_mm:g} mm: {off}", code="coarse-tolerance")
     if length + 2 * half <= footprint:
-        return f"too short for the brush: a dab, whose footprint is {footprint:.2g} mm long"
+        words = f"too short for the brush: a dab, whose footprint is {footprint:.2g} mm long"
+        return Cause(words, code="shorter-than-footprint")
     turn_deg = _corner_deg(line, s, max(footprint, 2 * half), stroke.closed)
     if turn_deg > CORNER_DEG:
-        return f"a corner of {turn_deg:.0f} degrees, sharper than the footprint"
+        return Cause(f"a corner of {turn_deg:.0f} degrees, sharper than the footprint", code="sharp-corner")
     if not stroke.closed and s < max(brush.tip_to_widest(depth), half):
-        how = "a footprint is pointed behind" if _is_pointed(brush, depth) else "with the back of a footprint"
-        return f"it begins there: {how}"
+        how = (
+            "the footprint is pointed behind"
+            if _is_pointed(brush, depth)
+            else "the footprint's back, not a round cap"
+        )
+        return Cause(f"start of the stroke: {how}", code="stroke-start")
     if not stroke.closed and length - s < max(footprint, half):
-        return "it ends there: with the front of a footprint"
+        return Cause("end of the stroke: the footprint's front, not a round cap", code="stroke-end")
     lag_mm = brush.lag(depth)
     radius_mm = _radius(line, s, lag_mm)
     if radius_mm < lag_mm:
-        return f"turns tighter than the lag: radius {radius_mm:.2g} mm, lag {lag_mm:.2g} mm"
+        words = f"turns tighter than the lag: radius {radius_mm:.2g} mm, lag {lag_mm:.2g} mm"
+        return Cause(words, code="tighter-than-lag")
     if radius_mm < half:
-        return f"turns tighter than half its width: radius {radius_mm:.2g} mm"
+        return Cause(
+            f"turns tighter than half its width: radius {radius_mm:.2g} mm", code="tighter-than-width"
+        )
     rise = np.gradient(line[:, 3], np.maximum.accumulate(line[:, 2] + 1e-9 * np.arange(len(line))))
     if abs(rise[at]) > STEEP:
-        return "its width changes faster than a footprint can show"
+        return Cause("its width changes faster than the footprint can follow", code="steep-width")
     if is_missing and compensation == "refined" and miss.largest_mm > tolerance_mm:
-        return "less is painted there for the sake of the rest of the outline"
+        return Cause(
+            "refined: less paint here, and the rest of the outline fits better", code="traded-by-refinement"
+        )
     if is_missing:  # what a footprint covers on a bend is never less than across its middle
-        return f"the mark's middle is up to {miss.largest_mm:.2g} mm off the line"
-    return "the footprint is wider on bends than across its middle"
+        return Cause(off, code="off-middle-line")
+    return Cause("the footprint is wider on bends than across its middle", code="wider-on-bends")
 
 
 def _depth(brush, half_width_mm: float) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Notice
 from ..units import clock
-from .error_causes import reason
+from .error_causes import cause
 from .uncertainty import Uncertainty
 
 RING_TOLERANCE_MM = 0.01
@@ -42,12 +42,13 @@ class Figures:
 @dataclass(frozen=True)
 class Worst:
     """Where a stroke's paint differs most from what was drawn: place_mm (x, y); is_missing: wanted but not painted,
-    else painted but not wanted, area_mm2 of it near that place; reason: why, in words."""
+    else painted but not wanted, area_mm2 of it near that place; reason: why, in words; code: see error_causes."""
 
     place_mm: tuple[float, float]
     is_missing: bool
     area_mm2: float
     reason: str
+    code: str = ""
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ class Report:
     warnings: tuple[Notice, ...] = ()
     refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
     forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
-    sure: Uncertainty | None = None  # None: nothing is known of how sure the brush is
+    sure: Uncertainty | None = None  # None: the brush has no confidence
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
 
@@ -109,8 +110,8 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
-        why = reason(stroke, line, brush, place.at_mm, place.is_missing, miss, tolerance_mm, compensation)
-        worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why)
+        why = cause(stroke, line, brush, place.at_mm, place.is_missing, miss, tolerance_mm, compensation)
+        worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
         overlap=verdict.overlap,
@@ -248,8 +249,8 @@ def to_text(report: Report) -> str:
         rule,
         table[-1],
         "",
-        "Lengths in mm. Overlap: common area over joint area of predicted and wanted mark. Centre: distance",
-        "of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
+        "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
         *_sure_words(report.sure),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
@@ -285,9 +286,9 @@ def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
 
 def _sure_words(sure: Uncertainty | None) -> list[str]:
     if sure is None:
-        return ["How far the paint may lie off nobody can say: the brush has neither covariance nor RMSE."]
+        return ["No confidence intervals: the brush has neither covariance nor RMSE."]
     return [
-        "+-: how far the mark's middle may lie off across, its tip along the line, and its width;",
+        "+-: half the confidence interval of the mark's middle across the line, of its ends along it, of its width,",
         f"{sure.words}.",
     ]
 

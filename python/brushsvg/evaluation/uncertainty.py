@@ -1,4 +1,4 @@
-"""How sure the brush is known, carried into what a plan paints: millimetres on paper.
+"""Confidence in the brush, carried into what a plan paints: millimetres on paper.
 
 Linear propagation at the plan's own poses. The simulator is asked only for what the lag changes, by central
 differences along the independent directions of its covariance, one standard deviation to either side; the other laws
@@ -35,7 +35,7 @@ class Sure:
 @dataclass(frozen=True)
 class Uncertainty:
     """source: COVARIANCE, or RMSE where the brush has none: laws as far off as single readings, independently. words:
-    the same for people, with the laws that do not count since nobody measured them."""
+    the same for people, with the laws that were not measured and do not count."""
 
     source: str
     words: str
@@ -68,7 +68,7 @@ class _Effects:
 
 
 def known_from(brush) -> str | None:
-    """COVARIANCE, RMSE, or None where the brush file says nothing of how sure it is."""
+    """COVARIANCE, RMSE, or None where the brush file says neither."""
     if len(brush.covariance) and np.any(brush.covariance):
         return COVARIANCE
     return RMSE if any(getattr(brush, law).rmse_mm for law in LAWS) else None
@@ -78,14 +78,14 @@ def in_words(brush) -> str:
     """For a legend."""
     source = known_from(brush)
     if source is None:
-        return "how sure it is nobody can say: the brush has neither covariance nor RMSE"
-    said = "from the brush's covariance" if source == COVARIANCE else "no covariance: from RMSE"
+        return "no confidence band: the brush has neither covariance nor RMSE"
+    said = "from the brush's covariance" if source == COVARIANCE else "from RMSE, for lack of a covariance"
     missing = [law for law in LAWS if not _counts(brush, law)]
-    return f"95 %, {said}" + (f"; {' and '.join(missing)} not counted, nobody measured it" if missing else "")
+    return f"95 %, {said}" + (f"; without {' and '.join(missing)}, not measured" if missing else "")
 
 
 def _counts(brush, law: str) -> bool:
-    """Whether anything is known of how sure a law is."""
+    """Whether the variance of a law is known."""
     return bool(np.any(np.diag(covariance_of(brush))[places(brush)[law]]))
 
 

@@ -198,7 +198,7 @@ def _other_brushes(strokes, brush) -> list[Notice]:
 
 
 def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
-    """Where a mark's middle is off its line: moved, as refinement does on purpose, where it is beside the stroke."""
+    """Tracking errors above their bound: moved, as refinement does on purpose, where it is beside the stroke."""
     found = []
     for stroke, miss, is_moved in zip(painted, misses, moved, strict=True):
         half_mm = brush.half_width(brush.paint_depth_mm)
@@ -206,11 +206,9 @@ def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
             half_mm = max(half for _, half in stroke.half_width)
         if miss.largest_mm <= half_mm if is_moved else miss.within_tolerance:
             continue
-        bound = f"half its width {half_mm:.3g} mm" if is_moved else f"tolerance {tolerance_mm:g} mm"
-        sentence = (
-            f"the widest point stays up to {miss.largest_mm:.3g} mm off the middle line, {bound}, "
-            f"near x {miss.at_mm[0]:.1f}, y {miss.at_mm[1]:.1f} mm"
-        )
+        bound = f"half the width, {half_mm:.3g} mm" if is_moved else f"the tolerance of {tolerance_mm:g} mm"
+        place = f"x {miss.at_mm[0]:.1f}, y {miss.at_mm[1]:.1f} mm"
+        sentence = f"tracking error {miss.largest_mm:.3g} mm near {place}, above {bound}"
         turns = ": it turns too sharply there for the brush"
         found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place, code="off-middle-line"))
     return found

@@ -108,8 +108,8 @@ def advice(size: Size, scale: float | None = 1.0) -> str:
         return f"Size: none from {size.reach[0]:g} to {size.reach[1]:g} times this one is noticeably better ({sample})."
     flag = f"; --scale {size.best * scale:.4g}" if scale is not None else ""
     return (
-        f"Size: drawn {size.best:g} times as large the overlap of {size.what} would be about "
-        f"{size.overlaps[size.best]:.2f} in place of {size.overlaps[1.0]:.2f} ({sample}{flag})."
+        f"Size: the overlap of {size.what} would be about {size.overlaps[size.best]:.2f} at {size.best:g} times this "
+        f"size, in place of {size.overlaps[1.0]:.2f} ({sample}{flag})."
     )
 
 

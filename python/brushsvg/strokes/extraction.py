@@ -47,7 +47,11 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
         try:
             lines = _lines(element, paths_as)
         except Error as beyond:
-            notices.append(Notice(element.id or "filled", f"{beyond}: left out"))
+            notices.append(
+                Notice(
+                    element.id or "filled", f"{beyond}: left out", code=beyond.code or "outline-too-complex"
+                )
+            )
             continue
         if lines:
             found.append((element, lines))
@@ -55,11 +59,11 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
             empty.append(element)
     notices += _left_out(empty, paths_as)
     if not found:
-        where, sentence = (notices[-1].where, notices[-1].sentence) if notices else ("", "it is empty")
+        where, sentence = (notices[-1].where, notices[-1].told) if notices else ("", "it is empty")
         sentence = f"there is nothing to paint: {sentence}"
         if told := next(iter(design.notices), None):
             sentence += f"; for example {told.where}: {told.sentence}"
-        raise Error(sentence, where=where)
+        raise Error(sentence, where=where, code="nothing-to-paint")
     names, renamed = _names([(element, len(lines)) for element, lines in found])
     made = [
         (element.settings.get("order", 0), stroke)
@@ -79,8 +83,8 @@ def _left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
         if len(elements) > 2
         else ", nor does another" * (len(elements) - 1)
     )
-    why = "; --as stroke counts fills as none" if paths_as == "stroke" else ""
-    return [Notice(first, f"its outline {what}{others}: left out{why}")]
+    advice = "--as stroke counts fills as none" if paths_as == "stroke" else ""
+    return [Notice(first, f"its outline {what}{others}: left out", code="outline-empty", advice=advice)]
 
 
 def _lines(element: Element, paths_as: str | None) -> list[_Line]:
@@ -165,7 +169,9 @@ def _names(elements: list[tuple[Element, int]]) -> tuple[list[str], list[Notice]
             names = _all_names(element, name, count)
         if name != base:
             last_suffix[base] = suffix
-            notices.append(Notice(base, f"the name {base!r} is taken: this one is called {name!r}"))
+            notices.append(
+                Notice(base, f"the name {base!r} is taken: this one is called {name!r}", code="name-taken")
+            )
         taken.update((name, *names))
         result.append(name)
     return result, notices

@@ -31,7 +31,9 @@ def stroke_from_path(
     need(width_mm, (int, float, np.number), "a width in mm")
     need(id, str, "a stroke's id")
     if not (np.isfinite(width_mm) and width_mm > 0):
-        raise Error(f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id)
+        raise Error(
+            f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range"
+        )
     if isinstance(path, str):
         cubics, closed = _of_text(path, id)
     elif hasattr(path, "d") and hasattr(path, "isclosed"):
@@ -85,13 +87,19 @@ def _need_height(page_height_mm) -> None:
 def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:
     commands, damaged_at = parse_path(text)
     if damaged_at is not None:
-        raise Error(f"the path data are damaged at {snippet(text, damaged_at)}", where=id)
+        raise Error(
+            f"the path data are damaged at {snippet(text, damaged_at)}", where=id, code="geometry-damaged"
+        )
     line = trace(commands, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 1.0)
     if line.beyond is not None:
-        raise Error(f"the path data go beyond 1e6 mm at {snippet(text, line.beyond)}", where=id)
+        raise Error(
+            f"the path data go beyond 1e6 mm at {snippet(text, line.beyond)}",
+            where=id,
+            code="geometry-out-of-range",
+        )
     if len(line.subpaths) != 1:
         count = len(line.subpaths) or "no"
-        raise Error(f"the path has {count} unbroken lines: a stroke is one", where=id)
+        raise Error(f"the path has {count} unbroken lines: a stroke is one", where=id, code="wrong-type")
     return line.subpaths[0].cubics, line.subpaths[0].closed
 
 
@@ -102,12 +110,15 @@ def _of_array(path, id: str) -> np.ndarray:
             table = np.stack([table.real, table.imag], axis=-1)
         cubics = np.asarray(table, dtype=float).reshape(len(table), 4, 2)
     except (TypeError, ValueError):
-        raise Error("cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)", where=id) from None
+        raise Error(
+            "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)", where=id, code="wrong-type"
+        ) from None
     broken = [k for k in range(1, len(cubics)) if not _meets(cubics[k - 1, 3], cubics[k, 0])]
     if broken:
         raise Error(
             f"cubic {broken[0] + 1} does not begin where the one before it ends: a stroke is one line",
             where=id,
+            code="wrong-type",
         )
     return cubics
 

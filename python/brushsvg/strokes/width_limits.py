@@ -41,7 +41,7 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
         if beyond[k]:
             count, worst = beyond[k]
             if k not in filled:
-                made, how = [_clamped(stroke, least, greatest)], "painted at the nearest"
+                made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
             notices.append(
                 Notice(
                     stroke.id,

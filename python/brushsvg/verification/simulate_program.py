@@ -154,7 +154,8 @@ def _visits(read: Readback, cell: Cell) -> tuple:
             if (title := _title(section.title)) not in by_title:
                 name = _name(section)
                 raise Error(
-                    f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits"
+                    f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits",
+                    code="station-unknown",
                 )
             waiting.append(by_title[title])
         elif _stroke(section):

@@ -22,18 +22,16 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         + " mm"
     ]
     if not hasattr(_core, "fit_marks"):
-        return "\n".join(
-            [*lines, "how sure it will be is not known: this brushsvg was built without fits", ""]
-        )
+        return "\n".join([*lines, "no confidence intervals: this brushsvg was built without fits", ""])
     expected, remarks = expected_brush(chart.plan, brush, noise_mm)
     at = np.linspace(depths[0], depths[-1], ROWS)
     bands = {name: law_band(expected, name, at)[0] for name, _ in LAWS}
     lines += [
         "",
-        f"To expect of a brush like {brush.name}, edges seen to {noise_mm:g} mm, sheet and marks displaced:",
+        f"Laws to expect of a brush like {brush.name}, edges digitized to {noise_mm:g} mm, sheet and marks displaced:",
         "  depth" + "".join(name.rjust(18) for name, _ in LAWS),
     ]
     for i, depth in enumerate(at):
         cells = [f"{getattr(expected, name)(depth):.2f} +- {bands[name][i]:.2f}" for name, _ in LAWS]
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
-    return "\n".join([*lines, "  +-: 95 % of the law", *remarks, ""])
+    return "\n".join([*lines, "  +-: half the 95 % confidence interval of the law", *remarks, ""])

@@ -11,9 +11,13 @@ from .operands import PICTURES, PROGRAMS, check_files
 def add_chart(commands) -> None:
     chart = commands.add_parser("chart", help="make the strokes that a brush is calibrated from")
     chart.add_argument("output", metavar="OUT", help=plans_and_programs())
-    chart.add_argument("--brush", metavar="NAME|FILE", help="the nearest that is known; default: round-6")
+    chart.add_argument(
+        "--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6"
+    )
     chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
-    chart.add_argument("--drawing", metavar="FILE", help="whose brush and cell are meant where none is typed")
+    chart.add_argument(
+        "--drawing", metavar="FILE", help="take brush and cell from this drawing, unless given"
+    )
     chart.add_argument(
         "--sheet",
         metavar="WxH",
@@ -27,13 +31,17 @@ def add_chart(commands) -> None:
     chart.add_argument(
         "--page", metavar="FILE", help="also write the page to print, markers and labels (.svg)"
     )
-    chart.add_argument("--chart", metavar="FILE", help="also write what the painted chart is read by (.json)")
+    chart.add_argument(
+        "--chart",
+        metavar="FILE",
+        help="also write the places of markers and strokes, to read the painted chart by (.json)",
+    )
     chart.add_argument(
         "--noise",
         metavar="MM",
         type=values.noise,
         default=0.1,
-        help="how exactly an edge will be seen, for the intervals to expect; default: 0.1",
+        help="standard deviation of a digitized edge, for the confidence intervals to expect; default: 0.1",
     )
     add_z_offset(chart)
     add_quiet(chart)
@@ -50,10 +58,13 @@ def add_calibrate(commands) -> None:
     fit.add_argument("input", metavar="MEASUREMENTS", help="what was measured (.json .csv)")
     fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
     fit.add_argument(
-        "--norm", choices=("squares", "absolute"), default="squares", help="what is least; default: squares"
+        "--norm",
+        choices=("squares", "absolute"),
+        default="squares",
+        help="what the fit minimizes: squared or absolute residuals; default: squares",
     )
     fit.add_argument(
-        "--total", action="store_true", help="total least squares for series of angles; else plain ones"
+        "--total", action="store_true", help="total least squares for series of angles; default: ordinary"
     )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)
@@ -69,7 +80,11 @@ def add_brush(commands) -> None:
     new = whats.add_parser("new", help="write a brush file from a few numbers")
     new.add_argument("name", metavar="NAME", help="of the brush; writes NAME.json, or the path given")
     new.add_argument(
-        "--lag", metavar="MM", type=values.lag, required=True, help="how far it trails the tool; 0 for a pen"
+        "--lag",
+        metavar="MM",
+        type=values.lag,
+        required=True,
+        help="how far the brush trails the tool; 0 for a pen",
     )
     new.add_argument(
         "--width-at",
@@ -77,7 +92,7 @@ def add_brush(commands) -> None:
         action="append",
         type=values.width_at,
         default=[],
-        help="how wide it paints when pressed so deep, in mm; as often as measured",
+        help="width painted at a press depth, in mm; give it once per measured depth",
     )
     new.add_argument("--widths", metavar="FILE", help="the same as a table, depth_mm,width_mm (.csv)")
     new.add_argument(
@@ -86,7 +101,7 @@ def add_brush(commands) -> None:
     new.add_argument("--speed", metavar="MM/S", type=values.speed, default=25.0, help="at most; default: 25")
     add_quiet(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
-    plot = whats.add_parser("plot", help="draw the laws, how sure they are, and the footprints")
+    plot = whats.add_parser("plot", help="draw the laws with confidence bands, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_quiet(plot)

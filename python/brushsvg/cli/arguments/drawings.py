@@ -38,7 +38,7 @@ def add_predict(commands) -> None:
     predict.add_argument(
         "--band",
         action="store_true",
-        help="also where the edges lie with 95 %%, as far as the brush is known",
+        help="also draw the 95 %% confidence band of the edges",
     )
     add_quiet(predict)
     predict.set_defaults(run="predict_file", parser=predict, check=_check_predict)

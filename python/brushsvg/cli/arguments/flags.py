@@ -39,9 +39,7 @@ def add_looks(commands, kind: str, about: str, told: str, file: str):
 def add_job(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add_z_offset(command)
-    add(
-        "--from-stroke", metavar="N", type=values.count, default=1, help="go on from this stroke of a program"
-    )
+    add("--from-stroke", metavar="N", type=values.count, default=1, help="resume a job at this stroke")
     add(
         "--order", choices=("drawn", "nearest"), default="drawn", help="of strokes in a layer; default: drawn"
     )
@@ -53,7 +51,7 @@ def add_z_offset(command: argparse.ArgumentParser) -> None:
         metavar="MM",
         type=values.height,
         default=0.0,
-        help="the paper lies so much higher than thought",
+        help="how much higher the paper lies than the cell says; default: 0",
     )
 
 
@@ -75,22 +73,31 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     add_layout(command)
     add_wide(command)
-    add("--compensation", choices=("none", "constant", "closed", "refined"), help="default: closed")
+    add(
+        "--compensation",
+        choices=("none", "constant", "closed", "refined"),
+        help="of the lag: none, one for all, closed form, refined; default: closed",
+    )
     add(
         "--lag",
         metavar="MM",
         type=values.lag,
-        help="for constant; default: that at the stroke's median depth",
+        help="the one of --compensation constant; default: that at the stroke's median depth",
     )
-    add("--tolerance", metavar="MM", type=values.tolerance, help="of the painted middle line; default: 0.05")
-    add("--lenient", action="store_true", help="take what is sound of damaged geometry")
+    add(
+        "--tolerance",
+        metavar="MM",
+        type=values.tolerance,
+        help="largest tracking error of the painted middle line; default: 0.05",
+    )
+    add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
 
 
 def add_wide(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--wide",
         choices=("clamp", "passes", "refuse"),
-        help="filled outlines wider than the brush: its greatest width, several passes, or no; default: clamp",
+        help="shapes wider than the brush: its greatest width, several passes, or refuse; default: clamp",
     )
 
 

@@ -31,12 +31,24 @@ def add_height(commands) -> None:
         "--sheet", metavar="WxH", type=values.size, default=(200.0, 100.0), help="default: 200x100"
     )
     height.add_argument(
-        "--from", metavar="MM", dest="highest", type=values.height, default=1.0, help="default: 1"
+        "--from",
+        metavar="MM",
+        dest="highest",
+        type=values.height,
+        default=1.0,
+        help="height of the first stroke; default: 1",
     )
     height.add_argument(
-        "--to", metavar="MM", dest="lowest", type=values.height, default=-1.0, help="default: -1"
+        "--to",
+        metavar="MM",
+        dest="lowest",
+        type=values.height,
+        default=-1.0,
+        help="height of the last stroke; default: -1",
     )
-    height.add_argument("--step", metavar="MM", type=values.step, default=0.1, help="default: 0.1")
+    height.add_argument(
+        "--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1"
+    )
     add_quiet(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
 
@@ -47,7 +59,7 @@ def _check_height(args) -> None:
 
 def add_check(commands) -> None:
     check = commands.add_parser(
-        "check", help="read a program back, simulate it and hold it against a drawing"
+        "check", help="read a program back, simulate it and compare it with a drawing"
     )
     check.add_argument("program", metavar="PROGRAM", help=programs())
     check.add_argument(
@@ -60,7 +72,7 @@ def add_check(commands) -> None:
     check.add_argument(
         "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
     )
-    check.add_argument("--lenient", action="store_true", help="take what is sound of damaged geometry")
+    check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
     check.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     check.add_argument("--json", action="store_true", help="figures as JSON")
     add_quiet(check)
@@ -101,7 +113,7 @@ def _check_cell_new(args) -> None:
 
 
 def add_install_plugin(commands) -> None:
-    install = commands.add_parser("install-plugin", help="put our extension where a drawing program looks")
+    install = commands.add_parser("install-plugin", help="install the extension for Inkscape")
     install.add_argument("plugin", metavar="inkscape", choices=("inkscape",), help="which one")
     install.add_argument(
         "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"

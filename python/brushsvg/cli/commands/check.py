@@ -160,7 +160,7 @@ def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
     if problems:
         raise RefusedError(args.program, folded(problems))
     if not args.json:
-        known = "; without its drawing nobody can say whether it is the right one" if is_alone else ""
+        known = "; it was not compared with a drawing" if is_alone else ""
         tell(f"{args.program}: nothing forbids to run it{known}\n")
 
 

@@ -24,7 +24,7 @@ def predict_file(args) -> None:
         if args.band:
             from ...evaluation.uncertainty import band as band_of
 
-            stage("finding how sure it is")
+            stage("finding the confidence band")
             band = band_of(work.plan, work.brush, marks)
             if not any(band.rings):
                 say(work.brush.name, band.words)

@@ -47,7 +47,9 @@ def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
     areas = _connected(rings)
     axes = [_core.medial_axis(area, LEAST_SHARE) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MOST_BRANCHES:
-        raise Error(f"its shape branches into {count} lines, more than {MOST_BRANCHES}")
+        raise Error(
+            f"its shape branches into {count} lines, more than {MOST_BRANCHES}", code="outline-too-complex"
+        )
     boxes = np.array([[*area[0].min(axis=0), *area[0].max(axis=0)] for area in areas]).reshape(-1, 4)
     return [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k])]
 

@@ -21,16 +21,20 @@ def filled(element: Element) -> list[np.ndarray]:
     outlines = [flattened(subpath.cubics) for subpath in element.subpaths]
     edges = sum(map(len, outlines))
     if edges > _MOST_EDGES:
-        raise Error(f"its outline has {edges} edges, more than {_MOST_EDGES}")
+        raise Error(f"its outline has {edges} edges, more than {_MOST_EDGES}", code="outline-too-complex")
     tails = np.vstack(outlines)
     heads = np.vstack([np.roll(ring, -1, axis=0) for ring in outlines])
     if (crossings := _crossings(tails, heads)) > _MOST_CROSSINGS:
-        raise Error(f"its outline crosses itself about {crossings:.2g} times, more than {_MOST_CROSSINGS}")
+        raise Error(
+            f"its outline crosses itself about {crossings:.2g} times, more than {_MOST_CROSSINGS}",
+            code="outline-too-complex",
+        )
     low, high = np.minimum(tails, heads), np.maximum(tails, heads)
     from_left = np.argsort(low[:, 0])
     if (pairs := _side_by_side(low[from_left], high[from_left])) > _MOST_PAIRS:
         raise Error(
-            f"its outline lies too densely: {pairs:.2g} pairs of edges side by side, more than {_MOST_PAIRS:.2g}"
+            f"its outline lies too densely: {pairs:.2g} pairs of edges side by side, more than {_MOST_PAIRS:.2g}",
+            code="outline-too-complex",
         )
     return _core.fill([ring for ring in outlines if len(ring) >= 3], element.fill_rule or "evenodd")
 

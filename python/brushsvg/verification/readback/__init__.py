@@ -83,7 +83,9 @@ class Readback:
     def comment(self, number: int, text: str) -> None:
         """Perhaps the title of a section. Error for one that LinuxCNC acts on."""
         if re.match(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", text, re.IGNORECASE):
-            raise Error(f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on")
+            raise Error(
+                f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on", code="line-unread"
+            )
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
         if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks
@@ -97,13 +99,18 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     post = POSTS.get(cell.language)
     if post is None or suffix not in post.extensions:
         speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
-        raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}")
+        raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}", code="program-format")
     if odd := re.search(r"[^\n -~]", text):
         number = text.count("\n", 0, odd.start()) + 1
-        raise Error(f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text")
+        raise Error(
+            f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text", code="line-unread"
+        )
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(("(", "#", "popup")):
-            raise Error(f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes")
+            raise Error(
+                f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
+                code="line-unread",
+            )
     return _READERS[cell.language](text, cell)
 
 

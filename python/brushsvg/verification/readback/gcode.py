@@ -80,7 +80,9 @@ class _Reader:
     def read(self, text: str) -> Readback:
         for number, line in enumerate(text.splitlines(), 1):
             if line and self.ended:
-                raise Error(f"line {number}: {line[:40]!r} stands behind the end of the program")
+                raise Error(
+                    f"line {number}: {line[:40]!r} stands behind the end of the program", code="line-unread"
+                )
             if said := _COMMENT.fullmatch(line):
                 self._comment(number, line, said[1])
                 self.ended = bool(self.servo) and said[1] == SERVO_END
@@ -88,19 +90,28 @@ class _Reader:
                 self._line(number, line)
         for mode, meaning in NEEDED.items():
             if mode not in self.seen:
-                raise Error(f"{mode} is missing: nothing says that its numbers are {meaning}")
+                raise Error(
+                    f"{mode} is missing: nothing says that its numbers are {meaning}", code="mode-missing"
+                )
         if not self.ended:
             end = f"({SERVO_END})" if self.servo else "M2"
-            raise Error(f"{end} is missing: the program has no end, or half of it was lost")
+            raise Error(
+                f"{end} is missing: the program has no end, or half of it was lost", code="program-cut-short"
+            )
         return self.out
 
     def _line(self, number: int, line: str) -> None:
         # grbl drops blanks before it counts
         size = len(line) if self.longest == LONGEST else len(line.replace(" ", ""))
         if size > self.longest:
-            raise Error(f"line {number} has {size} letters, the controller reads no more than {self.longest}")
+            raise Error(
+                f"line {number} has {size} letters, the controller reads no more than {self.longest}",
+                code="line-unread",
+            )
         if not _CODE.fullmatch(line):
-            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+            raise Error(
+                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
+            )
         words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
         values = {letter: value for letter, value in words if letter not in "GM"}
@@ -112,21 +123,29 @@ class _Reader:
             idle.append(motion)
         codes = [code for code in codes if code not in idle]
         if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= self.known:
-            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+            raise Error(
+                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
+            )
         first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
         if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
             first = "M3"  # which holds
         if values and first in STANDING and self.motion in ("G0", "G1"):
             first = self.motion  # which goes on beside a mode
         if first not in self.words:
-            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes")
+            raise Error(
+                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
+            )
         if len(values) + len(set(codes)) + len(idle) != len(words) or not set(values) <= set(
             self.words[first]
         ):
-            raise Error(f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write")
+            raise Error(
+                f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write",
+                code="line-unread",
+            )
         if first == "G64" and "G21" not in self.seen:
             raise Error(
-                f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres"
+                f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres",
+                code="mode-missing",
             )
         if values and first != "G64" and self.out.modes is None:
             self.out.modes = frozenset(self.seen)
@@ -151,12 +170,15 @@ class _Reader:
     def _comment(self, number: int, line: str, said: str) -> None:
         """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
         if (plain := self.comment(said).rstrip("\n")) != line:
-            raise Error(f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}")
+            raise Error(
+                f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",
+                code="line-unread",
+            )
         self.out.comment(number, said)
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
         if seconds < 0:
-            raise Error(f"line {number}: {line[:40]!r} does not say how long")
+            raise Error(f"line {number}: {line[:40]!r} does not say how long", code="line-incomplete")
         self.out.acts.append(Act(number, "wait", same=(seconds,)))
         if steps := self.out.section().steps:
             steps[-1] = steps[-1]._replace(wait_s=steps[-1].wait_s + seconds)
@@ -164,11 +186,13 @@ class _Reader:
     def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
             if values["F"] < 0:
-                raise Error(f"line {number}: {line[:40]!r} is no feed")
+                raise Error(f"line {number}: {line[:40]!r} is no feed", code="line-incomplete")
             self.feed_mm_s = values["F"] / 60
         if not code:
             if set(values) - {"F"}:
-                raise Error(f"line {number}: {line[:40]!r} does not say how to go there")
+                raise Error(
+                    f"line {number}: {line[:40]!r} does not say how to go there", code="line-incomplete"
+                )
             return
         self.motion = code
         places = {axis: values[axis] for axis in "XYZ" if axis in values}
@@ -184,10 +208,13 @@ class _Reader:
         if code in ("G2", "G3"):
             if not self.for_circles <= self.seen:
                 raise Error(
-                    f"line {number}: {line[:40]!r} stands where {' '.join(sorted(self.for_circles))} does not hold"
+                    f"line {number}: {line[:40]!r} stands where {' '.join(sorted(self.for_circles))} does not hold",
+                    code="mode-missing",
                 )
             if not {"X", "Y", "I", "J"} <= set(values) or math.isnan(self.at["X"]):
-                raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre")
+                raise Error(
+                    f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete"
+                )
             turn = 1 if code == "G3" else -1
             centre = (self.at["X"] + values["I"], self.at["Y"] + values["J"], turn)
             radii = [
@@ -196,10 +223,11 @@ class _Reader:
             ]
             if abs(radii[0] - radii[1]) > max(ROUND_MM, 4 * self.unit_mm):
                 raise Error(
-                    f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre"
+                    f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre",
+                    code="line-incomplete",
                 )
         if code != "G0" and not self.feed_mm_s > 0:
-            raise Error(f"line {number}: {line[:40]!r} has no feed")
+            raise Error(f"line {number}: {line[:40]!r} has no feed", code="line-incomplete")
         self._go(number, code == "G0", places, centre)
         x, y, z = self.at.values()
         speed = math.inf if code == "G0" else self.feed_mm_s
@@ -237,5 +265,8 @@ class _Reader:
         known = [row[1] for row in self.servo.table]
         low, high = round(min(known)), round(max(known))
         if not low <= value <= high:
-            raise Error(f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo")
+            raise Error(
+                f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo",
+                code="servo-out-of-range",
+            )
         return height_at(self.servo, value)

@@ -37,7 +37,10 @@ def made(text: str) -> Made:
     """Error when the header is not one of ours, or one of its numbers is damaged."""
     header = _header_of(text)
     if not {"title", "brush", "cell"} <= set(header):
-        raise Error("its header does not name title, brush and cell: brushsvg did not write this program")
+        raise Error(
+            "its header does not name title, brush and cell: brushsvg did not write this program",
+            code="header-damaged",
+        )
     sheet = _said(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
     paper = _said(header, "paper", r"(\S+) mm against the cell's", (-20.0, 20.0))
     resumed = _said(header, "resumed", r"from stroke (\d+)", (1, 1e6))
@@ -85,13 +88,17 @@ def _said(header: dict[str, str], word: str, pattern: str, bounds: tuple[float, 
     for value in numbers:
         if not bounds[0] <= value <= bounds[1]:
             raise Error(
-                f"{word} in its header: {value:g} is outside the range [{bounds[0]:g}, {bounds[1]:g}]"
+                f"{word} in its header: {value:g} is outside the range [{bounds[0]:g}, {bounds[1]:g}]",
+                code="header-damaged",
             )
     return numbers
 
 
 def _damaged(word: str, said: str) -> Error:
-    return Error(f"its header is damaged: ({word}: {said[:50]}) is not what brushsvg writes there")
+    return Error(
+        f"its header is damaged: ({word}: {said[:50]}) is not what brushsvg writes there",
+        code="header-damaged",
+    )
 
 
 def _header_of(text: str) -> dict[str, str]:

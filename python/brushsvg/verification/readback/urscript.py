@@ -46,7 +46,7 @@ def read_urscript(text: str) -> Readback:
             x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
             _is_run(number, line, a, v)
             if r < 0:
-                raise Error(f"line {number}: {line[:60]!r} has a negative blend")
+                raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
             out.section().steps.append(Step(number, False, x, y, z, v, r))
             out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
         elif found := _CIRCLE.fullmatch(line):
@@ -65,31 +65,33 @@ def read_urscript(text: str) -> Readback:
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
-            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes")
+            raise Error(
+                f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread"
+            )
     if not out.paper:
-        raise Error("the line that sets the paper is missing")
+        raise Error("the line that sets the paper is missing", code="program-cut-short")
     code = [line for _, line in lines if not line.startswith("# ")]
     if code[-2:] != ["end", "brushsvg()"] or lines[-1][1] != code[-1]:
-        raise Error("the last lines are missing: half of the program was lost")
+        raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     return out
 
 
 def _is_run(number: int, line: str, acceleration: float, speed: float) -> None:
     if not (acceleration > 0 and speed > 0):
-        raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration")
+        raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration", code="line-incomplete")
 
 
 def _circle(out: Readback, number: int, values: np.ndarray) -> None:
     """Through a point to a point: its centre is as far from both as from where the tool is."""
     steps = out.section().steps
     if not steps:
-        raise Error(f"line {number}: a circle from nowhere")
+        raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
     via, end, speed = values[:3], values[3:6], values[6]
     start = np.array([steps[-1].x, steps[-1].y])
     to_via, to_end = via[:2] - start, end[:2] - start
     cross = to_via[0] * to_end[1] - to_via[1] * to_end[0]
     if abs(cross) < 1e-9:
-        raise Error(f"line {number}: the three points of the circle lie on one line")
+        raise Error(f"line {number}: the three points of the circle lie on one line", code="line-incomplete")
     square_via, square_end = to_via @ to_via, to_end @ to_end
     centre = start + np.array(
         [
