@@ -14,7 +14,9 @@ from .cell import Cell, Station
 def in_loads(plan, brush, cell: Cell):
     """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
-    The same plan for cells that do not count the length, and for strokes whose setting reload is false.
+    The same plan for cells that do not count the length, and for strokes whose setting reload is false. A plan.json
+    does not tell that a pass is a part: parts that were written to one and read back may be cut once more, since each
+    is a little longer than a load for its lift. So plans are kept as they were planned, and cut for the machine.
     """
     if not cell.reload or cell.reload.when != "length":
         return plan
