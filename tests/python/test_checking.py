@@ -839,6 +839,7 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_told(
         (r"(?m)^M3 S60[04]\n", "M3\n", "brushsvg would write"),
         (r"(?m)^F1200\.0\nG1", "F0.0\nG1", "has no feed"),
         (r"(?m)^F1200\.0\nG1", "F-1200.0\nG1", "is no feed"),
+        (r"(?m)^G1 (F\S+)$", r"G3 \1", "is a circle without end or centre"),
     ):
         (desk / "two.nc").write_text(edited(old, new, 0)(text))
         status, _, err = call(capsys, "check", "two.nc", *drawing)

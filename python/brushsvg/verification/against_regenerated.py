@@ -236,7 +236,7 @@ class _Alike:
         if (about := _ABOUT.fullmatch(found)) and (found[:6] == wanted[:6]):
             value, unit = _about(about)
             least, most = self.length_mm if about[4] else self.time_s
-            return least - unit <= value <= most + unit
+            return least - 2 * unit <= value <= most + 2 * unit
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
         tilts = 3 if wanted.startswith(("set_tcp", "return", "paper")) else 0
@@ -259,22 +259,23 @@ _ABOUT = re.compile(
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
-    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for the unit of the last digit.
+    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for two units of the last digit.
 
     A servo's heights in steps make a way longer than it was meant, but not shorter than it is seen from above; and each
     stroke may have lost a step and a value at both ends.
     """
     length_mm, time_s = painting_mm(program), duration_s(program)
-    least_mm, most_mm = length_mm * (1 - TOLD), length_mm * (1 + TOLD)
+    least_mm, most_mm = length_mm * (1 - LENGTHS), length_mm * (1 + LENGTHS)
     if program.cell.servo:
         ends_mm = 2 * len([*program.sections()]) * (program.cell.servo.step_mm + value_mm(program.cell))
         least_mm, most_mm = seen_from_above_mm(program) - ends_mm, most_mm + ends_mm
+    fewer, more = (least_mm / length_mm, most_mm / length_mm) if length_mm else (1.0, 1.0)
     least_s = time_s if least_time_s is None else min(time_s, least_time_s)
-    most_s = time_s * (most_mm / length_mm if length_mm else 1.0)
-    return (least_mm, most_mm), (least_s * (least_mm / length_mm if length_mm else 1.0), most_s)
+    return (least_mm, most_mm), (least_s * fewer * (1 - TIMES), time_s * more * (1 + TIMES))
 
 
-TOLD = 1e-3  # what rounded places make of lengths and times
+# what rounded places make of lengths and times; on paper that leans a circle, which takes a rest, is read as lines
+LENGTHS, TIMES = 1e-3, 1e-2
 
 
 def _about(found: re.Match) -> tuple[float, float]:

@@ -17,9 +17,8 @@ def without_steps(a_pass, lines: np.ndarray, rests: np.ndarray):
     goes = np.diff(np.asarray(a_pass.poses_mm)[:, :2], axis=0).any(axis=1)
     is_off = not rests[1:][np.flatnonzero(np.r_[True, goes])[-1] :].any()
     poses, is_kept = np.array(a_pass.poses_mm), np.r_[lines[1:] != lines[:-1], True]
-    if not is_kept[
-        0
-    ]:  # landed on the first way, without the last step: where it starts, the brush just touches
+    if not is_kept[0]:
+        # landed on the first way, without the last step: where it starts, the brush just touches
         is_kept[0], poses[0, 2] = True, 0.0
     poses = poses[is_kept]
     poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
