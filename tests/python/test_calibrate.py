@@ -409,6 +409,7 @@ WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
 
 
 @pytest.mark.parametrize("floored", [1, 3])
+@pytest.mark.slow
 def test_normal_noise_above_a_floor_is_seldom_called_wild(floored):
     """Readings where the law lies on its floor say nothing of its coefficients: 15 % of such calibrations were told to
     measure the first depth again."""

@@ -43,6 +43,7 @@ def marks_of(made, brush):
     ids=["a4", "a5", "liner"],
 )
 @pytest.mark.parametrize("share", [0.75, 1.0, 1.25])
+@pytest.mark.slow
 def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
     """Also those of a brush that trails by a quarter more or less than was thought."""
     made = chart(brush, sheet)
@@ -96,6 +97,7 @@ def test_what_is_on_it():
             )
 
 
+@pytest.mark.slow
 def test_a_larger_sheet_has_more_strokes():
     brush = find_brush("round-6")
     counts = [len(chart(brush, sheet).strokes) for sheet in (A5, A4, (297.0, 420.0), (594.0, 841.0))]

@@ -103,6 +103,7 @@ def refused(desk, capsys, words) -> list[str]:
 @pytest.mark.parametrize(
     "command", [each for each in COMMANDS if any(word in SOUND for word in each.split())]
 )
+@pytest.mark.slow
 def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
     for word in {*command.split()} & {*SOUND}:
         path = desk / f"bad{Path(SOUND[word]).suffix}"

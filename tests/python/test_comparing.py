@@ -111,6 +111,7 @@ def leash_mm(one, other):
     some.sampled_from([0.0, 0.1, 0.4]),
     some.sampled_from([0.06, 0.2, 0.5, 1.0]),
 )
+@pytest.mark.slow
 def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves, how, away_mm, limit_mm):
     random = np.random.default_rng(seed)
     asked = np.cumsum(

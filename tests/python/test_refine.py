@@ -31,6 +31,7 @@ def test_never_worse_by_the_report_and_better_on_average():
     assert refined.mean() > closed.mean() + 0.005
 
 
+@pytest.mark.slow
 def test_never_worse_on_small_drawings():
     won = gains(24, 5, BRUSH)  # tests/integration does more of them
     assert won.min() >= 0.0
@@ -43,6 +44,7 @@ def test_a_corner_on_a_knife_s_edge_stays_as_it_was():
     assert overlaps(corner, BRUSH, "refined") >= overlaps(corner, BRUSH, "closed")
 
 
+@pytest.mark.slow
 def test_side_by_side_gives_what_each_alone_does():
     strokes = curves(19)
     together = _core.compensate(strokes, BRUSH, SHEET, "refined")
