@@ -22,6 +22,7 @@ TABLE = "kind,depth_mm,value_mm\n" + "".join(
 )
 
 
+@pytest.mark.slow
 def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"

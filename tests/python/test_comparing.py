@@ -32,6 +32,7 @@ def by_every_move(points, path):
     some.sampled_from([0.0, 1e-3, 0.5, 30.0]),
     some.sampled_from(["along", "back", "anywhere"]),
 )
+@pytest.mark.slow
 def test_the_farthest_point_is_found_without_looking_at_every_move(seed, moves, points, away_mm, how):
     random = np.random.default_rng(seed)
     path = np.cumsum(

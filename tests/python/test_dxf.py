@@ -216,6 +216,7 @@ def test_the_frame_of_a_smoothed_polyline_is_not_drawn():
 
 @pytest.mark.parametrize("pitch", [5, 0])
 @pytest.mark.parametrize("turns", [0.3, 1, 2.4])
+@pytest.mark.slow
 def test_a_helix_is_seen_from_above(pitch, turns):
     document = drawing()
     helix = document.modelspace().add_helix(30, pitch, turns)

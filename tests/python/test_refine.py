@@ -24,6 +24,7 @@ def curves(count: int, seed: int = 3) -> list:
     return made
 
 
+@pytest.mark.slow
 def test_never_worse_by_the_report_and_better_on_average():
     strokes = curves(10)
     closed, refined = overlaps(strokes, BRUSH, "closed"), overlaps(strokes, BRUSH, "refined")
@@ -86,6 +87,7 @@ def test_an_unknown_way_is_refused():
         _core.compensate(curves(1), BRUSH, SHEET, "best")
 
 
+@pytest.mark.slow
 def test_from_the_command_line(tmp_path, capsys):
     drawing = tmp_path / "curve.svg"
     drawing.write_text(
