@@ -217,6 +217,7 @@ PAINT = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\np
 
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
+@pytest.mark.slow
 def test_any_name_may_stand_beside_any_part(desk, capsys, name):
     """A drawing's own a+2 beside an a in parts, and names that a program writes otherwise, twice the same, cut."""
     long = "n" * 150
@@ -563,6 +564,7 @@ STATIONS = [
 
 @pytest.mark.parametrize("hand", [False, True])
 @pytest.mark.parametrize("cell", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
+@pytest.mark.slow
 def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
     """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
     if hand and cell == "grbl-servo":
@@ -736,6 +738,7 @@ CHANGED = {
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("suffix", CHANGED)
+@pytest.mark.slow
 def test_whatever_was_changed_is_told(desk, capsys, suffix):
     """Seen by comparing with the drawing's own plan, and with what would be written for the same strokes."""
     cell = {".script": ("--cell", "ur5e"), ".nc": ("--cell", "grbl-servo")}.get(suffix, ())
@@ -951,6 +954,7 @@ SERVO_TABLES = [
 
 @pytest.mark.parametrize("table", SERVO_TABLES)
 @pytest.mark.parametrize("step_mm", [0.01, 0.1, 1.0])
+@pytest.mark.slow
 def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys, table, step_mm):
     text = (SHIPPED / "grbl-servo.toml").read_text()
     text = edited(r"(?m)^table = .*$", f"table = {table}")(text)

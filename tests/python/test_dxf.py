@@ -153,6 +153,7 @@ def test_every_entity_is_within_a_micrometre_of_the_true_curve(name):
 
 
 @each_shape
+@pytest.mark.slow
 def test_every_entity_in_a_block_goes_where_the_block_goes(name):
     """Scaled unevenly, turned and mirrored, in a block that is scaled and turned itself."""
     draw, points, closed = SHAPES[name]
@@ -215,6 +216,7 @@ def test_the_frame_of_a_smoothed_polyline_is_not_drawn():
 
 @pytest.mark.parametrize("pitch", [5, 0])
 @pytest.mark.parametrize("turns", [0.3, 1, 2.4])
+@pytest.mark.slow
 def test_a_helix_is_seen_from_above(pitch, turns):
     document = drawing()
     helix = document.modelspace().add_helix(30, pitch, turns)
@@ -590,6 +592,7 @@ def test_from_a_file_to_strokes(tmp_path):
     assert read_dxf(encoded(drawing(draw))).sheet_mm == read_drawing(tmp_path / "a.DXF").sheet_mm
 
 
+@pytest.mark.slow
 def test_ezdxf_is_loaded_for_dxf_alone_and_leaves_nothing_at_home(tmp_path):
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: m.add_line((0, 0), (9, 9)))))
     (tmp_path / "a.svg").write_text(

@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import _core, json_fields
 from ..errors import Error
+from ..geometry import polylines
 
 FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
 WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
@@ -260,7 +261,7 @@ def depths_painted(ways: list[np.ndarray]) -> int:
         return 0
     painted = np.zeros(DEPTH_BINS)
     for poses in ways:
-        length = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+        length = polylines.steps(poses[:, :2])
         for (a, b), along in zip(np.column_stack([poses[:-1, 2], poses[1:, 2]]), length, strict=True):
             # a ramp paints a little at each of its depths
             at = np.linspace(-a, -b, 10) / deepest * DEPTH_BINS
@@ -297,7 +298,7 @@ def _refuse_what_tells_nothing(found: list) -> None:
 
 def _turning(poses: np.ndarray) -> float:
     """By how much the TCP turns in all [rad], trembling left out."""
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
+    at = polylines.lengths(poses[:, :2])
     if at[-1] < 1.0:
         return 0.0
     places = np.linspace(0, at[-1], max(3, min(200, int(at[-1]))))

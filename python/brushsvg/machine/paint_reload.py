@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
+from ..geometry.polylines import length
 from .cell import Cell, Station
 
 
@@ -97,7 +98,7 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
 
 def painted_mm(a_pass) -> float:
     """Length of the TCP's path on the paper [mm]."""
-    return float(np.linalg.norm(np.diff(np.asarray(a_pass.poses_mm), axis=0), axis=1).sum())
+    return length(np.asarray(a_pass.poses_mm))
 
 
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:

@@ -9,6 +9,8 @@ from itertools import pairwise, permutations, product
 
 import numpy as np
 
+from ...geometry.polylines import length, steps
+from ...geometry.rings import signed_area
 from .graph import Piece, Skeleton
 
 # Lines run towards this direction: down, and to the right where they lie flatter than 30 degrees.
@@ -54,23 +56,18 @@ def reversed_(piece: Piece) -> Piece:
 def _ring(piece: Piece) -> Piece:
     """Counter-clockwise, from the top, a little to the right."""
     line = piece.line[:-1]
-    x, y = line[:, 0], line[:, 1]
-    if (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() < 0:
+    if signed_area(line[:, :2]) < 0:
         line = line[::-1]
     first = int(np.argmax(line[:, :2] @ (0.3, 1.0)))
     line = np.roll(line, -first, axis=0)
     return replace(piece, line=np.vstack([line, line[:1]]))
 
 
-def length_mm(line: np.ndarray) -> float:
-    return float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
-
-
 def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
     """Pieces in their directions, those that a corner joins in one list: where one ends and the next begins there, or
     where one is but a flick."""
     chains = {k: [directed(piece)] for k, piece in enumerate(pieces)}
-    lengths = [length_mm(piece.line) for piece in pieces]
+    lengths = [length(piece.line[:, :2]) for piece in pieces]
     at_crossing: dict[int | None, set[int]] = {}
     for k, piece in enumerate(pieces):
         for crossing in piece.ends:
@@ -174,8 +171,8 @@ def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.nda
 
 
 def _centre(line: np.ndarray) -> np.ndarray:
-    steps = np.hypot(*np.diff(line, axis=0).T)
-    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=steps) if steps.sum() > 0 else line[0]
+    weights = steps(line)
+    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=weights) if weights.sum() > 0 else line[0]
 
 
 def in_rows(boxes: np.ndarray) -> list[int]:
