@@ -25,7 +25,7 @@ def add_chart(commands) -> None:
         "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
     )
     chart.add_argument(
-        "--page", metavar="FILE", help="also write the page to print, markers and labels (.svg)"
+        "--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)"
     )
     chart.add_argument("--chart", metavar="FILE", help="also write what the painted chart is read by (.json)")
     chart.add_argument(
@@ -41,7 +41,7 @@ def add_chart(commands) -> None:
 
 
 def _check_chart(args) -> None:
-    written = [(args.output, (".json", *PROGRAMS)), (args.page, (".svg",)), (args.chart, (".json",))]
+    written = [(args.output, (".json", *PROGRAMS)), (args.page, (".pdf", ".svg")), (args.chart, (".json",))]
     check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 
 
