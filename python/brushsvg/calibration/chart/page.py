@@ -33,7 +33,7 @@ def chart_page(chart: Chart) -> str:
         rings = marker_rings(marker, chart.dictionary)
         lines.append(f'<path data-marker="{marker.id}" fill="{INK}" d="{_path(rings, height)}"/>')
     if chart.bar:
-        rings = _bar_rings(chart.bar)
+        rings = bar_rings(chart.bar)
         lines.append(f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK}" d="{_path(rings, height)}"/>')
     lines += [_label(label, height) for label in chart.labels]
     return "\n".join([*lines, "</svg>", ""])
@@ -51,7 +51,7 @@ def chart_pdf(chart: Chart) -> bytes:
     axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
     axes.set_axis_off()
     shapes = [marker_rings(marker, chart.dictionary) for marker in chart.markers]
-    shapes += [_bar_rings(chart.bar)] if chart.bar else []
+    shapes += [bar_rings(chart.bar)] if chart.bar else []
     for rings in shapes:
         closed = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
         axes.add_patch(PathPatch(Path.make_compound_path(*closed), facecolor=INK, linewidth=0))
@@ -84,18 +84,23 @@ def marker_rings(marker: Marker, dictionary: str) -> list[np.ndarray]:
     return [np.array(ring) for ring in _core.unite(squares)]
 
 
-def _bar_rings(bar: Bar) -> list[np.ndarray]:
-    """A line between two ticks; the outer edges of the ticks are as far apart as the bar is long."""
+def bar_rings(bar: Bar, beyond_mm: float = 0.0) -> list[np.ndarray]:
+    """A line between two ticks, whose outer edges are as far apart as the bar is long; and so much around all of it."""
     (x, y), end = bar.at_mm, bar.at_mm[0] + bar.length_mm
     boxes = [
         (x, y - LINE_MM / 2, end, y + LINE_MM / 2),
         (x, y - TICK_MM / 2, x + LINE_MM, y + TICK_MM / 2),
         (end - LINE_MM, y - TICK_MM / 2, end, y + TICK_MM / 2),
     ]
-    return [
-        np.array(ring)
-        for ring in _core.unite([np.array([(a, b), (c, b), (c, d), (a, d)]) for a, b, c, d in boxes])
-    ]
+    grown = [(a - beyond_mm, b - beyond_mm, c + beyond_mm, d + beyond_mm) for a, b, c, d in boxes]
+    rings = [np.array([(a, b), (c, b), (c, d), (a, d)]) for a, b, c, d in grown]
+    return [np.array(ring) for ring in _core.unite(rings)]
+
+
+def label_box(label: Label) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of its letters, on average."""
+    (x, y), size = label.at_mm, _size(label)
+    return x, y - 0.25 * size, x + WIDE * size * len(label.text), y + size
 
 
 def _path(rings: list[np.ndarray], height: float) -> str:

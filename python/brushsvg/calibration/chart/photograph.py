@@ -1,0 +1,108 @@
+"""A photograph of a painted chart: the strokes on it as marks in mm, and what the picture was like."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _core
+from ...errors import Error
+from ...scan.edges import Marks, Room, find_marks
+from ...scan.flatten import Flat, flatten
+from ...scan.markers import Printed, View, find_view
+from ...scan.photo import read_photo
+from .layout import Chart
+from .page import bar_rings, label_box
+
+ANOTHER_SIZE = (0.9, 1.1)  # of the page, which --bar corrects; beyond, strokes run into labels and markers
+MARGIN = 1 / 5  # of a marker's side around it: blur
+
+
+@dataclass(frozen=True)
+class Read:
+    """What a photograph told: the flattened picture, the camera's view, marks by stroke."""
+
+    chart: Chart
+    flat: Flat
+    view: View
+    marks: Marks
+
+
+def read_chart_photo(chart: Chart, data: bytes, bar_mm: float | None = None) -> Read:
+    """bar_mm: how long the printed bar is by a ruler, where the page was not printed at 100 %."""
+    size = _size(chart, bar_mm)
+    middle = np.array(chart.plan.sheet_mm) / 2
+
+    def lies(points) -> np.ndarray:
+        return (np.asarray(points, float) - middle) * size + middle
+
+    corners = {marker.id: lies(marker.corners_mm) for marker in chart.markers}
+    pixels = read_photo(data)
+    view = find_view(pixels, Printed(chart.plan.sheet_mm, corners, chart.dictionary, chart.id))
+    flat = flatten(pixels, view, chart.plan.sheet_mm)
+    printed = [each.mean(axis=0) + (each - each.mean(axis=0)) * (1 + 2 * MARGIN) for each in corners.values()]
+    printed += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
+    labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
+    rooms = [Room(stroke.id, stroke.box_mm) for stroke in chart.strokes]
+    return Read(chart, flat, view, find_marks(flat, rooms, printed, labels))
+
+
+def _size(chart: Chart, bar_mm: float | None) -> float:
+    if bar_mm is None:
+        return 1.0
+    if chart.bar is None:
+        raise Error("this chart.json has no bar to measure: print a page of today's `brushsvg chart`", "bar")
+    size = bar_mm / chart.bar.length_mm
+    if not ANOTHER_SIZE[0] <= size <= ANOTHER_SIZE[1]:
+        raise Error(
+            f"the bar measures {bar_mm:g} mm instead of {chart.bar.length_mm:g} mm, the range is "
+            f"[{ANOTHER_SIZE[0] * chart.bar.length_mm:g}, {ANOTHER_SIZE[1] * chart.bar.length_mm:g}] mm: print the "
+            "page again, at 100 %",
+            "bar",
+            bar_mm,
+        )
+    return size
+
+
+def marks_of(read: Read) -> list[dict]:
+    """As a measurement file lists them."""
+    return [
+        {"stroke": stroke, "outline_mm": [ring.round(3).tolist() for ring in rings]}
+        for stroke, rings in read.marks.outlines_mm.items()
+    ]
+
+
+def write_marks(read: Read) -> str:
+    """A measurement file, which `brushsvg calibrate` takes."""
+    plan = _core.write_plan(read.chart.plan).strip()
+    rows = ",\n  ".join(json.dumps(row) for row in marks_of(read))
+    head = '"format": "brushsvg/measurements", "version": 1'
+    return f'{{{head},\n "plan": {plan},\n "marks": [\n  {rows}]}}\n'
+
+
+def told(read: Read) -> str:
+    """How well it could be read, in one line."""
+    view, count, found = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
+    strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
+    return (
+        f"read {strokes}; {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
+        f"{view.px_per_mm:.1f} pixels per mm, edges blurred over {view.blur_mm:.2f} mm"
+    )
+
+
+def remarks(read: Read) -> list[str]:
+    """What a person should know of before a brush is made of it."""
+    out = []
+    if missing := read.marks.missing:
+        each = "stroke" if len(missing) == 1 else "strokes"
+        out.append(f"no paint is found of {each} {', '.join(missing)}, left out")
+    out += [
+        f"the marks of {one} and {other} touch: they are cut apart half way between their places"
+        for one, other in read.marks.joined
+    ]
+    unseen = [marker.id for marker in read.chart.markers if marker.id not in read.view.seen]
+    if unseen:
+        out.append(f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen")
+    return out

@@ -1,0 +1,35 @@
+"""brushsvg scan: a photograph of a painted chart to outlines in mm."""
+
+from __future__ import annotations
+
+from ...files import read_bytes
+from ..console import about, say, stage, warn
+from .outputs import check_places, write
+
+
+def scan_file(args) -> None:
+    from ...calibration.chart.photograph import write_marks
+    from ...calibration.photo_report import read_picture
+
+    check_places(args.output, args.picture)
+    read = read_photograph(args, args.input)
+    files = {args.output: write_marks(read)}
+    if args.picture:
+        files[args.picture] = read_picture(read)
+    write(args, files)
+
+
+def read_photograph(args, path: str):
+    """What one photograph told, said in a line; warnings of strokes that are missing."""
+    from ...calibration.chart.file import read_chart
+    from ...calibration.chart.photograph import read_chart_photo, remarks, told
+
+    with about(args.chart):
+        chart = read_chart(read_bytes(args.chart))
+    with about(path):
+        stage("reading the photograph")
+        read = read_chart_photo(chart, read_bytes(path), args.bar)
+    warn(path, [("", remark) for remark in remarks(read)])
+    if not args.quiet:
+        say(path, told(read))
+    return read
