@@ -179,7 +179,7 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
     assert main(["scan", *words, "--picture", str(desk / "read.png")]) == 0
     told = capsys.readouterr().err
     assert "no paint is found of strokes straight-1, arc-2, left out" in told
-    assert "read 22 of 24 strokes; 6 markers within 0.0" in told
+    assert "22 of 24 strokes read, 6 markers within 0.0" in told
     content = json.loads((desk / "marks.json").read_text())
     assert [row["stroke"] for row in content["marks"]] == [one.id for one in a5().strokes if one.id in marks]
     assert cv2.imread(str(desk / "read.png")).shape[0] > 1000

@@ -87,7 +87,7 @@ def told(read: Read) -> str:
     view, count, found = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
     strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
     return (
-        f"read {strokes}; {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
+        f"{strokes} read, {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
         f"{view.px_per_mm:.1f} pixels per mm, edges blurred over {view.blur_mm:.2f} mm"
     )
 

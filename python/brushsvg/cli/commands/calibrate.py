@@ -32,12 +32,16 @@ def calibrate_file(args) -> None:
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, suffix_of(args.plot))
-        if args.picture:
+        more = ""
+        if read:
+            from ...calibration.chart.photograph import told
             from ...calibration.photo_report import read_picture
 
-            files[args.picture] = read_picture(read, made)
+            more = told(read)
+            if args.picture:
+                files[args.picture] = read_picture(read, made)
     warn(args.output, remarks(made.brush))
-    write(args, files)
+    write(args, files, more=more)
     tell(report(made))
 
 

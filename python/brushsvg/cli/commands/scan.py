@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from ...files import read_bytes
-from ..console import about, say, stage, warn
+from ..console import about, stage, warn
 from .outputs import check_places, write
 
 
 def scan_file(args) -> None:
-    from ...calibration.chart.photograph import write_marks
+    from ...calibration.chart.photograph import told, write_marks
     from ...calibration.photo_report import read_picture
 
     check_places(args.output, args.picture)
@@ -16,13 +16,13 @@ def scan_file(args) -> None:
     files = {args.output: write_marks(read)}
     if args.picture:
         files[args.picture] = read_picture(read)
-    write(args, files)
+    write(args, files, more=told(read))
 
 
 def read_photograph(args, path: str):
-    """What one photograph told, said in a line; warnings of strokes that are missing."""
+    """What one photograph told, with warnings of strokes that are missing."""
     from ...calibration.chart.file import read_chart
-    from ...calibration.chart.photograph import read_chart_photo, remarks, told
+    from ...calibration.chart.photograph import read_chart_photo, remarks
 
     with about(args.chart):
         chart = read_chart(read_bytes(args.chart))
@@ -30,6 +30,4 @@ def read_photograph(args, path: str):
         stage("reading the photograph")
         read = read_chart_photo(chart, read_bytes(path), args.bar)
     warn(path, [("", remark) for remark in remarks(read)])
-    if not args.quiet:
-        say(path, told(read))
     return read
