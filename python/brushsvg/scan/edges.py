@@ -56,7 +56,7 @@ def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labe
     for ring in printed_mm:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
     paint = paint_seen(flat, print_, rooms)
-    return _told_apart(paint, flat, rooms, labels_mm)
+    return told_apart(paint, flat, rooms, labels_mm)
 
 
 def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room]) -> np.ndarray:
@@ -150,7 +150,8 @@ def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
     return np.repeat(np.repeat(owner, step, axis=0), step, axis=1)[:rows, :columns]
 
 
-def _told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
+def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
+    """Marks by the box that most of each lies in. paint: as paint_seen gives it, or a mean over several pictures."""
     fine = flat.px_per_mm
     count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
     owner = _nearest_room(flat, rooms)

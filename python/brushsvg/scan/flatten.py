@@ -27,8 +27,11 @@ class Flat:
         return (np.asarray(mm) * [1, -1] + [0, self.sheet_mm[1]]) * self.px_per_mm - 0.5
 
 
-def flatten(pixels: np.ndarray, view: View, sheet_mm: tuple[float, float]) -> Flat:
-    fine = min(view.px_per_mm, MOST_PX_PER_MM)
+def flatten(
+    pixels: np.ndarray, view: View, sheet_mm: tuple[float, float], px_per_mm: float | None = None
+) -> Flat:
+    """As fine as the photograph is unless a resolution is given."""
+    fine = px_per_mm or min(view.px_per_mm, MOST_PX_PER_MM)
     columns, rows = (round(side * fine) for side in sheet_mm)
     across, down = (math.ceil(count / COARSE) + 2 for count in (columns, rows))
     # nodes lie where resizing takes the middles of coarse pixels to

@@ -34,6 +34,15 @@ CODES = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "referenc
 LETTER_MM = 1.4  # of a label, on average
 QUIET = 1 / 6  # of a marker's side, white around it: more than a module
 MARKERS = (8.0, 20.0)  # mm, the least and the greatest side
+BESIDE = (
+    0.5,
+    0.45,
+    0.55,
+    0.4,
+    0.6,
+    0.35,
+    0.65,
+)  # of the sheet's height, where markers at its sides are tried
 BETWEEN = 5.0  # sides that an edge has at least where a marker stands in its middle too
 TICK_MM = 2.2  # height of the bar's ends
 # Eight markers of a thousand: which eight is the chart's, so that another chart is told from it
@@ -140,13 +149,15 @@ def chart(
             f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners",
             "sheet",
         )
-    best, beside = None, _beside(sheet_mm, side)
+    best, beside = None, None
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
         units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
-        placed, used = _packed(units, room[0], side, room[1], beside)
-        if used > room[1] and best is None:
-            beside = None  # strokes matter more than two markers
-            placed, used = _packed(units, room[0], side, room[1])
+        # the first choice settles where markers stand at the sides; strokes matter more than these two
+        for tried in (beside,) if best is not None else (*_besides(sheet_mm, side), None):
+            placed, used = _packed(units, room[0], side, room[1], tried)
+            if used <= room[1]:
+                beside = tried
+                break
         if used > room[1]:
             break
         best = placed
@@ -159,19 +170,20 @@ def chart(
             + ("; --strokes few needs less" if strokes in ("normal", "many") else ""),
             "sheet",
         )
-    return _laid_out(brush, sheet_mm, best, side, beside is not None)
+    return _laid_out(brush, sheet_mm, best, side, beside)
 
 
 def _side(sheet_mm: tuple[float, float]) -> float:
     return min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
 
 
-def _beside(sheet_mm: tuple[float, float], side: float) -> tuple[float, float] | None:
-    """From where to where, down from the sheet's inner edge, markers stand in the middle of its left and right side."""
-    if sheet_mm[1] < BETWEEN * side:
-        return None
-    middle = sheet_mm[1] / 2 - EDGE_MM
-    return middle - (0.5 + QUIET) * side, middle + (0.5 + QUIET) * side
+def _besides(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
+    """From where to where, down from the sheet's inner edge, markers may stand near the middle of its left and right
+    side."""
+    if sheet_mm[1] >= BETWEEN * side:
+        for share in BESIDE:
+            middle = share * sheet_mm[1] - EDGE_MM
+            yield middle - (0.5 + QUIET) * side, middle + (0.5 + QUIET) * side
 
 
 def _choices() -> Iterator[tuple[int, int]]:
@@ -354,7 +366,7 @@ def _turned(unit: _Unit) -> _Unit:
     return _Unit(tuple(strokes), tuple((-y1, x0, -y0, x1) for x0, y0, x1, y1 in unit.boxes_mm))
 
 
-def _laid_out(brush, sheet_mm, placed, side: float, beside: bool) -> Chart:
+def _laid_out(brush, sheet_mm, placed, side: float, beside: tuple[float, float] | None) -> Chart:
     height = sheet_mm[1]
     named, strokes, numbers, labels = [], [], [], []
     counts: dict[str, int] = {}
@@ -383,15 +395,18 @@ def _laid_out(brush, sheet_mm, placed, side: float, beside: bool) -> Chart:
     return Chart(plan, tuple(strokes), markers, tuple(labels), mark, bar)
 
 
-def _marker_places(sheet_mm, side: float, beside: bool) -> list[tuple[int, tuple[float, float]]]:
+def _marker_places(
+    sheet_mm, side: float, beside: tuple[float, float] | None
+) -> list[tuple[int, tuple[float, float]]]:
     """Numbers and upper left corners: those in the corners, clockwise, then those in the middle of the edges."""
     width, height = sheet_mm
     left, right, top, bottom = EDGE_MM, width - EDGE_MM - side, height - EDGE_MM, EDGE_MM + side
-    across, up = (width - side) / 2, (height + side) / 2
+    across = (width - side) / 2
     places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
     if width >= BETWEEN * side:
         places += [(4, (across, top - _top_middle(side))), (6, (across, bottom))]
     if beside:
+        up = height - EDGE_MM - beside[0] - QUIET * side
         places += [(5, (right, up)), (7, (left, up))]
     return sorted(places)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error
-from ...scan.edges import Marks, Room, find_marks
+from ...scan.edges import Marks, Room, find_marks, told_apart
 from ...scan.flatten import Flat, flatten
 from ...scan.markers import Printed, View, find_view
 from ...scan.photo import read_photo
@@ -18,6 +18,7 @@ from .page import bar_rings, label_box
 
 ANOTHER_SIZE = (0.9, 1.1)  # of the page, which --bar corrects; beyond, strokes run into labels and markers
 MARGIN = 1 / 5  # of a marker's side around it: blur
+ALIKE_MM = 0.15  # photographs of one flat sheet; a robot paints a second one less alike
 
 
 @dataclass(frozen=True)
@@ -28,10 +29,13 @@ class Read:
     flat: Flat
     view: View
     marks: Marks
+    photos: int = 1
 
 
-def read_chart_photo(chart: Chart, data: bytes, bar_mm: float | None = None) -> Read:
-    """bar_mm: how long the printed bar is by a ruler, where the page was not printed at 100 %."""
+def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: float | None = None) -> Read:
+    """photos: names and what their files hold, of one painted sheet; bar_mm: how long the printed bar is by a ruler,
+    where the page was not printed at 100 %. Several photographs must agree; their paint is averaged, and the view is
+    that of the one whose markers lie farthest off. Error in one sentence, with the file."""
     size = _size(chart, bar_mm)
     middle = np.array(chart.plan.sheet_mm) / 2
 
@@ -39,14 +43,44 @@ def read_chart_photo(chart: Chart, data: bytes, bar_mm: float | None = None) -> 
         return (np.asarray(points, float) - middle) * size + middle
 
     corners = {marker.id: lies(marker.corners_mm) for marker in chart.markers}
-    pixels = read_photo(data)
-    view = find_view(pixels, Printed(chart.plan.sheet_mm, corners, chart.dictionary, chart.id))
-    flat = flatten(pixels, view, chart.plan.sheet_mm)
+    shown = Printed(chart.plan.sheet_mm, corners, chart.dictionary, chart.id)
     printed = [each.mean(axis=0) + (each - each.mean(axis=0)) * (1 + 2 * MARGIN) for each in corners.values()]
     printed += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
     labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
     rooms = [Room(stroke.id, stroke.box_mm) for stroke in chart.strokes]
-    return Read(chart, flat, view, find_marks(flat, rooms, printed, labels))
+    reads: list[Read] = []
+    for name, data in photos:
+        try:
+            pixels = read_photo(data)
+            view = find_view(pixels, shown)
+            fine = reads[0].flat.px_per_mm if reads else None
+            flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
+            reads.append(Read(chart, flat, view, find_marks(flat, rooms, printed, labels)))
+        except Error as refusal:
+            raise Error(refusal.sentence, refusal.where, refusal.value, refusal.range, name) from None
+    if len(reads) == 1:
+        return reads[0]
+    marks = told_apart(np.mean([each.marks.paint for each in reads], axis=0), reads[0].flat, rooms, labels)
+    for (name, _), each in zip(photos, reads, strict=True):
+        _refuse_another_sheet(each.marks, marks, name)
+    worst = max((each.view for each in reads), key=lambda view: view.residual_mm)
+    return Read(chart, reads[0].flat, worst, marks, len(reads))
+
+
+def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
+    """By how far its marks lie from the mean of all photographs."""
+    both = [stroke for stroke in one.outlines_mm if stroke in all_.outlines_mm]
+    off = [
+        np.vstack(one.outlines_mm[stroke]).mean(axis=0) - np.vstack(all_.outlines_mm[stroke]).mean(axis=0)
+        for stroke in both
+    ]
+    away = float(np.sqrt(np.mean(np.sum(np.square(off), axis=1)))) if off else np.inf
+    if away > ALIKE_MM:
+        raise Error(
+            f"its marks lie {away:.2f} mm (rms) from where all photographs have them on average, more than "
+            f"{ALIKE_MM:g}: are they of one sheet, which lay flat?",
+            file=name,
+        )
 
 
 def _size(chart: Chart, bar_mm: float | None) -> float:
@@ -86,8 +120,9 @@ def told(read: Read) -> str:
     """How well it could be read, in one line."""
     view, count, found = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
     strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
+    strokes += f" read from {read.photos} photographs" if read.photos > 1 else " read"
     return (
-        f"{strokes} read, {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
+        f"{strokes}, {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
         f"{view.px_per_mm:.1f} pixels per mm, edges blurred over {view.blur_mm:.2f} mm"
     )
 
@@ -95,6 +130,12 @@ def told(read: Read) -> str:
 def remarks(read: Read) -> list[str]:
     """What a person should know of before a brush is made of it."""
     out = []
+    view = read.view
+    if view.residual_mm > 0.5 * view.most_residual_mm:
+        out.append(
+            f"the markers lie {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
+            "flat, and marks may lie off by more than that"
+        )
     if missing := read.marks.missing:
         each = "stroke" if len(missing) == 1 else "strokes"
         out.append(f"no paint is found of {each} {', '.join(missing)}, left out")
@@ -102,7 +143,7 @@ def remarks(read: Read) -> list[str]:
         f"the marks of {one} and {other} touch: they are cut apart half way between their places"
         for one, other in read.marks.joined
     ]
-    unseen = [marker.id for marker in read.chart.markers if marker.id not in read.view.seen]
+    unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
     if unseen:
         out.append(f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen")
     return out

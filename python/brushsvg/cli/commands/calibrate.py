@@ -8,7 +8,7 @@ from ..._core import remarks, write_brush
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
 from .outputs import check_places, suffix_of, write
-from .scan import read_photograph
+from .scan import read_photographs
 
 
 def calibrate_file(args) -> None:
@@ -18,7 +18,7 @@ def calibrate_file(args) -> None:
 
     check_places(args.output, args.plot, args.picture)
     name = os.path.splitext(os.path.basename(args.output))[0]
-    read = read_photograph(args, args.input) if args.photos else None
+    read = read_photographs(args, args.photos) if args.photos else None
     with about(args.input):
         if read:
             made, report, report_picture = _from_photo(read, name)

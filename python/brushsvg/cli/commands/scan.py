@@ -12,22 +12,22 @@ def scan_file(args) -> None:
     from ...calibration.photo_report import read_picture
 
     check_places(args.output, args.picture)
-    read = read_photograph(args, args.input)
+    read = read_photographs(args, [args.input])
     files = {args.output: write_marks(read)}
     if args.picture:
         files[args.picture] = read_picture(read)
     write(args, files, more=told(read))
 
 
-def read_photograph(args, path: str):
-    """What one photograph told, with warnings of strokes that are missing."""
+def read_photographs(args, paths: list[str]):
+    """What photographs of one sheet told, with warnings of strokes that are missing."""
     from ...calibration.chart.file import read_chart
-    from ...calibration.chart.photograph import read_chart_photo, remarks
+    from ...calibration.chart.photograph import read_chart_photos, remarks
 
     with about(args.chart):
         chart = read_chart(read_bytes(args.chart))
-    with about(path):
-        stage("reading the photograph")
-        read = read_chart_photo(chart, read_bytes(path), args.bar)
-    warn(path, [("", remark) for remark in remarks(read)])
+    with about(paths[0]):
+        stage("reading the photographs")
+        read = read_chart_photos(chart, [(path, read_bytes(path)) for path in paths], args.bar)
+    warn(paths[0], [("", remark) for remark in remarks(read)])
     return read
