@@ -29,7 +29,7 @@ from scipy.optimize import minimize
 
 from brushsvg import _core
 from brushsvg.calibration.from_marks import brush_of
-from brushsvg.calibration.mask_contours import mask_outlines
+from brushsvg.scan.mask_contours import mask_outlines
 
 LEVEL = 70
 FARTHEST_MM = 3.0

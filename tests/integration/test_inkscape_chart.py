@@ -39,7 +39,7 @@ def test_its_page_lies_beside_the_documents(plugin, tmp_path, view_box):
             np.array([[0, 0, 120, 60], [120 + GAP_MM, 0, 210, 297]]), abs=1e-3
         )
         found = markers_mm(file, "#brushsvg-chart path")
-        assert len(found) == len(expected) == 4
+        assert len(found) == len(expected) == 9  # eight markers and the bar
         for ours, theirs in zip(found, expected, strict=True):
             moved = theirs + np.array(
                 [120 + GAP_MM, 60 - 297]

@@ -11,9 +11,9 @@ import shapely
 
 from brushsvg import _core, find_brush
 from brushsvg.brush.perturbed import with_lag
-from brushsvg.calibration.chart.file import DICTIONARY, read_chart, write_chart
+from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.page import TEXT_MM, chart_page
+from brushsvg.calibration.chart.page import TEXT_MM, chart_page, chart_pdf
 from brushsvg.calibration.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
@@ -140,8 +140,10 @@ def test_the_markers_are_found_on_the_page(sheet, tmp_path):
     out = tmp_path / "plan.json"
     assert main(["chart", str(out), "--sheet", sheet, "--page", str(page), "--chart", str(file)]) == 0
     made = read_chart(file.read_bytes())
-    found = detected(page.read_text(), made.plan.sheet_mm)
-    assert sorted(found) == [marker.id for marker in made.markers] == [0, 1, 2, 3]
+    found = detected(page.read_text(), made.plan.sheet_mm, made.dictionary)
+    base = 8 * (int(made.id, 16) % 125)
+    places = {"a5": [0, 1, 2, 3, 4, 6]}.get(sheet, range(8))  # A5 has no room for the two at the sides
+    assert sorted(found) == [marker.id for marker in made.markers] == [base + k for k in places]
     height = made.plan.sheet_mm[1]
     for marker in made.markers:
         corners = np.array(marker.corners_mm)
@@ -150,11 +152,11 @@ def test_the_markers_are_found_on_the_page(sheet, tmp_path):
     assert _core.write_plan(made.plan) == out.read_text()
 
 
-def detected(svg, sheet_mm):
+def detected(svg, sheet_mm, dictionary):
     """Corners in mm of the page, by id, of what OpenCV sees when the page's shapes are drawn."""
     size = [round(side * PX_PER_MM) for side in sheet_mm]
     image = np.full((size[1], size[0]), 255, np.uint8)
-    for data in re.findall(r'<path data-marker[^>]* d="([^"]*)"', svg):
+    for data in re.findall(r'<path data-[^>]* d="([^"]*)"', svg):
         rings = [
             np.array([point.split(",") for point in re.findall(r"[-\d.]+,[-\d.]+", ring)], float)
             for ring in data.split("Z")[:-1]
@@ -162,16 +164,63 @@ def detected(svg, sheet_mm):
         shift = 4
         fixed = [np.round((ring * PX_PER_MM - 0.5) * 2**shift).astype(np.int32) for ring in rings]
         cv2.fillPoly(image, fixed, 0, cv2.LINE_AA, shift)
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, DICTIONARY))
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
     corners, ids, _ = cv2.aruco.ArucoDetector(dictionary).detectMarkers(image)
     return {int(i): (c[0] + 0.5) / PX_PER_MM for i, c in zip(ids.ravel(), corners, strict=True)}
+
+
+@pytest.mark.parametrize("sheet", [A5, LETTER, (420.0, 594.0)])
+def test_the_bar_keeps_clear_and_is_as_long_as_it_says(sheet):
+    made = chart(find_brush("round-6"), sheet, "few")
+    (x, y), length = made.bar.at_mm, made.bar.length_mm
+    drawn = re.search(r'<path data-bar="([^"]*)"[^>]* d="([^"]*)"', chart_page(made))
+    points = np.array([p.split(",") for p in re.findall(r"[-\d.]+,[-\d.]+", drawn[2])], float)
+    assert float(drawn[1]) == length == np.ptp(points[:, 0]) >= 0.7 * sheet[0]
+    bar = shapely.box(x, y - 1.1, x + length, y + 1.1)
+    for marker in made.markers:
+        polygon = shapely.Polygon(marker.corners_mm)
+        assert bar.distance(polygon) > polygon.length / 4 / 7, marker.id  # a module of white
+    for stroke in made.strokes:
+        assert bar.distance(shapely.box(*stroke.box_mm)) > 1, stroke.id
+
+
+@pytest.mark.parametrize("sheet", [A5, (420.0, 594.0)])
+def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
+    matplotlib = pytest.importorskip("matplotlib")
+    made = chart(find_brush("round-6"), sheet, "few")
+    assert chart_pdf(made) == chart_pdf(made)
+    with matplotlib.rc_context({"pdf.compression": 0}):
+        text = chart_pdf(made).decode("latin-1")
+    box = re.search(r"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", text).groups()
+    np.testing.assert_allclose(np.array(box, float) * 25.4 / 72, sheet, atol=0.01)
+    points = np.array(re.findall(r"(?m)^([-\d.]+) ([-\d.]+) [ml]$", text), float) * 25.4 / 72
+    for marker in made.markers:
+        for corner in marker.corners_mm:
+            assert np.hypot(*(points - corner).T).min() < 0.01, (marker.id, corner)
+    bar = made.bar
+    assert np.hypot(*(points - bar.at_mm - [bar.length_mm, 1.1]).T).min() < 0.01
+
+
+def test_a_file_of_before_is_read():
+    """Four markers of another dictionary, no id, no bar, no labels."""
+    content = json.loads(write_chart(chart(find_brush("round-6"), A5)))
+    content = {key: value for key, value in content.items() if key not in ("id", "bar", "labels")}
+    content["markers"] = [row | {"id": k} for k, row in enumerate(content["markers"][:4])]
+    made = read_chart(json.dumps(content | {"dictionary": "DICT_4X4_50"}).encode())
+    assert (made.id, made.bar, made.labels, made.dictionary) == ("", None, (), "DICT_4X4_50")
+    assert len(detected(chart_page(made), A5, "DICT_4X4_50")) == 4
+
+
+def test_another_chart_has_other_markers():
+    one, other = (chart(find_brush("round-6"), A5, deepest_mm=deepest) for deepest in (9.0, 8.0))
+    assert one.id != other.id and not {m.id for m in one.markers} & {m.id for m in other.markers}
 
 
 def test_the_file_is_read_back():
     made = chart(find_brush("round-6"), LETTER)
     text = write_chart(made)
     again = read_chart(text.encode())
-    assert write_chart(again) == text
+    assert write_chart(again) == text and again.id in again.labels[-1].text
     assert [stroke.id for stroke in again.strokes] == [each.stroke for each in again.plan.passes]
     assert chart_page(made).count("<text") == len(made.labels)
 
@@ -193,7 +242,15 @@ def test_the_file_is_read_back():
             "strokes[0].depth_mm",
             "True is not a finite number",
         ),
-        ({"dictionary": "DICT_6X6"}, "dictionary", "must be of DICT_4X4_50"),
+        ({"dictionary": "DICT_6X6"}, "dictionary", "must be of DICT_4X4_50 or DICT_5X5_1000"),
+        ({"id": "0123abcd"}, "plan", "is not that of chart 0123abcd"),
+        ({"bar": {"at_mm": [5, 5], "length_mm": -3}}, "bar.length_mm", "the bar is -3 mm long"),
+        ({"labels": [{"text": "a", "at_mm": [1, 2]}]}, "labels[0].width_mm", "finite"),
+        (
+            {"markers": [{"id": 0, "corners_mm": [[0, 0], [1, 0], [1, 1], [0, 1]]}] * 2},
+            "markers",
+            "two markers have the same id",
+        ),
         ({"plan": None}, "plan", "has no plan"),
         ({"markers": [{"id": 0}]}, "markers[0]", "four corners_mm"),
         (
@@ -239,7 +296,7 @@ def test_wrong_usage(tmp_path, capsys):
     out = str(tmp_path / "plan.json")
     for flags, said in (
         (["--sheet", "a9"], "a9"),
-        (["--page", str(tmp_path / "p.png")], "does not end in .svg"),
+        (["--page", str(tmp_path / "p.png")], "does not end in .pdf or .svg"),
         (["--chart", out], "cannot be two files at once"),
         (["--strokes", "lots"], "invalid choice"),
     ):

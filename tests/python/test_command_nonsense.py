@@ -15,6 +15,8 @@ SOUND = {  # the word that stands for a file, and what lies there when it is sou
     "TABLE": "table.csv",
     "WIDTHS": "widths.csv",
     "MEASURED": "marks.json",
+    "CHART": "page.json",
+    "PHOTO": "photo.jpg",
     "FONT": "font.svg",
     "ZIP": "extension.zip",
 }
@@ -39,6 +41,8 @@ COMMANDS = [
     "chart OUT.ngc --drawing IN",
     "calibrate TABLE -o OUT.json",
     "calibrate MEASURED -o OUT.json",
+    "scan PHOTO --chart CHART -o OUT.json",
+    "calibrate PHOTO --chart CHART -o OUT.json",
     "brush new OUT.json --lag 5 --widths WIDTHS",
     "brush show BRUSH",
     "brush check BRUSH",
@@ -78,6 +82,7 @@ def desk(tmp_path, monkeypatch, capsys):
     for words in ("convert a.svg own.ngc", "convert a.svg plan.json", "cell new mine.toml"):
         assert main(words.split()) == 0
     assert main("brush new mine --lag 5 --width-at 3=2 --width-at 8=7".split()) == 0
+    assert main("chart strokes.json --sheet a5 --strokes few --chart page.json".split()) == 0
     rows = [f"{kind},{depth},{k * depth}" for depth in range(1, 7) for kind, k in (("lag", 2), ("width", 1))]
     (tmp_path / "table.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
     (tmp_path / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")
@@ -122,7 +127,9 @@ def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("command", [each for each in COMMANDS if "OUT" in each and "MEASURED" not in each])
+@pytest.mark.parametrize(
+    "command", [each for each in COMMANDS if "OUT" in each and not {"MEASURED", "PHOTO"} & {*each.split()}]
+)
 @pytest.mark.slow
 def test_whatever_is_written_may_have_no_place(desk, capsys, command):
     for kind, place in PLACES.items():

@@ -183,7 +183,7 @@ def overlaps(made) -> tuple[float, float]:
     """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
     the brush says where paint will be, which is more than the confidence of its laws."""
     marks, lying, moved = made.painted.marks, [], []
-    predicted = _predicted(made, list(range(len(marks))))
+    predicted = predicted_marks(made, list(range(len(marks))))
     for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
         lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
         moved.append(_core.overlap(_home(made, mark.outline_mm, miss.displacement_mm), rings))
@@ -197,7 +197,7 @@ def report_picture(made, suffix: str) -> bytes:
     brush_picture_on(laws, made.brush)
     order = np.argsort([miss.rms_mm for miss in made.fit.marks])
     chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
-    predicted = _predicted(made, [int(k) for _, k in chosen])
+    predicted = predicted_marks(made, [int(k) for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
         mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
         fill_rings(axes, _home(made, mark.outline_mm, miss.displacement_mm), PAINT)
@@ -221,7 +221,16 @@ def _home(made, rings, displacement) -> list[np.ndarray]:
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
 
 
-def _predicted(made, chosen: list[int]) -> list:
+def on_sheet(made, rings) -> list[np.ndarray]:
+    """Rings in the frame of the plan where they lie on the sheet that was painted."""
+    fit = made.fit
+    c, s = math.cos(fit.turn_rad), math.sin(fit.turn_rad)
+    centre = np.array(fit.centre_mm)
+    return [(ring - centre) @ np.array([[c, s], [-s, c]]) + centre + fit.shift_mm for ring in rings]
+
+
+def predicted_marks(made, chosen: list[int]) -> list:
+    """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
     brush = made.brush
     reach = max(brush.depth_range_mm[1], made.painted.deepest_mm + made.fit.height_mm)
     brush = _core.read_brush(_core.write_brush(brush))

@@ -74,7 +74,8 @@ def refuse_scale(scale: SheetScale | None) -> None:
     if scale.is_off(scale.both):
         raise Error(
             f"the sheet is {scale.told(scale.both)} than the plan: was the page printed, or the paint scanned, at "
-            "another scale? Outlines count in mm of the tool's way",
+            "another scale? Outlines count in mm of the tool's way; for photographs, --bar says how long its bar "
+            "is",
             "marks",
             code="marks-scaled",
         )

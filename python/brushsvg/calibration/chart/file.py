@@ -6,10 +6,10 @@ import json
 
 from ... import _core, json_fields
 from ...errors import Error
-from .layout import Chart, Marker, Stroke
+from .layout import DICTIONARY, Bar, Chart, Label, Marker, Stroke, chart_id
 
 FORMAT, VERSION = "brushsvg/chart", 1
-DICTIONARY = "DICT_4X4_50"  # of ArUco, as OpenCV names it
+DICTIONARIES = ("DICT_4X4_50", DICTIONARY)  # the first: of charts without an id
 
 
 def write_chart(chart: Chart) -> str:
@@ -21,25 +21,31 @@ def write_chart(chart: Chart) -> str:
     content = {
         "format": FORMAT,
         "version": VERSION,
+        "id": chart.id,
         "brush": chart.plan.brush,
         "sheet_mm": mm(chart.plan.sheet_mm),
-        "dictionary": DICTIONARY,
+        "bar": chart.bar and {"at_mm": mm(chart.bar.at_mm), "length_mm": chart.bar.length_mm},
+        "dictionary": chart.dictionary,
         "markers": [{"id": each.id, "corners_mm": list(map(mm, each.corners_mm))} for each in chart.markers],
         "strokes": [
             {"id": each.id, "kind": each.kind, "depth_mm": round(each.depth_mm, 4), "box_mm": mm(each.box_mm)}
             for each in chart.strokes
         ],
+        "labels": [
+            {"text": each.text, "at_mm": mm(each.at_mm), "width_mm": round(each.width_mm, 4)}
+            for each in chart.labels
+        ],
     }
-    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items()]
+    lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items() if value]
     lines.append(f' "plan": {_core.write_plan(chart.plan).strip()}')
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def read_chart(data: bytes) -> Chart:
-    """A chart without its labels. Error names the key."""
+    """Error names the key. Charts of before have no id, no bar and no labels."""
     content = json_fields.document(data, FORMAT, VERSION)
-    if content.get("dictionary") != DICTIONARY:
-        raise Error(f"the markers must be of {DICTIONARY}", "dictionary", code="chart-markers")
+    if content.get("dictionary") not in DICTIONARIES:
+        raise Error(f"the markers must be of {' or '.join(DICTIONARIES)}", "dictionary", code="chart-markers")
     if not isinstance(content.get("plan"), dict):
         raise Error("the chart has no plan", "plan", code="key-missing")
     plan = _core.read_plan(json.dumps(content["plan"]))
@@ -48,7 +54,15 @@ def read_chart(data: bytes) -> Chart:
     strokes = [_stroke(row, f"strokes[{i}]") for i, row in enumerate(rows(content.get("strokes"), "strokes"))]
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
         raise Error("the strokes are not those of the plan, in its order", "strokes", code="chart-strokes")
-    return Chart(plan, tuple(strokes), tuple(markers), ())
+    if len({each.id for each in markers}) < len(markers):
+        raise Error("two markers have the same id", "markers", code="chart-markers")
+    labels = [_label(row, f"labels[{i}]") for i, row in enumerate(rows(content.get("labels", []), "labels"))]
+    mark = content.get("id", "")
+    if mark and mark != chart_id(plan):
+        sentence = f"the plan is not that of chart {str(mark)[:20]}: it was changed since"
+        raise Error(sentence, "plan", code="chart-strokes")
+    bar = _bar(content["bar"]) if content.get("bar") else None
+    return Chart(plan, tuple(strokes), tuple(markers), tuple(labels), mark, bar, content["dictionary"])
 
 
 def _marker(row: dict, where: str) -> Marker:
@@ -58,6 +72,23 @@ def _marker(row: dict, where: str) -> Marker:
         raise Error("a marker needs an id and four corners_mm", where, code="wrong-type")
     at = f"{where}.corners_mm"
     return Marker(number, tuple(json_fields.numbers(each, f"{at}[{i}]", 2) for i, each in enumerate(corners)))
+
+
+def _bar(row) -> Bar:
+    if not isinstance(row, dict):
+        raise Error("this must be an object", "bar", code="wrong-type")
+    length_mm = json_fields.number(row.get("length_mm"), "bar.length_mm")
+    if not length_mm > 0:
+        sentence = f"the bar is {length_mm:g} mm long, it must be longer than 0"
+        raise Error(sentence, "bar.length_mm", length_mm, code="out-of-range")
+    return Bar(json_fields.numbers(row.get("at_mm"), "bar.at_mm", 2), length_mm)
+
+
+def _label(row: dict, where: str) -> Label:
+    if not isinstance(row.get("text"), str):
+        raise Error("a label needs a text", where, code="wrong-type")
+    at_mm = json_fields.numbers(row.get("at_mm"), f"{where}.at_mm", 2)
+    return Label(row["text"], at_mm, json_fields.number(row.get("width_mm"), f"{where}.width_mm"))
 
 
 def _stroke(row: dict, where: str) -> Stroke:

@@ -8,6 +8,7 @@ the same way, the other apart. The TCP's path is known and not compensated.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from collections.abc import Iterator
@@ -27,12 +28,25 @@ RAMP = 0.25  # of straight strokes: (17) holds for landings that are not steeper
 LIFT_STEP = 1.0  # mm down, or up, per mm along at the other landings and at all ends
 # What is painted is not known yet: room is left for a brush that trails and spreads by so much more or less.
 LAG_SHARES, WIDER = (0.7, 1.0, 1.3), 1.2
-EDGE_MM, GAP_MM, LABEL_MM, TITLE_MM = 5.0, 2.0, 3.5, 6.0
+EDGE_MM, GAP_MM, LABEL_MM, BAR_MM = 5.0, 2.0, 3.5, 6.0
 ATTEMPTS = 80  # of packing: fewer, and sheets are refused that have room; more, and little is won
 CODES = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "reference": "R"}
 LETTER_MM = 1.4  # of a label, on average
-QUIET = 1 / 6  # of a marker's side, white around it: a module
+QUIET = 1 / 6  # of a marker's side, white around it: more than a module
 MARKERS = (8.0, 20.0)  # mm, the least and the greatest side
+BESIDE = (
+    0.5,
+    0.45,
+    0.55,
+    0.4,
+    0.6,
+    0.35,
+    0.65,
+)  # of the sheet's height, where markers at its sides are tried
+BETWEEN = 5.0  # sides that an edge has at least where a marker stands in its middle too
+TICK_MM = 2.2  # height of the bar's ends
+# Eight markers of a thousand: which eight is the chart's, so that another chart is told from it
+DICTIONARY, GROUP, GROUPS = "DICT_5X5_1000", 8, 125
 PAINT_MM_S = 20.0
 
 
@@ -64,11 +78,29 @@ class Label:
 
 
 @dataclass(frozen=True)
+class Bar:
+    """A line to be measured with a ruler: where it begins, and how long it is where the page has its true size."""
+
+    at_mm: tuple[float, float]
+    length_mm: float
+
+
+@dataclass(frozen=True)
 class Chart:
+    """id, bar: none of charts as they were before there were any. dictionary: of the markers, as OpenCV names it."""
+
     plan: object
     strokes: tuple[Stroke, ...]
     markers: tuple[Marker, ...]
     labels: tuple[Label, ...]
+    id: str = ""
+    bar: Bar | None = None
+    dictionary: str = DICTIONARY
+
+
+def chart_id(plan) -> str:
+    """Short, of all that is painted."""
+    return hashlib.sha256(_core.write_plan(plan).encode()).hexdigest()[:8]
 
 
 @dataclass(frozen=True)
@@ -113,7 +145,7 @@ def chart(
             "brush",
             code="lag-not-calibrated",
         )
-    side = min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
+    side = _side(sheet_mm)
     below = side + QUIET * side + 2 * EDGE_MM  # edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - below
     if min(room) <= 2 * (side + QUIET * side):
@@ -122,10 +154,15 @@ def chart(
             "sheet",
             code="sheet-too-small",
         )
-    best = None
+    best, beside = None, None
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
         units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
-        placed, used = _packed(units, room[0], side, room[1])
+        # the first choice settles where markers stand at the sides; strokes matter more than these two
+        for tried in (beside,) if best is not None else (*_besides(sheet_mm, side), None):
+            placed, used = _packed(units, room[0], side, room[1], tried)
+            if used <= room[1]:
+                beside = tried
+                break
         if used > room[1]:
             break
         best = placed
@@ -139,7 +176,20 @@ def chart(
             code="sheet-too-small",
             advice="--strokes few needs less" if strokes in ("normal", "many") else "",
         )
-    return _laid_out(brush, sheet_mm, best, side)
+    return _laid_out(brush, sheet_mm, best, side, beside)
+
+
+def _side(sheet_mm: tuple[float, float]) -> float:
+    return min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
+
+
+def _besides(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
+    """From where to where, down from the sheet's inner edge, markers may stand near the middle of its left and right
+    side."""
+    if sheet_mm[1] >= BETWEEN * side:
+        for share in BESIDE:
+            middle = share * sheet_mm[1] - EDGE_MM
+            yield middle - (0.5 + QUIET) * side, middle + (0.5 + QUIET) * side
 
 
 def _choices() -> Iterator[tuple[int, int]]:
@@ -252,11 +302,16 @@ def _boxes(brush, strokes: list[_Drawn]) -> Iterator[tuple[float, float, float, 
 
 
 def _packed(
-    units: list[_Unit], width: float, side: float, enough: float = 0.0
+    units: list[_Unit],
+    width: float,
+    side: float,
+    enough: float = 0.0,
+    beside: tuple[float, float] | None = None,
 ) -> tuple[list[tuple[_Unit, float, float]], float]:
     """Units one after the other, each as near to the top as it finds room: (unit, left, down from the sheet's inner
     edge), and how tall all are; infinite where one unit is wider. The best of some orders, the large ones early, and
-    of upright and turned units, or the first that is no taller than enough; in steps of 1 mm."""
+    of upright and turned units, or the first that is no taller than enough; in steps of 1 mm. beside: between which
+    heights the markers on the left and right stand."""
     random = np.random.default_rng(0)  # the same chart each time
     size = np.array([max(unit.size_mm) for unit in units])
     turned = [_turned(unit) for unit in units]
@@ -265,26 +320,41 @@ def _packed(
         order = np.argsort(-size * random.uniform(1.0, 1.0 + attempt / ATTEMPTS, len(units)))
         turn = random.random(len(units)) < (attempt % 4) / 4
         now = [turned[k] if turn[k] else units[k] for k in order]
-        best = min(best, _packed_so(now, width, side), key=lambda each: each[1])
+        best = min(best, _packed_so(now, width, side, beside), key=lambda each: each[1])
         if best[1] <= enough:
             break
     return best
 
 
-def _packed_so(units: list[_Unit], width: float, side: float):
-    taken = np.full(int(width), TITLE_MM)
+def _packed_so(units: list[_Unit], width: float, side: float, beside: tuple[float, float] | None):
+    taken = np.full(int(width), BAR_MM)
     corner = side + QUIET * side
-    taken[: math.ceil(corner)] = taken[-math.ceil(corner) :] = corner  # the upper markers
+    columns = math.ceil(corner)
+    taken[:columns] = taken[-columns:] = corner  # the upper markers
+    if width + 2 * EDGE_MM >= BETWEEN * side:
+        middle = len(taken) / 2
+        taken[math.floor(middle - side / 2 - QUIET * side) : math.ceil(middle + side / 2 + QUIET * side)] = (
+            _top_middle(side) + corner
+        )
     placed = []
     for unit in units:
         wide, tall = math.ceil(unit.size_mm[0]), unit.size_mm[1]
         if wide > len(taken):
             return [], math.inf
         tops = np.lib.stride_tricks.sliding_window_view(taken, wide).max(axis=1)
+        if beside:
+            lefts = np.arange(len(tops))
+            at_edge = (lefts < columns) | (lefts + wide > len(taken) - columns)
+            tops = np.where(at_edge & (tops < beside[1]) & (tops + tall > beside[0]), beside[1], tops)
         left = int(tops.argmin())
         placed.append((unit, float(left), float(tops[left])))
         taken[left : left + wide] = tops[left] + tall
     return placed, float(taken.max())
+
+
+def _top_middle(side: float) -> float:
+    """Of the marker below the bar, down from the sheet's inner edge."""
+    return TICK_MM + QUIET * side
 
 
 def _turned(unit: _Unit) -> _Unit:
@@ -302,8 +372,8 @@ def _turned(unit: _Unit) -> _Unit:
     return _Unit(tuple(strokes), tuple((-y1, x0, -y0, x1) for x0, y0, x1, y1 in unit.boxes_mm))
 
 
-def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
-    width, height = sheet_mm
+def _laid_out(brush, sheet_mm, placed, side: float, beside: tuple[float, float] | None) -> Chart:
+    height = sheet_mm[1]
     named, strokes, numbers, labels = [], [], [], []
     counts: dict[str, int] = {}
     for unit, left, down in sorted(placed, key=lambda each: _order(each[0])):
@@ -319,21 +389,52 @@ def _laid_out(brush, sheet_mm, placed, side: float) -> Chart:
         x, bottom = unit.box_mm[0] + shift[0], unit.box_mm[1] + shift[1]
         first, at_mm = -len(unit.strokes), (x, bottom - 0.8 * LABEL_MM)
         labels.append(_label(strokes[first], numbers[first], at_mm, unit.size_mm[0] - GAP_MM))
-    title = f"brushsvg chart, brush {brush.name}, {width:g} x {height:g} mm: print at 100 %"
-    labels.append(
-        Label(title, (EDGE_MM + side + 3, height - EDGE_MM - LABEL_MM), width - 2 * (EDGE_MM + side + 3))
-    )
-    corners = (
-        (EDGE_MM, height - EDGE_MM),
-        (width - EDGE_MM - side, height - EDGE_MM),
-        (width - EDGE_MM - side, EDGE_MM + side),
-        (EDGE_MM, EDGE_MM + side),
-    )
+    plan = _plan(brush, sheet_mm, named)
+    mark = chart_id(plan)
+    bar = _bar(sheet_mm, side)
+    labels += _titles(brush, sheet_mm, side, mark, bar)
+    base = GROUP * (int(mark, 16) % GROUPS)
     markers = tuple(
-        Marker(k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
-        for k, (x, y) in enumerate(corners)
+        Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
+        for k, (x, y) in _marker_places(sheet_mm, side, beside)
     )
-    return Chart(_plan(brush, sheet_mm, named), tuple(strokes), markers, tuple(labels))
+    return Chart(plan, tuple(strokes), markers, tuple(labels), mark, bar)
+
+
+def _marker_places(
+    sheet_mm, side: float, beside: tuple[float, float] | None
+) -> list[tuple[int, tuple[float, float]]]:
+    """Numbers and upper left corners: those in the corners, clockwise, then those in the middle of the edges."""
+    width, height = sheet_mm
+    left, right, top, bottom = EDGE_MM, width - EDGE_MM - side, height - EDGE_MM, EDGE_MM + side
+    across = (width - side) / 2
+    places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
+    if width >= BETWEEN * side:
+        places += [(4, (across, top - _top_middle(side))), (6, (across, bottom))]
+    if beside:
+        up = height - EDGE_MM - beside[0] - QUIET * side
+        places += [(5, (right, up)), (7, (left, up))]
+    return sorted(places)
+
+
+def _bar(sheet_mm, side: float) -> Bar:
+    """As long as there is room between the upper markers, in whole centimetres where it is longer than one."""
+    room = sheet_mm[0] - 2 * (EDGE_MM + side + QUIET * side)
+    length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
+    return Bar(((sheet_mm[0] - length) / 2, sheet_mm[1] - EDGE_MM - TICK_MM / 2), length)
+
+
+def _titles(brush, sheet_mm, side: float, mark: str, bar: Bar) -> list[Label]:
+    """What it is, beside the lower markers, and what to measure, below the bar."""
+    width, height = sheet_mm
+    left = EDGE_MM + side + 3
+    parts = 2 if width >= BETWEEN * side else 1  # a marker stands in between
+    room = width / 2 - side / 2 - left - 3 if parts == 2 else width - 2 * left
+    below = width / 2 - (0.5 + QUIET) * side - bar.at_mm[0] if parts == 2 else bar.length_mm
+    what = Label(f"brushsvg chart {mark}, brush {brush.name}", (left, EDGE_MM + LABEL_MM), room)
+    size = Label(f"{width:g} x {height:g} mm: print at 100 %", (left, EDGE_MM), room)
+    measure = f"bar: {bar.length_mm:g} mm"
+    return [Label(measure, (bar.at_mm[0], height - EDGE_MM - BAR_MM + 0.8), below), size, what]
 
 
 def _label(stroke: Stroke, number: int, at_mm: tuple[float, float], width_mm: float) -> Label:

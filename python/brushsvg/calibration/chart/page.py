@@ -1,20 +1,23 @@
-"""The page that a chart is painted on: ArUco markers and labels as vectors in mm, white where strokes will be."""
+"""The page that a chart is painted on, as vectors in mm: ArUco markers, a bar to measure, labels; white where strokes
+will be."""
 
 from __future__ import annotations
 
+import io
 from html import escape
 
 import cv2
 import numpy as np
 
 from ... import _core
-from . import file
-from .layout import Chart, Label, Marker
+from ...brush.plot import new_figure
+from .layout import TICK_MM, Bar, Chart, Label, Marker
 
-MODULES = 6  # of a marker of 4 x 4 bits and its border
 TEXT_MM = 2.3
 WIDE = 0.6  # of a letter against its size, on average: sans serif
-INK, QUIET = "#000000", "#8a8a8a"
+INK, QUIET = "#000000", "#b4b4b4"  # letters are too light to be taken for paint
+LINE_MM = 0.3  # of the bar
+INCH_MM = 25.4
 
 
 def chart_page(chart: Chart) -> str:
@@ -26,35 +29,89 @@ def chart_page(chart: Chart) -> str:
         f"<title>{escape(chart.labels[-1].text if chart.labels else '')}</title>",
         f'<rect width="{width:g}" height="{height:g}" fill="#ffffff"/>',
     ]
-    lines += [_marker(marker, height) for marker in chart.markers]
+    for marker in chart.markers:
+        rings = marker_rings(marker, chart.dictionary)
+        lines.append(f'<path data-marker="{marker.id}" fill="{INK}" d="{_path(rings, height)}"/>')
+    if chart.bar:
+        rings = bar_rings(chart.bar)
+        lines.append(f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK}" d="{_path(rings, height)}"/>')
     lines += [_label(label, height) for label in chart.labels]
     return "\n".join([*lines, "</svg>", ""])
 
 
-def modules(marker_id: int) -> np.ndarray:
+def chart_pdf(chart: Chart) -> bytes:
+    """The same page as a PDF of its size. Error where matplotlib is missing."""
+    width, height = chart.plan.sheet_mm
+    figure = new_figure((width / INCH_MM, height / INCH_MM))
+    figure.set_layout_engine("none")
+    import matplotlib
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
+    axes.set_axis_off()
+    shapes = [marker_rings(marker, chart.dictionary) for marker in chart.markers]
+    shapes += [bar_rings(chart.bar)] if chart.bar else []
+    for rings in shapes:
+        closed = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
+        axes.add_patch(PathPatch(Path.make_compound_path(*closed), facecolor=INK, linewidth=0))
+    for label in chart.labels:
+        points = _size(label) * 72 / INCH_MM
+        axes.text(*label.at_mm, label.text, fontsize=points, color=QUIET, parse_math=False)
+    out = io.BytesIO()
+    title = chart.labels[-1].text if chart.labels else ""
+    with matplotlib.rc_context({"pdf.fonttype": 42}):
+        figure.savefig(out, format="pdf", metadata={"CreationDate": None, "Title": title})
+    return out.getvalue()
+
+
+def modules(marker_id: int, dictionary: str) -> np.ndarray:
     """True where a marker is black, row 0 on top."""
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, file.DICTIONARY))
-    return cv2.aruco.generateImageMarker(dictionary, marker_id, MODULES) == 0
+    known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
+    return cv2.aruco.generateImageMarker(known, marker_id, known.markerSize + 2) == 0
 
 
-def _marker(marker: Marker, height: float) -> str:
-    """Black modules as one shape: single ones show seams."""
+def marker_rings(marker: Marker, dictionary: str) -> list[np.ndarray]:
+    """Black modules as one shape, in mm on the sheet: single ones show seams."""
+    black = modules(marker.id, dictionary)
     (left, top), (right, _), *_ = marker.corners_mm
-    step = (right - left) / MODULES
-    corner = np.array([left, height - top])
-    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    step = (right - left) / len(black)
+    corners = np.array([(0, 0), (0, -1), (1, -1), (1, 0)])
     squares = [
-        corner + step * (corners + np.array([column, row]))
-        for row, column in np.argwhere(modules(marker.id)).tolist()
+        np.array([left, top]) + step * (corners + np.array([column, -row]))
+        for row, column in np.argwhere(black).tolist()
     ]
-    data = " ".join(
-        "M" + " L".join(f"{x:.4f},{y:.4f}" for x, y in ring) + " Z" for ring in _core.unite(squares)
-    )
-    return f'<path data-marker="{marker.id}" fill="{INK}" d="{data}"/>'
+    return [np.array(ring) for ring in _core.unite(squares)]
+
+
+def bar_rings(bar: Bar, beyond_mm: float = 0.0) -> list[np.ndarray]:
+    """A line between two ticks, whose outer edges are as far apart as the bar is long; and so much around all of it."""
+    (x, y), end = bar.at_mm, bar.at_mm[0] + bar.length_mm
+    boxes = [
+        (x, y - LINE_MM / 2, end, y + LINE_MM / 2),
+        (x, y - TICK_MM / 2, x + LINE_MM, y + TICK_MM / 2),
+        (end - LINE_MM, y - TICK_MM / 2, end, y + TICK_MM / 2),
+    ]
+    grown = [(a - beyond_mm, b - beyond_mm, c + beyond_mm, d + beyond_mm) for a, b, c, d in boxes]
+    rings = [np.array([(a, b), (c, b), (c, d), (a, d)]) for a, b, c, d in grown]
+    return [np.array(ring) for ring in _core.unite(rings)]
+
+
+def label_box(label: Label) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of its letters, on average."""
+    (x, y), size = label.at_mm, _size(label)
+    return x, y - 0.25 * size, x + WIDE * size * len(label.text), y + size
+
+
+def _path(rings: list[np.ndarray], height: float) -> str:
+    return " ".join("M" + " L".join(f"{x:.4f},{height - y:.4f}" for x, y in ring) + " Z" for ring in rings)
+
+
+def _size(label: Label) -> float:
+    return min(TEXT_MM, label.width_mm / (WIDE * len(label.text)))
 
 
 def _label(label: Label, height: float) -> str:
-    size = min(TEXT_MM, label.width_mm / (WIDE * len(label.text)))
     x, y = label.at_mm
-    at = f'x="{x:.3f}" y="{height - y:.3f}" font-family="sans-serif" font-size="{size:.3f}"'
+    at = f'x="{x:.3f}" y="{height - y:.3f}" font-family="sans-serif" font-size="{_size(label):.3f}"'
     return f'<text {at} fill="{QUIET}">{escape(label.text)}</text>'

@@ -58,6 +58,7 @@ def _parser() -> argparse.ArgumentParser:
     machines.add_check(commands)
     machines.add_cell(commands)
     brushes.add_chart(commands)
+    brushes.add_scan(commands)
     brushes.add_calibrate(commands)
     brushes.add_brush(commands)
     machines.add_install_plugin(commands)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...drawing import READERS
 from . import values
 from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
-from .operands import PICTURES, PROGRAMS, check_files
+from .operands import PHOTOS, PICTURES, PROGRAMS, check_files, suffix_of
 
 
 def add_chart(commands) -> None:
@@ -29,7 +29,7 @@ def add_chart(commands) -> None:
         "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
     )
     chart.add_argument(
-        "--page", metavar="FILE", help="also write the page to print, markers and labels (.svg)"
+        "--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)"
     )
     chart.add_argument(
         "--chart",
@@ -49,14 +49,20 @@ def add_chart(commands) -> None:
 
 
 def _check_chart(args) -> None:
-    written = [(args.output, (".json", *PROGRAMS)), (args.page, (".svg",)), (args.chart, (".json",))]
+    written = [(args.output, (".json", *PROGRAMS)), (args.page, (".pdf", ".svg")), (args.chart, (".json",))]
     check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 
 
 def add_calibrate(commands) -> None:
-    fit = commands.add_parser("calibrate", help="make a brush of what was measured")
-    fit.add_argument("input", metavar="MEASUREMENTS", help="what was measured (.json .csv)")
+    fit = commands.add_parser("calibrate", help="make a brush of what was measured, or of a painted chart")
+    fit.add_argument(
+        "inputs",
+        metavar="IN",
+        nargs="+",
+        help=f"what was measured (.json .csv), or photographs of one painted chart ({' '.join(PHOTOS)})",
+    )
     fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
+    _add_photo(fit, False)
     fit.add_argument(
         "--norm",
         choices=("squares", "absolute"),
@@ -71,8 +77,61 @@ def add_calibrate(commands) -> None:
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
 
 
+def _add_photo(command, needed: bool) -> None:
+    command.add_argument(
+        "--chart", metavar="FILE", required=needed, help="the chart.json of the page in the photograph"
+    )
+    command.add_argument(
+        "--bar",
+        metavar="MM",
+        type=values.width,
+        help="how long the printed bar is by a ruler, where the page was not printed at 100 %%",
+    )
+    command.add_argument(
+        "--picture", metavar="FILE", help="also draw what was read over the flattened photograph (.png)"
+    )
+
+
 def _check_calibrate(args) -> None:
+    args.input = args.inputs[0]
+    args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
+    if args.photos:
+        _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
+        return
+    for flag, value in (("--chart", args.chart), ("--bar", args.bar), ("--picture", args.picture)):
+        if value is not None:
+            args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")
+    if len(args.inputs) > 1:
+        args.parser.error("only photographs can be several")
     check_files(args, [(args.input, (".json", ".csv"))], [(args.output, (".json",)), (args.plot, PICTURES)])
+
+
+def add_scan(commands) -> None:
+    scan = commands.add_parser("scan", help="read the strokes from a photograph of a painted chart")
+    scan.add_argument("input", metavar="IN", help=f"a photograph of a painted chart ({' '.join(PHOTOS)})")
+    scan.add_argument(
+        "-o",
+        metavar="FILE",
+        dest="output",
+        required=True,
+        help="outlines in mm, as calibrate takes them (.json)",
+    )
+    _add_photo(scan, True)
+    add_quiet(scan)
+    scan.set_defaults(run="scan_file", parser=scan, check=_check_scan)
+
+
+def _check_scan(args) -> None:
+    _check_photos(args, [args.input], [(args.output, (".json",))])
+
+
+def _check_photos(args, photos: list[str], written) -> None:
+    if any(suffix_of(path) in (".heic", ".heif") for path in photos):
+        args.parser.error("HEIC pictures are not read: export them as JPEG")
+    if args.chart is None:
+        args.parser.error("photographs need --chart, the chart.json that was written with the page")
+    read = [*((path, PHOTOS) for path in photos), (args.chart, (".json",))]
+    check_files(args, read, [*written, (args.picture, (".png",))])
 
 
 def add_brush(commands) -> None:

@@ -10,6 +10,7 @@ from ...machine.posts import POSTS
 DRAWINGS = (*READERS, ".json")
 PROGRAMS = tuple(dict.fromkeys(extension for post in POSTS.values() for extension in post.extensions))
 PICTURES = (".png", ".svg")
+PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 
 
 def suffix_of(path: str) -> str:

@@ -6,7 +6,13 @@ import argparse
 
 from ...errors import Error
 
-SHEETS_MM = {"a3": (297.0, 420.0), "a4": (210.0, 297.0), "a5": (148.0, 210.0), "letter": (215.9, 279.4)}
+SHEETS_MM = {
+    "a2": (420.0, 594.0),
+    "a3": (297.0, 420.0),
+    "a4": (210.0, 297.0),
+    "a5": (148.0, 210.0),
+    "letter": (215.9, 279.4),
+}
 
 
 def size(text: str) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from .check import check_file
 from .convert import convert_file
 from .plugin import install_plugin
 from .report import report_file
+from .scan import scan_file
 from .setup import border_file, height_file
 from .show import animate_file, import_file, predict_file
 from .text import text_file
@@ -36,5 +37,6 @@ __all__ = [
     "install_plugin",
     "predict_file",
     "report_file",
+    "scan_file",
     "text_file",
 ]

@@ -1,4 +1,4 @@
-"""brushsvg calibrate: a brush of what was measured."""
+"""brushsvg calibrate: a brush of what was measured, or of photographs of a painted chart."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import os
 from ..._core import remarks, write_brush
 from ...errors import Notice
 from ...files import read_bytes
-from ..console import about, tell, warn
+from ..console import about, stage, tell, warn
 from .outputs import check_places, suffix_of, write
+from .scan import read_photographs
 
 
 def calibrate_file(args) -> None:
@@ -16,19 +17,32 @@ def calibrate_file(args) -> None:
     from ...calibration.law_report import report, report_picture
     from ...calibration.measurements import read_measurements
 
-    check_places(args.output, args.plot)
+    check_places(args.output, args.plot, args.picture)
+    name = os.path.splitext(os.path.basename(args.output))[0]
+    read = read_photographs(args, args.photos) if args.photos else None
     with about(args.input):
-        measured = read_measurements(read_bytes(args.input), suffix_of(args.input))
-        name = measured.name or os.path.splitext(os.path.basename(args.output))[0]
-        if measured.marks is not None:
-            made, report, report_picture = _from_marks(args, measured, name)
+        if read:
+            made, report, report_picture = _from_photo(read, name)
         else:
-            made = calibrate(measured, name, args.norm == "absolute", args.total)
+            measured = read_measurements(read_bytes(args.input), suffix_of(args.input))
+            name = measured.name or name
+            if measured.marks is not None:
+                made, report, report_picture = _from_marks(args, measured, name)
+            else:
+                made = calibrate(measured, name, args.norm == "absolute", args.total)
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, suffix_of(args.plot))
+        more = ""
+        if read:
+            from ...calibration.chart.photograph import told
+            from ...calibration.photo_report import read_picture
+
+            more = told(read)
+            if args.picture:
+                files[args.picture] = read_picture(read, made)
     warn(args.output, [Notice(*each) for each in remarks(made.brush)])
-    write(args, files)
+    write(args, files, more=more)
     tell(report(made))
 
 
@@ -43,3 +57,18 @@ def _from_marks(args, measured, name: str):
     options = options_for(measured.expected)
     made = calibrate_marks(painted, name, measured.depth_range_mm, measured.max_speed_mm_s, options)
     return made, report, report_picture
+
+
+def _from_photo(read, name: str):
+    """The same from a photograph of a chart."""
+    import json
+
+    from ..._core import write_plan
+    from ...calibration.chart.photograph import marks_of
+    from ...calibration.from_marks import calibrate_marks
+    from ...calibration.mark_input import read_painted
+    from ...calibration.mark_report import report, report_picture
+
+    stage("fitting the brush")
+    painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
+    return calibrate_marks(painted, name), report, report_picture

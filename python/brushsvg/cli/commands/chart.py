@@ -19,7 +19,7 @@ def chart_file(args) -> None:
     from ...calibration.chart.expected import chart_report
     from ...calibration.chart.file import write_chart
     from ...calibration.chart.layout import chart
-    from ...calibration.chart.page import chart_page
+    from ...calibration.chart.page import chart_page, chart_pdf
 
     check_places(args.output, args.page, args.chart)
     chosen = typed(args)
@@ -41,7 +41,8 @@ def chart_file(args) -> None:
         title = f"calibration chart of brush {brush.name}"
         files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
     if args.page:
-        files[args.page] = chart_page(made).encode()
+        pdf = suffix_of(args.page) == ".pdf"
+        files[args.page] = chart_pdf(made) if pdf else chart_page(made).encode()
     if args.chart:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)

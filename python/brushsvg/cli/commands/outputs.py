@@ -30,7 +30,9 @@ def check_places(*paths: str | None) -> None:
             raise RefusedError(path, [why])
 
 
-def write(args, files, strokes: int | None = None, seconds: float | None = None, overlap=None) -> None:
+def write(
+    args, files, strokes: int | None = None, seconds: float | None = None, overlap=None, more: str = ""
+) -> None:
     """Write all files, and say so with what is known of them, unless --quiet."""
     stage("writing")
     with about(""):  # the error names the file
@@ -41,6 +43,7 @@ def write(args, files, strokes: int | None = None, seconds: float | None = None,
     known = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
     known += [] if seconds is None else [f"takes about {clock(seconds)}"]
     known += [] if overlap is None else [f"overlap {overlap:.3f}"]
+    known += [more] if more else []
     say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(known)])]))
 
 

@@ -1,0 +1,1 @@
+"""A picture to marks in mm: markers, flattening, edges."""

@@ -1,0 +1,236 @@
+"""Marks on a flattened sheet: how much paint each pixel shows, and outlines half way between paper and paint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from ..errors import Error
+from .flatten import Flat
+from .mask_contours import mask_outlines
+from .photo import LIGHT
+
+BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
+PAPER = 0.92  # of the light round about: darker is paint
+SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
+STRAY_MM = 6.0  # a mark lies no farther from its box
+FAINTEST = 0.12  # share of the light that paint takes away at least
+CERTAIN = 6.0  # times the paper's noise
+SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by itself
+SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
+LEAST_MM2 = 0.5
+BLOT = 0.03  # of a mark's area: smaller parts are splashes
+RIM_MM = 2.0  # along the sheet's edges, where the table and shadows show
+LEAST_LENGTH = 0.3  # of its box, that a mark is long at least: less is a splash where a stroke is missing
+EDGE_MM = 0.8  # beside a mark, where its edge is looked for
+STEP_MM, OVER_MM = 0.1, 0.2  # points of an outline, and over how much of it each is a mean: pixels make steps
+
+
+@dataclass(frozen=True)
+class Room:
+    """Where the mark of a stroke is expected: left, bottom, right, top in mm on the sheet."""
+
+    stroke: str
+    box_mm: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Marks:
+    """outlines_mm: rings by stroke; missing: strokes without paint; joined: pairs that touch, cut between their boxes.
+
+    paint (rows, columns): 0 paper, 1 the usual paint.
+    """
+
+    outlines_mm: dict[str, list[np.ndarray]]
+    missing: list[str]
+    joined: list[tuple[str, str]]
+    paint: np.ndarray
+
+
+def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labels_mm: list) -> Marks:
+    """printed_mm: rings round markers and all that is as dark as paint; labels_mm: boxes of pale text, which a mark may
+    cover. Error where there is no paint."""
+    print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
+    for ring in printed_mm:
+        cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
+    paint = paint_seen(flat, print_, rooms)
+    return told_apart(paint, flat, rooms, labels_mm)
+
+
+def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room]) -> np.ndarray:
+    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back."""
+    light = cv2.LUT(flat.pixels, LIGHT)
+    taken = 1.0 - light / np.maximum(_paper(light, print_, flat.px_per_mm), 1e-3)
+    inside = np.zeros_like(print_)
+    for room in rooms:
+        c0, r0, c1, r1 = _window(flat, room.box_mm, 0.0)
+        inside[r0:r1, c0:c1] = 1
+    sample = taken[::3, ::3][(inside[::3, ::3] == 1) & (print_[::3, ::3] == 0)]
+    weights = _contrast(sample)
+    paint = cv2.transform(taken, weights[None])
+    paint[print_ == 1] = 0.0
+    rim = max(1, round(RIM_MM * flat.px_per_mm))
+    paint[:rim] = paint[-rim:] = paint[:, :rim] = paint[:, -rim:] = 0.0
+    return paint
+
+
+def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> np.ndarray:
+    """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm."""
+    rows, columns = light.shape[:2]
+    size = (max(8, round(columns / px_per_mm)), max(8, round(rows / px_per_mm)))
+    coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
+    covered = cv2.resize(print_.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BROADEST_MM, BROADEST_MM))
+    bright = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
+    bare = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) > PAPER) & ~covered
+    weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
+    mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
+    sure = weight[..., None] > 0.02
+    even = np.where(sure, mean / np.maximum(weight[..., None], 1e-6), bright).astype(np.float32)
+    return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR)
+
+
+def _contrast(taken: np.ndarray) -> np.ndarray:
+    """Weights of the colours by which paint comes out as 1, paper as 0, and noise least: Fisher's discriminant."""
+    size = np.linalg.norm(np.maximum(taken, 0.0), axis=1) / np.sqrt(3)
+    level, _ = cv2.threshold(
+        np.uint8(np.clip(size * 255, 0, 255))[:, None], 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU
+    )
+    painted = size > level / 255
+    if not 10 < painted.sum() < 0.99 * len(size):
+        raise Error(_NO_PAINT, code="photo-without-paint")
+    paper, paint = taken[~painted], np.median(taken[painted], axis=0)
+    ground = np.median(paper, axis=0)
+    noise = 1.4826 * np.median(np.abs(paper - ground), axis=0)
+    if np.abs(paint - ground).max() < max(FAINTEST, CERTAIN * float(noise.max())):
+        raise Error(_NO_PAINT, code="photo-without-paint")
+    bare = paper[(np.abs(paper - ground) < 4 * noise + 1e-3).all(axis=1)]
+    spread = np.cov(bare, rowvar=False) + 0.02**2 * np.eye(3)
+    weights = np.linalg.solve(spread, paint - ground)
+    return weights / (weights @ (paint - ground))
+
+
+_NO_PAINT = (
+    "no paint is found where the strokes should be: is this the painted page, "
+    "and is its paint darker than paper?"
+)
+
+
+def _window(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
+    """Columns and rows of pixels, left, top, right, bottom."""
+    left, bottom, right, top = box_mm
+    rows, columns = flat.pixels.shape[:2]
+    (c0, r0), (c1, r1) = flat.to_px(
+        [[left - beyond_mm, top + beyond_mm], [right + beyond_mm, bottom - beyond_mm]]
+    )
+    return (
+        int(np.clip(np.floor(c0), 0, columns)),
+        int(np.clip(np.floor(r0), 0, rows)),
+        int(np.clip(np.ceil(c1), 0, columns)),
+        int(np.clip(np.ceil(r1), 0, rows)),
+    )
+
+
+def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
+    """Number from 1 on of the box that is nearest to each pixel, 0 beyond STRAY_MM of all."""
+    rows, columns = flat.pixels.shape[:2]
+    step = max(1, round(flat.px_per_mm / 2))
+    x = (np.arange(0, columns, step) + 0.5) / flat.px_per_mm
+    y = flat.sheet_mm[1] - (np.arange(0, rows, step) + 0.5) / flat.px_per_mm
+    nearest, owner = np.full((len(y), len(x)), STRAY_MM), np.zeros((len(y), len(x)), np.uint16)
+    for number, room in enumerate(rooms, 1):
+        left, bottom, right, top = room.box_mm
+        across = np.maximum(np.maximum(left - x, x - right), 0.0)
+        up = np.maximum(np.maximum(bottom - y, y - top), 0.0)
+        away = np.hypot(across[None], up[:, None])
+        closer = away < nearest
+        nearest[closer], owner[closer] = away[closer], number
+    return np.repeat(np.repeat(owner, step, axis=0), step, axis=1)[:rows, :columns]
+
+
+def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
+    """Marks by the box that most of each lies in. paint: as paint_seen gives it, or a mean over several pictures."""
+    fine = flat.px_per_mm
+    count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
+    owner = _nearest_room(flat, rooms)
+    where = np.flatnonzero(part)
+    both = part.ravel()[where].astype(np.int64) * (len(rooms) + 1) + owner.ravel()[where]
+    shares = np.bincount(both, minlength=count * (len(rooms) + 1)).reshape(count, -1)
+    areas = stats[:, cv2.CC_STAT_AREA].astype(float)
+    text = np.zeros(part.shape, bool)
+    for box in labels_mm:
+        c0, r0, c1, r1 = _window(flat, box, 0.2)
+        text[r0:r1, c0:c1] = True
+    of_text = np.bincount(part[text], minlength=count)
+    kept = (areas > 0.5 * LEAST_MM2 * fine**2) & (of_text < 0.7 * areas)
+    kept[0] = False
+    home = shares[:, 1:].argmax(axis=1) + 1
+    home[shares[:, 1:].max(axis=1) == 0] = 0
+    second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
+    cut = (second > SPLIT * areas) & (second > SPLIT_MM2 * fine**2)
+    outlines, missing, joined = {}, [], []
+    for number, room in enumerate(rooms, 1):
+        own = kept & np.where(cut, shares[:, number] > LEAST_MM2 * fine**2, home == number)
+        rings = _outlines(paint, part, owner, own, cut, number, stats, fine, flat.sheet_mm[1])
+        if rings and _long(rings) > LEAST_LENGTH * _long([np.reshape(room.box_mm, (2, 2))]):
+            outlines[room.stroke] = rings
+        else:
+            missing.append(room.stroke)
+        for each in np.flatnonzero(own & cut):
+            other = [k for k in np.argsort(shares[each, 1:])[::-1][:2] + 1 if k != number]
+            pair = tuple(sorted((room.stroke, rooms[other[0] - 1].stroke)))
+            if pair not in joined:
+                joined.append(pair)
+    return Marks(outlines, missing, joined, paint)
+
+
+def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, height_mm: float) -> list:
+    parts = np.flatnonzero(own)
+    if not len(parts):
+        return []
+    margin = int(np.ceil(EDGE_MM * fine)) + 2
+    left, top = stats[parts, :2].min(axis=0) - margin
+    right, bottom = (stats[parts, :2] + stats[parts, 2:4]).max(axis=0) + margin
+    rows = slice(max(top, 0), min(bottom, part.shape[0]))
+    columns = slice(max(left, 0), min(right, part.shape[1]))
+    seen, here = part[rows, columns], owner[rows, columns] == number
+    mine = own[seen] & (here | ~cut[seen])
+    amount = paint[rows, columns]
+    core = cv2.erode(np.uint8(mine), None, iterations=max(1, round(0.15 * fine))) == 1
+    level = 0.5 * float(np.median(amount[core]) if core.any() else np.quantile(amount[mine], 0.8))
+    reach = max(1, round(EDGE_MM * fine))
+    ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+    near = cv2.dilate(np.uint8(mine), ellipse) == 1
+    foreign = (seen > 0) & ~mine
+    amount = np.where(near & ~foreign, amount, 0.0)
+    corner = columns.start / fine, height_mm - rows.start / fine
+    rings = mask_outlines(amount, level, 1.0 / fine, corner, LEAST_MM2)
+    sizes = [_area(ring) for ring in rings]
+    least = BLOT * max(sizes, default=0.0)
+    return [_even(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]
+
+
+def _long(rings: list[np.ndarray]) -> float:
+    return float(np.ptp(np.vstack(rings), axis=0).max())
+
+
+def _area(ring: np.ndarray) -> float:
+    x, y = ring.T
+    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def _even(ring: np.ndarray) -> np.ndarray:
+    """Points STEP_MM apart, each a mean over OVER_MM of the outline."""
+    closed = np.vstack([ring, ring[:1]])
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+    finer = 4
+    count = max(12, round(at[-1] / STEP_MM)) * finer
+    places = np.arange(count) * at[-1] / count
+    points = np.column_stack([np.interp(places, at, closed[:, k]) for k in (0, 1)])
+    wide = 2 * (round(OVER_MM / STEP_MM * finer) // 2) + 1
+    around = np.arange(-(wide // 2), count + wide // 2) % count
+    kernel = np.full(wide, 1.0 / wide)
+    even = np.column_stack([np.convolve(points[around, k], kernel, "valid") for k in (0, 1)])
+    return even[::finer]

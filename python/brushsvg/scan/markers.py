@@ -1,0 +1,298 @@
+"""ArUco markers in a photograph: found, their corners where straight lines through their edges meet, and the camera's
+view of the sheet from them. Refuses pictures that cannot be measured in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from ..errors import Error
+from .photo import grey_light
+
+FEWEST = 3  # markers: two leave the tilt of the sheet open to the noise of their corners
+SEEN_AT_PX = 2400  # longer side of the picture that markers are looked for in; their corners are found in the whole one
+ALONG = np.linspace(0.08, 0.92, 31)  # of an edge of a marker, where it is looked across
+ACROSS = 0.8  # modules to both sides: beyond one module lie other black ones
+CORNER_PX = 0.15  # standard deviation of a corner
+# Standard deviations of a lens's k1 and k2, at half the picture's diagonal: they hold what few markers leave open.
+# Without k2 the middle of a page lies 0.05 mm off, with it 0.013.
+BENT = np.array([0.1, 0.03])
+LEAST_PX_PER_MM = 4.0
+MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but narrow strokes grow pale
+# Residual [mm] at most, with all eight markers and with fewer, beside so many pixels of the corners' own. Paper that
+# bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six it leaves 0.10 and
+# moves them by 0.4. Half of it is remarked on.
+MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What a page shows: markers by id, corners (4, 2) in mm on the sheet, upper left first, clockwise; of which
+    dictionary of OpenCV; who it is, for a sentence."""
+
+    sheet_mm: tuple[float, float]
+    corners_mm: dict[int, np.ndarray]
+    dictionary: str
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class View:
+    """How a photograph shows the sheet: a homography from mm, then radial distortion about the picture's middle.
+
+    residual_mm: rms distance of the markers' corners from where the view has them, and worst, the marker where it is
+    largest, with its own; blur_mm: standard deviation of the blur, from the markers' edges.
+    """
+
+    homography: np.ndarray
+    distortion: tuple[float, ...]
+    middle_px: np.ndarray
+    radius_px: float
+    px_per_mm: float = 0.0
+    residual_mm: float = 0.0
+    worst: tuple[int, float] = (0, 0.0)
+    blur_mm: float = 0.0
+    seen: tuple[int, ...] = ()
+
+    @property
+    def most_residual_mm(self) -> float:
+        return (MOST_MM if len(self.seen) >= MANY else MOST_MM_OF_FEW) + MOST_PX / self.px_per_mm
+
+    def to_px(self, mm: np.ndarray) -> np.ndarray:
+        """Points (n, 2) of the sheet in pixels, (0, 0) the middle of the upper left pixel."""
+        x, y = mm.T
+        h = self.homography
+        w = h[2, 0] * x + h[2, 1] * y + h[2, 2]
+        u = (h[0, 0] * x + h[0, 1] * y + h[0, 2]) / w
+        v = (h[1, 0] * x + h[1, 1] * y + h[1, 2]) / w
+        square = u * u + v * v
+        bent = np.ones_like(square)
+        for power, k in enumerate(self.distortion, 1):
+            bent += k * square**power
+        return np.column_stack([u * bent, v * bent]) * self.radius_px + self.middle_px
+
+
+def find_view(pixels: np.ndarray, printed: Printed) -> View:
+    """Error in one sentence where markers are missing, doubled, of another chart or mirrored, where the picture is too
+    small or blurred, or where the corners do not lie as on flat paper."""
+    found = _of_this_chart(pixels, printed)
+    light = grey_light(pixels)
+    modules = _modules(printed.dictionary)
+    corners, blurs = {}, []
+    for number, rough in found.items():
+        corners[number], blur = _exact(light, rough, modules)
+        blurs.append(blur)
+    view = _fitted(corners, printed, pixels.shape)
+    blur_mm = float(np.median(blurs)) / view.px_per_mm
+    view = View(**{**view.__dict__, "blur_mm": blur_mm})
+    _refuse_unmeasurable(view, printed)
+    return view
+
+
+def _modules(dictionary: str) -> int:
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary)).markerSize + 2
+
+
+def _detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]]:
+    """Ids with rough corners (4, 2) in px."""
+    shrunk = max(1.0, max(pixels.shape[:2]) / SEEN_AT_PX)
+    grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
+    small = cv2.resize(grey, None, fx=1 / shrunk, fy=1 / shrunk, interpolation=cv2.INTER_AREA)
+    known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
+    corners, ids, _ = cv2.aruco.ArucoDetector(known).detectMarkers(small)
+    if ids is None:
+        return []
+    back = np.array([grey.shape[1] / small.shape[1], grey.shape[0] / small.shape[0]])
+    return [
+        (int(i), (c.reshape(4, 2).astype(float) + 0.5) * back - 0.5)
+        for i, c in zip(ids.ravel(), corners, strict=True)
+    ]
+
+
+def _of_this_chart(pixels: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
+    seen = _detected(pixels, printed.dictionary)
+    ours = [(number, corners) for number, corners in seen if number in printed.corners_mm]
+    others = {number for number, _ in seen} - set(printed.corners_mm)
+    found: dict[int, np.ndarray] = {}
+    for number, corners in ours:
+        if number in found:
+            raise Error(
+                f"marker {number} is in the picture twice: photograph one page alone, without mirrors and other prints",
+                code="photo-marker-twice",
+            )
+        found[number] = corners
+    if len(found) >= FEWEST:
+        return found
+    name = f" {printed.name}" if printed.name else ""
+    if len(others) >= FEWEST:
+        raise Error(
+            f"the picture shows another chart: its markers are {_listed(others)}, those of chart{name} are "
+            f"{_listed(printed.corners_mm)}; give the chart.json that was written with this page",
+            code="photo-of-another-chart",
+        )
+    mirrored = [number for number, _ in _detected(pixels[:, ::-1], printed.dictionary)]
+    if len(set(mirrored) & set(printed.corners_mm)) >= FEWEST:
+        raise Error(
+            "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back",
+            code="photo-mirrored",
+        )
+    if not found:
+        raise Error(
+            f"no marker of chart{name} is in the picture: photograph the whole page, sharp and without deep shadows",
+            code="photo-markers-missing",
+        )
+    raise Error(
+        f"only {len(found)} of the {len(printed.corners_mm)} markers can be seen ({_listed(found)}), it takes {FEWEST} "
+        "or more: photograph the whole page, with nothing over its markers",
+        code="photo-markers-missing",
+    )
+
+
+def _listed(numbers) -> str:
+    return ", ".join(map(str, sorted(numbers)))
+
+
+def _exact(light: np.ndarray, corners: np.ndarray, modules: int) -> tuple[np.ndarray, float]:
+    """Corners where lines through the edges meet, and the blur [px] of the edges."""
+    blur = 0.0
+    for _ in range(2):  # the second time the lines run where they should
+        lines, blurs = [], []
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            points, spread = _edge_points(light, a, b, np.hypot(*(b - a)) / modules)
+            lines.append(_line(points))
+            blurs.append(spread)
+        corners = np.array([_meet(lines[k - 1], lines[k]) for k in range(4)])
+        blur = float(np.median(blurs))
+    return corners, blur
+
+
+def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float]:
+    """Points (n, 2) of the edge from a to b, white on its left as the picture is drawn, and its blur [px].
+
+    Across an edge from black to white, the light that is there beside all white says where the edge lies, however much
+    it is blurred: area under the profile = white times the way behind the edge.
+    """
+    along = (b - a) / np.hypot(*(b - a))
+    out = np.array([along[1], -along[0]])  # corners run clockwise with y down
+    reach = ACROSS * module_px
+    count = max(9, 2 * round(reach * 2) + 1)
+    across = np.linspace(-reach, reach, count)
+    at = a + ALONG[:, None] * (b - a)
+    places = (at[:, None] + across[:, None] * out).astype(np.float32)
+    seen = cv2.remap(light, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    end = max(2, count // 6)
+    black, white = (
+        np.median(seen[:, :end], axis=1, keepdims=True),
+        np.median(seen[:, -end:], axis=1, keepdims=True),
+    )
+    share = (seen - black) / np.maximum(white - black, 1e-3)
+    step = across[1] - across[0]
+    offset = reach - step * (share.sum(axis=1) - 0.5 * (share[:, 0] + share[:, -1]))
+    offset = np.clip(offset, -reach, reach)
+    middle = np.median(share, axis=0)
+    rising = np.maximum.accumulate(middle) + 1e-9 * np.arange(count)
+    low, high = np.interp([0.2, 0.8], rising, across)
+    return at + offset[:, None] * out, float(high - low) / 1.683
+
+
+def _line(points: np.ndarray) -> tuple[np.ndarray, float]:
+    """(normal, distance from the origin), without the points that lie off."""
+    kept = points
+    for _ in range(3):
+        middle = kept.mean(axis=0)
+        normal = np.linalg.svd(kept - middle, full_matrices=False)[2][1]
+        off = np.abs((points - middle) @ normal)
+        kept = points[off <= max(3 * 1.4826 * np.median(off), 0.05)]
+    return normal, float(normal @ middle)
+
+
+def _meet(one, other) -> np.ndarray:
+    normals = np.array([one[0], other[0]])
+    return np.linalg.solve(normals, [one[1], other[1]])
+
+
+def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape) -> View:
+    """Least squares of all corners."""
+    ids = tuple(sorted(corners))
+    mm = np.vstack([printed.corners_mm[i] for i in ids])
+    px = np.vstack([corners[i] for i in ids])
+    middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
+    radius = float(np.hypot(*middle))
+    centre, size = np.array(printed.sheet_mm) / 2, max(printed.sheet_mm) / 2
+    to_unit = np.array([[1 / size, 0, -centre[0] / size], [0, 1 / size, -centre[1] / size], [0, 0, 1]])
+    start, _ = cv2.findHomography((mm - centre) / size, (px - middle) / radius)
+    if start is None:
+        raise Error(
+            "the markers lie on one line in the picture: photograph the page from above",
+            code="photo-markers-missing",
+        )
+    unknowns = np.concatenate([start.ravel()[:8] / start[2, 2], np.zeros(len(BENT))])
+
+    def view(u: np.ndarray) -> View:
+        homography = np.append(u[:8], 1.0).reshape(3, 3) @ to_unit
+        return View(homography, tuple(u[8:]), middle, radius)
+
+    def off(u: np.ndarray) -> np.ndarray:
+        return np.concatenate([((view(u).to_px(mm) - px) / CORNER_PX).ravel(), u[8:] / BENT])
+
+    for _ in range(15):
+        now = off(unknowns)
+        slopes = np.column_stack(
+            [(off(unknowns + step) - now) / 1e-6 for step in 1e-6 * np.eye(len(unknowns))]
+        )
+        change = np.linalg.lstsq(slopes, -now, rcond=None)[0]
+        unknowns = unknowns + change
+        if np.abs(change).max() < 1e-9:
+            break
+    found = view(unknowns)
+    scale = _px_per_mm(found, printed.sheet_mm)
+    squares = np.sum((found.to_px(mm) - px) ** 2, axis=1) / scale**2
+    freedom = len(mm) - 4.5  # the homography and k1, two numbers a corner
+    each = {number: float(np.sqrt(squares[4 * k : 4 * k + 4].mean())) for k, number in enumerate(ids)}
+    worst = max(each, key=lambda number: each[number])
+    residual = float(np.sqrt(squares.sum() / freedom))
+    return View(
+        found.homography,
+        found.distortion,
+        middle,
+        radius,
+        scale,
+        residual,
+        (worst, each[worst]),
+        seen=ids,
+    )
+
+
+def _px_per_mm(view: View, sheet_mm) -> float:
+    """The least on the sheet, by how much areas grow."""
+    at = np.array([(x * sheet_mm[0], y * sheet_mm[1]) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)])
+    right, up = (view.to_px(at + step) - view.to_px(at - step) for step in 0.5 * np.eye(2))
+    return float(np.sqrt(np.abs(right[:, 0] * up[:, 1] - right[:, 1] * up[:, 0]).min()))
+
+
+def _refuse_unmeasurable(view: View, printed: Printed) -> None:
+    if view.px_per_mm < LEAST_PX_PER_MM:
+        raise Error(
+            f"the picture shows {view.px_per_mm:.1f} pixels per mm, it takes {LEAST_PX_PER_MM:g}: let the page fill "
+            "the picture, and take it as large as the camera gives it",
+            value=view.px_per_mm,
+            code="photo-too-coarse",
+        )
+    if view.blur_mm > MOST_BLUR_MM:
+        raise Error(
+            f"the picture is blurred, edges over {view.blur_mm:.2f} mm where {MOST_BLUR_MM:g} is the most: hold the "
+            "camera still and let it focus on the paper",
+            value=view.blur_mm,
+            code="photo-blurred",
+        )
+    limit = view.most_residual_mm
+    if view.residual_mm > limit:
+        number, own = view.worst
+        raise Error(
+            f"the markers lie {view.residual_mm:.2f} mm (rms) from where flat paper would have them, more than "
+            f"{limit:.2f}; marker {number} most, {own:.2f} mm: press the page flat, and take it from straight above",
+            value=view.residual_mm,
+            code="photo-not-flat",
+        )

@@ -1,0 +1,250 @@
+"""Photographs of painted charts, rendered: a camera with a lens that bends, tilted over a sheet under uneven light.
+
+Nothing of the reader: polygons become paint by the exact length of each scan line inside of them, every pixel looks
+along its ray down to the sheet. Only the JPEG is OpenCV's. Lengths in mm, sheets with y up, light in linear units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+TEXELS = 20.0  # per mm of the sheet
+INK = np.array([0.05, 0.04, 0.04])  # of a printer: share of the light thrown back, red green blue
+BLUE = np.array([0.05, 0.09, 0.35])
+TEXT = np.array([0.46, 0.46, 0.46])
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Above the sheet's middle, tilted. focal: in picture widths; bend: of the lens, 0.02 moves corners by 2 %."""
+
+    size_px: tuple[int, int] = (1700, 2300)
+    focal: float = 1.1
+    tilt_deg: tuple[float, float] = (4.0, -3.0)
+    turn_deg: float = 2.0
+    bend: float = -0.03
+    fill: float = 0.93  # of the picture by the sheet
+    aside_mm: tuple[float, float] = (3.0, -2.0)
+    blur_px: float = 0.8
+    noise: float = 0.008
+    light: tuple[float, float] = (0.25, -0.18)  # how much it changes across and up the sheet
+    vignette: float = 0.15
+    shadow: float = 0.0  # depth of a soft shadow over a corner
+    quality: int = 92
+    sag_mm: float = 0.0  # the paper bulges so high in the middle
+
+
+class Sheet:
+    """What a sheet throws back, painted over ring by ring."""
+
+    def __init__(self, size_mm, seed=0):
+        self.size_mm = size_mm
+        columns, rows = (round(side * TEXELS) for side in size_mm)
+        rng = np.random.default_rng(seed)
+        grain = rng.normal(size=(rows // 8 + 2, columns // 8 + 2)).astype(np.float32)
+        grain = np.repeat(np.repeat(grain, 8, axis=0), 8, axis=1)[:rows, :columns]
+        self.shown = np.empty((rows, columns, 3), np.float32)
+        for k, tint in enumerate((0.86, 0.85, 0.82)):
+            self.shown[..., k] = tint * (1 + 0.006 * grain)
+
+    def paint(self, rings, colour, opacity=1.0):
+        share, (r0, r1, c0, c1) = self._covered(rings)
+        if share.size:
+            share = (opacity * share)[..., None].astype(np.float32)
+            here = self.shown[r0:r1, c0:c1]
+            here *= 1 - share
+            here += share * np.asarray(colour, np.float32)
+
+    def _covered(self, rings):
+        """Share of each texel inside of the rings (even-odd), and where."""
+        rows, columns = self.shown.shape[:2]
+        rings = [
+            np.column_stack([r[:, 0], self.size_mm[1] - r[:, 1]]) * TEXELS for r in map(np.asarray, rings)
+        ]
+        ends = np.vstack(rings)
+        c0, c1 = max(0, int(ends[:, 0].min()) - 1), min(columns, int(ends[:, 0].max()) + 2)
+        r0, r1 = max(0, int(ends[:, 1].min()) - 1), min(rows, int(ends[:, 1].max()) + 2)
+        lines = 3  # per row
+        edges = np.vstack([np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in rings])
+        out = np.zeros((max(r1 - r0, 0), max(c1 - c0, 0) + 1))
+        xa, ya, xb, yb = edges.T
+        for k in range(lines * (r1 - r0)):
+            y = r0 + (k + 0.5) / lines
+            crossing = (ya <= y) != (yb <= y)
+            x = np.sort(xa[crossing] + (y - ya[crossing]) / (yb - ya)[crossing] * (xb - xa)[crossing]) - c0
+            row = out[k // lines]
+            for a, b in zip(x[::2], x[1::2], strict=True):
+                a, b = np.clip([a, b], 0, out.shape[1] - 1)
+                first, last = int(a), int(b)
+                if first == last:
+                    row[first] += (b - a) / lines
+                else:
+                    row[first] += (first + 1 - a) / lines
+                    row[first + 1 : last] += 1 / lines
+                    row[last] += (b - last) / lines
+        return out[:, :-1], (r0, r1, c0, c1)
+
+
+def page(made, seed=0):
+    """The printed chart: markers by their bits, the bar, and bars in place of letters."""
+    sheet = Sheet(made.plan.sheet_mm, seed)
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, made.dictionary))
+    bits = dictionary.markerSize + 2
+    for marker in made.markers:
+        black = cv2.aruco.generateImageMarker(dictionary, marker.id, bits) == 0
+        corners = np.array(marker.corners_mm)
+        right, down = (corners[1] - corners[0]) / bits, (corners[3] - corners[0]) / bits
+        for row, column in np.argwhere(black):
+            at = corners[0] + column * right + row * down
+            sheet.paint([np.array([at, at + right, at + right + down, at + down])], INK)
+    if made.bar:
+        (x, y), length = made.bar.at_mm, made.bar.length_mm
+        sheet.paint([box(x, y - 0.15, x + length, y + 0.15)], INK)
+    for label in made.labels:
+        x, y = label.at_mm
+        size = min(2.3, label.width_mm / (0.6 * len(label.text)))
+        for k in range(len(label.text)):
+            at = x + 0.6 * size * k
+            sheet.paint([box(at + 0.1, y, at + 0.3, y + 0.7 * size)], TEXT)
+            sheet.paint([box(at + 0.1, y, at + 0.45 * size, y + 0.2)], TEXT)
+    return sheet
+
+
+def box(left, bottom, right, top):
+    return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
+
+
+def corners_seen(camera, sheet_mm, points_mm):
+    """Pixels (n, 2) at which points of the sheet are seen; (0, 0) is the middle of the first pixel."""
+    rotation, place, focal_px, middle = _posed(camera, sheet_mm)
+    world = np.column_stack(
+        [np.asarray(points_mm, float), _height(camera, sheet_mm, np.asarray(points_mm, float))]
+    )
+    ray = (world - place) @ rotation
+    ideal = ray[:, :2] / ray[:, 2:]
+    return ideal * _bent(camera, np.hypot(*ideal.T))[:, None] * focal_px + middle
+
+
+def _bent(camera, radius):
+    """Seen over ideal distance from the axis."""
+    widest = 0.5 * np.hypot(*camera.size_px) / (camera.focal * camera.size_px[0])
+    square = (radius / widest) ** 2
+    return 1 + camera.bend * square + 0.2 * camera.bend * square**2
+
+
+def _posed(camera, sheet_mm):
+    """Columns of rotation: the camera's right, down and forward in the sheet's frame; where it is."""
+    across, up, turn = np.radians([*camera.tilt_deg, camera.turn_deg])
+    forward = np.array([np.sin(across), np.sin(up), -np.cos(across) * np.cos(up)])
+    forward /= np.linalg.norm(forward)
+    right = np.array([np.cos(turn), np.sin(turn), 0.0])
+    right -= (right @ forward) * forward
+    right /= np.linalg.norm(right)
+    down = np.cross(forward, right)
+    focal_px = camera.focal * camera.size_px[0]
+    scale = min(c / s for c, s in zip(camera.size_px, sheet_mm, strict=True)) * camera.fill
+    middle = np.array([*np.array(sheet_mm) / 2 + camera.aside_mm, 0.0])
+    place = middle - forward * focal_px / scale
+    centre = (np.array(camera.size_px) - 1) / 2 + [3.0, -4.0]  # no lens sits quite in the middle
+    return np.column_stack([right, down, forward]), place, focal_px, centre
+
+
+def _height(camera, sheet_mm, points):
+    """Paper that lies flat on two edges and bulges in between."""
+    return camera.sag_mm * np.sin(np.pi * np.clip(points[..., 0] / sheet_mm[0], 0, 1))
+
+
+def photograph(sheet, camera=Camera(), seed=1, mirrored=False):
+    """JPEG bytes."""
+    return encoded(exposed(sheet, camera, seed, mirrored), camera.quality)
+
+
+def encoded(pixels, quality=92):
+    return cv2.imencode(".jpg", pixels[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+
+
+def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
+    """8-bit sRGB pixels (rows, columns, 3)."""
+    rng = np.random.default_rng(seed)
+    columns, rows = camera.size_px
+    rotation, place, focal_px, middle = _posed(camera, sheet.size_mm)
+    out = np.empty((rows, columns, 3), np.float32)
+    for top in range(0, rows, 256):
+        v, u = np.mgrid[top : min(top + 256, rows), 0:columns].astype(float)
+        seen = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
+        distance = np.hypot(seen[..., 0], seen[..., 1])
+        ideal = distance.copy()
+        for _ in range(6):
+            ideal = distance / _bent(camera, ideal)
+        seen *= (ideal / np.maximum(distance, 1e-12))[..., None]
+        ray = seen @ rotation[:, :2].T + rotation[:, 2]
+        height = 0.0
+        for _ in range(1 if camera.sag_mm == 0 else 4):
+            at = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
+            height = _height(camera, sheet.size_mm, at)
+        out[top : top + len(v)] = _looked_up(sheet, at) * _lit(camera, sheet.size_mm, at)[..., None]
+        corner = 0.5 * np.hypot(columns, rows) / focal_px
+        out[top : top + len(v)] *= (1 - camera.vignette * (distance / corner) ** 2)[..., None]
+    if camera.blur_px:
+        out = _blurred(out, camera.blur_px)
+    out += rng.normal(size=out.shape).astype(np.float32) * (camera.noise * np.sqrt(np.maximum(out, 0.02)))
+    out = np.clip(out, 0, 1)
+    coded = np.where(out <= 0.0031308, 12.92 * out, 1.055 * np.maximum(out, 1e-9) ** (1 / 2.4) - 0.055)
+    pixels = np.round(coded * 255).astype(np.uint8)
+    return np.ascontiguousarray(pixels[:, ::-1]) if mirrored else pixels
+
+
+def _lit(camera, size_mm, at):
+    x, y = at[..., 0] / size_mm[0] - 0.5, at[..., 1] / size_mm[1] - 0.5
+    light = 0.85 * (1 + camera.light[0] * x + camera.light[1] * y - 0.1 * (x * x + y * y))
+    if camera.shadow:
+        light = light * (1 - camera.shadow / (1 + np.exp(-(x + y - 0.2) * 25)))
+    return light
+
+
+def _looked_up(sheet, at):
+    """Between texels; beside the sheet a brown table."""
+    rows, columns = sheet.shown.shape[:2]
+    c = at[..., 0] * TEXELS - 0.5
+    r = (sheet.size_mm[1] - at[..., 1]) * TEXELS - 0.5
+    inside = (c >= 0) & (r >= 0) & (c <= columns - 2) & (r <= rows - 2)
+    c, r = np.clip(c, 0, columns - 2), np.clip(r, 0, rows - 2)
+    ci, ri = c.astype(int), r.astype(int)
+    fc, fr = (c - ci)[..., None].astype(np.float32), (r - ri)[..., None].astype(np.float32)
+    shown = sheet.shown
+    above = shown[ri, ci] * (1 - fc) + shown[ri, ci + 1] * fc
+    below = shown[ri + 1, ci] * (1 - fc) + shown[ri + 1, ci + 1] * fc
+    value = above * (1 - fr) + below * fr
+    value[~inside] = (0.22, 0.15, 0.1)
+    return value
+
+
+def _blurred(picture, sigma):
+    reach = int(np.ceil(4 * sigma))
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    kernel /= kernel.sum()
+    for axis in (0, 1):
+        padded = np.pad(picture, [(reach, reach) if k == axis else (0, 0) for k in range(3)], mode="edge")
+        length = picture.shape[axis]
+        total = np.zeros_like(picture)
+        for k, weight in enumerate(kernel):
+            total += np.float32(weight) * padded.take(range(k, k + length), axis=axis)
+        picture = total
+    return picture
+
+
+def with_turn(jpeg, orientation):
+    """A JPEG whose EXIF says how the camera was held."""
+    tiff = (
+        b"MM\x00*\x00\x00\x00\x08\x00\x01\x01\x12\x00\x03\x00\x00\x00\x01\x00"
+        + bytes([orientation])
+        + b"\x00" * 6
+    )
+    body = b"Exif\x00\x00" + tiff
+    return jpeg[:2] + b"\xff\xe1" + (len(body) + 2).to_bytes(2, "big") + body + jpeg[2:]
+
+
+__all__ = ["BLUE", "Camera", "Sheet", "box", "corners_seen", "page", "photograph", "replace", "with_turn"]

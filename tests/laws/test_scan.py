@@ -1,0 +1,394 @@
+"""Photographs of charts, rendered by a camera of its own kind: read back to the marks that were painted, or refused in
+a sentence that says what to do."""
+
+import json
+from functools import cache
+
+import cv2
+import numpy as np
+import photograph
+import pytest
+import shapely
+from photograph import BLUE, Camera, replace
+
+from brushsvg import _core, find_brush
+from brushsvg.calibration.chart.file import write_chart
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.chart.photograph import marks_of, read_chart_photos
+from brushsvg.cli import main
+from brushsvg.errors import Error
+from brushsvg.scan.markers import Printed, find_view
+from brushsvg.scan.photo import read_photo
+
+A5 = (148.0, 210.0)
+SMALL = Camera(size_px=(950, 1300), blur_px=0.6)  # 5.5 pixels per mm
+
+
+@cache
+def a5():
+    return chart(find_brush("round-6"), A5, "few")
+
+
+@cache
+def painted_marks():
+    made = a5()
+    brush = find_brush("round-6")
+    marks = _core.simulate(made.plan, brush)
+    _core.trace_outlines(marks, brush)
+    return {one.stroke: [np.array(ring) for ring in one.outline_mm] for one in marks.passes}
+
+
+@cache
+def page():
+    return photograph.page(a5())
+
+
+def painted_sheet(marks, colour=BLUE):
+    sheet = photograph.Sheet.__new__(photograph.Sheet)
+    sheet.size_mm, sheet.shown = A5, page().shown.copy()
+    for rings in marks:
+        sheet.paint(rings, colour)
+    return sheet
+
+
+@cache
+def sheet():
+    return painted_sheet(painted_marks().values())
+
+
+@cache
+def small():
+    """Pixels of one photograph that many tests spoil in their own way."""
+    return photograph.exposed(sheet(), SMALL)
+
+
+def read(pixels, **how):
+    return read_chart_photos(a5(), [("photo.jpg", photograph.encoded(pixels))], **how)
+
+
+def shape(rings):
+    return shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in rings])
+
+
+def off_mm(read_rings, rings):
+    """Signed mean distance of the read outline from the painted one, and its rms without the tips."""
+    was = shape(rings)
+    points = shapely.points(np.vstack(read_rings))
+    distance = shapely.distance(points, was.boundary)
+    sign = np.where(shapely.contains(was, points), -1, 1)
+    kept = distance < np.quantile(distance, 0.97)
+    return float(np.mean((sign * distance)[kept])), float(np.sqrt(np.mean(distance[kept] ** 2)))
+
+
+# Geometry -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "camera",
+    [
+        SMALL,
+        replace(SMALL, tilt_deg=(-12.0, 9.0), turn_deg=80.0, size_px=(1700, 1400), bend=0.02, fill=0.9),
+        replace(SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, aside_mm=(8.0, 8.0), size_px=(1200, 1500)),
+    ],
+    ids=["straight above", "tilted", "upside down"],
+)
+def test_points_of_flat_paper_are_found_within_a_twentieth_of_a_millimetre(camera):
+    made = a5()
+    jpeg = photograph.photograph(sheet(), camera)
+    corners = {marker.id: np.array(marker.corners_mm) for marker in made.markers}
+    view = find_view(read_photo(jpeg), Printed(A5, corners, made.dictionary))
+    at = np.array([(x, y) for x in np.linspace(5, 143, 12) for y in np.linspace(5, 205, 16)])
+    off = np.hypot(*(view.to_px(at) - photograph.corners_seen(camera, A5, at)).T) / view.px_per_mm
+    assert np.sqrt(np.mean(off**2)) < 0.05 and off.max() < 0.1, (np.sqrt(np.mean(off**2)), off.max())
+    assert view.residual_mm < 0.05 and len(view.seen) == len(made.markers)
+
+
+def test_three_markers_are_enough():
+    pixels = small().copy()
+    for marker in a5().markers[3:]:
+        hide(pixels, marker.corners_mm)
+    found = read(pixels)
+    assert len(found.view.seen) == 3
+    at = np.array([(x, y) for x in np.linspace(5, 143, 12) for y in np.linspace(5, 205, 16)])
+    off = np.hypot(*(found.view.to_px(at) - photograph.corners_seen(SMALL, A5, at)).T) / found.view.px_per_mm
+    assert np.sqrt(np.mean(off**2)) < 0.25
+
+
+# Edges ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("camera", "colour", "most_mm"),
+    [
+        (SMALL, BLUE, 0.03),
+        (replace(SMALL, shadow=0.5, light=(0.5, 0.3)), BLUE, 0.03),
+        (SMALL, np.array([0.75, 0.12, 0.08]), 0.03),
+        (SMALL, np.array([0.82, 0.66, 0.06]), 0.06),  # JPEG keeps the colour of four pixels as one
+        (SMALL, np.array([0.5, 0.5, 0.5]), 0.03),
+    ],
+    ids=["blue", "shadow", "red", "yellow", "pale grey"],
+)
+def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
+    marks = painted_marks()
+    found = read(photograph.exposed(painted_sheet(marks.values(), colour), camera))
+    assert not found.marks.missing and not found.marks.joined
+    for stroke, rings in marks.items():
+        mean, rms = off_mm(found.marks.outlines_mm[stroke], rings)
+        assert abs(mean) < most_mm and rms < 0.09, (stroke, mean, rms)
+
+
+def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
+    marks = dict(painted_marks())
+    boxes = {stroke.id: shapely.box(*stroke.box_mm) for stroke in a5().strokes}
+    marks["straight-4"] = [ring + np.array([1.0, -4.5]) for ring in marks["straight-4"]]
+    below = shape(marks["straight-4"]).difference(boxes["straight-4"])
+    nearer = below.difference(
+        boxes["straight-4"].buffer(boxes["straight-4"].distance(boxes["straight-3"]) / 2)
+    )
+    assert nearer.area > 3  # its own box is not the nearest everywhere
+    one, other = "reference-1", "reference-2"
+    apart = shape(marks[one]).distance(shape(marks[other]))
+    for each, way in ((one, 1), (other, -1)):
+        side = np.array([way * (0.5 * apart + 0.2), 0.0])
+        marks[each] = [ring + side for ring in marks[each]]
+    assert shape(marks[one]).intersects(shape(marks[other]))
+    found = read(photograph.exposed(painted_sheet(marks.values()), SMALL))
+    assert off_mm(found.marks.outlines_mm["straight-4"], marks["straight-4"])[1] < 0.09
+    assert found.marks.joined == [(one, other)]
+    for each in (one, other):
+        overlap = _core.overlap(found.marks.outlines_mm[each], marks[each])
+        assert overlap > 0.85, (each, overlap)
+
+
+def test_splashes_and_labels_are_no_marks_and_a_broken_stroke_is_one():
+    marks = dict(painted_marks())
+    whole = shape(marks["straight-4"])
+    left, bottom, right, top = whole.bounds
+    gap = shapely.box(left + 0.6 * (right - left), bottom - 1, left + 0.6 * (right - left) + 1.5, top + 1)
+    parts = [shapely.geometry.polygon.orient(part) for part in whole.difference(gap).geoms]
+    marks["straight-4"] = [np.array(part.exterior.coords)[:-1] for part in parts]
+    splash = [np.array(shapely.Point(left + 20, top + 2).buffer(0.6).exterior.coords)]
+    found = read(photograph.exposed(painted_sheet([*marks.values(), splash]), SMALL))
+    assert len(found.marks.outlines_mm["straight-4"]) == 2
+    assert _core.overlap(found.marks.outlines_mm["straight-4"], marks["straight-4"]) > 0.97
+    assert not found.marks.missing
+
+
+def test_a_stroke_without_paint_is_named(tmp_path, capsys):
+    marks = {name: rings for name, rings in painted_marks().items() if name not in ("arc-2", "straight-1")}
+    photo, desk = tmp_path / "photo.jpg", tmp_path
+    photo.write_bytes(photograph.encoded(photograph.exposed(painted_sheet(marks.values()), SMALL)))
+    (desk / "chart.json").write_text(write_chart(a5()))
+    words = [str(photo), "--chart", str(desk / "chart.json"), "-o", str(desk / "marks.json")]
+    assert main(["scan", *words, "--picture", str(desk / "read.png")]) == 0
+    told = capsys.readouterr().err
+    assert "no paint is found of strokes straight-1, arc-2, left out" in told
+    assert "22 of 24 strokes read, 6 markers within 0.0" in told
+    content = json.loads((desk / "marks.json").read_text())
+    assert [row["stroke"] for row in content["marks"]] == [one.id for one in a5().strokes if one.id in marks]
+    assert cv2.imread(str(desk / "read.png")).shape[0] > 1000
+
+
+# Pictures -------------------------------------------------------------------------------------------
+
+
+def test_other_formats_and_cameras_held_on_their_side_read_the_same():
+    there = marks_of(read(small()))
+    side = np.ascontiguousarray(small().swapaxes(0, 1)[:, ::-1])  # turned clockwise
+    held = photograph.with_turn(photograph.encoded(side), 8)
+    files = [held] + [
+        cv2.imencode(end, small()[..., ::-1], flags)[1].tobytes()
+        for end, flags in ((".png", []), (".tif", []), (".webp", [cv2.IMWRITE_WEBP_QUALITY, 95]))
+    ]
+    for data in files:
+        marks = marks_of(read_chart_photos(a5(), [("", data)]))
+        assert [row["stroke"] for row in marks] == [row["stroke"] for row in there]
+        for ours, theirs in zip(marks, there, strict=True):
+            assert _core.overlap(*(list(map(np.array, row["outline_mm"])) for row in (ours, theirs))) > 0.95
+    # only EXIF says which way up: without it the page is read all the same, from its markers
+    assert read_photo(held).shape == (*SMALL.size_px[::-1], 3) != read_photo(photograph.encoded(side)).shape
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"", "this is no picture that can be read; known are .jpg"),
+        (b"\xff\xd8\xff\xe0 no JPEG", "this is no picture that can be read"),
+        (b"\x00\x00\x00\x18ftypheic" + b"\x00" * 50, "this is a HEIC picture.* export it as JPEG"),
+    ],
+)
+def test_what_is_no_picture_is_refused(data, said):
+    with pytest.raises(Error, match=said):
+        read_chart_photos(a5(), [("", data)])
+
+
+def hide(pixels, corners_mm, camera=SMALL, margin=1.5):
+    """A piece of paper over a marker."""
+    corners = np.array(corners_mm)
+    middle = corners.mean(axis=0)
+    around = photograph.corners_seen(camera, A5, middle + (corners - middle) * margin)
+    (left, top), (right, bottom) = around.min(axis=0).astype(int), around.max(axis=0).astype(int)
+    pixels[max(top, 0) : bottom, max(left, 0) : right] = 200
+
+
+def twice(pixels):
+    """The first marker once more, in the middle of the sheet."""
+    around = photograph.corners_seen(SMALL, A5, np.array(a5().markers[0].corners_mm))
+    (left, top), (right, bottom) = around.min(axis=0).astype(int) - 8, around.max(axis=0).astype(int) + 8
+    pixels[600 : 600 + bottom - top, 300 : 300 + right - left] = pixels[top:bottom, left:right]
+    return pixels
+
+
+def only(count):
+    def covered(pixels):
+        for marker in a5().markers[count:]:
+            hide(pixels, marker.corners_mm)
+        return pixels
+
+    return covered
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda p: np.full_like(p, 120), "no marker of chart [0-9a-f]{8} is in the picture"),
+        (only(2), r"only 2 of the 6 markers can be seen \(\d+, \d+\), it takes 3 or more"),
+        (twice, "marker [0-9]+ is in the picture twice: photograph one page alone"),
+        (lambda p: np.ascontiguousarray(p[:, ::-1]), "the picture is mirrored"),
+        (
+            lambda p: cv2.resize(p, None, fx=0.6, fy=0.6, interpolation=cv2.INTER_AREA),
+            "the picture shows 3.[0-9] pixels per mm, it takes 4: let the page fill the picture",
+        ),
+        (
+            lambda p: np.uint8(photograph._blurred(np.float32(p), 2.4)),
+            "the picture is blurred, edges over 0.[45][0-9] mm where 0.3 is the most",
+        ),
+    ],
+    ids=["no marker", "two markers", "doubled", "mirrored", "small", "blurred"],
+)
+def test_pictures_that_cannot_be_measured_in(spoil, said):
+    with pytest.raises(Error, match=said):
+        read(spoil(small().copy()))
+
+
+def test_another_chart_is_refused():
+    other = chart(find_brush("round-6"), A5, "few", deepest_mm=9.0)
+    with pytest.raises(Error, match=f"shows another chart: its markers are .* those of chart {other.id} are"):
+        read_chart_photos(other, [("", photograph.encoded(small()))])
+
+
+def test_paper_that_is_not_flat_is_refused():
+    bulging = replace(SMALL, sag_mm=5.0, size_px=(1200, 1640))
+    with pytest.raises(
+        Error, match=r"the markers lie 0.\d+ mm \(rms\) from where flat paper .* press the page flat"
+    ):
+        read(photograph.exposed(sheet(), bulging))
+
+
+def test_a_page_without_paint_is_refused():
+    with pytest.raises(Error, match="no paint is found where the strokes should be"):
+        read(photograph.exposed(page(), SMALL))
+
+
+# Several photographs --------------------------------------------------------------------------------
+
+
+def test_photographs_of_one_sheet_are_averaged_and_must_agree():
+    noisy = replace(SMALL, noise=0.06, quality=80)
+    other = replace(noisy, tilt_deg=(-5.0, 4.0), turn_deg=-3.0, size_px=(1050, 1350))
+    jpegs = [
+        photograph.photograph(sheet(), camera, seed) for seed, camera in enumerate((noisy, other, noisy))
+    ]
+    photos = [(f"{k}.jpg", data) for k, data in enumerate(jpegs)]
+    marks = painted_marks()
+
+    def rms(found):
+        assert not found.marks.missing
+        return np.mean([off_mm(found.marks.outlines_mm[name], rings)[1] for name, rings in marks.items()])
+
+    alone = [rms(read_chart_photos(a5(), [photo])) for photo in photos]
+    together = read_chart_photos(a5(), photos)
+    assert together.photos == 3 and rms(together) < min(alone), (rms(together), alone)
+    rng = np.random.default_rng(1)
+    moved = [
+        [ring + side for ring in rings]
+        for rings, side in zip(marks.values(), rng.normal(0, 0.4, (24, 2)), strict=True)
+    ]
+    second = photograph.photograph(painted_sheet(moved), SMALL)
+    with pytest.raises(
+        Error, match=r"its marks lie 0\.[2-9]\d mm \(rms\) from where all .* of one sheet"
+    ) as refusal:
+        read_chart_photos(a5(), [photos[0], ("second.jpg", second)])
+    assert refusal.value.file in ("0.jpg", "second.jpg")
+    with pytest.raises(Error, match="no marker") as refusal:
+        read_chart_photos(a5(), [photos[0], ("grey.jpg", photograph.encoded(np.full_like(small(), 120)))])
+    assert refusal.value.file == "grey.jpg"
+
+
+# The bar --------------------------------------------------------------------------------------------
+
+
+def test_a_page_printed_at_another_size_is_read_by_its_bar():
+    """Everything printed at 97 % about the middle of the sheet; the robot paints as long as ever."""
+    made, size, middle = a5(), 0.97, np.array(A5) / 2
+
+    def shrunk(points):
+        return tuple(map(tuple, (np.array(points) - middle) * size + middle))
+
+    printed = replace(
+        made,
+        markers=tuple(replace(marker, corners_mm=shrunk(marker.corners_mm)) for marker in made.markers),
+        labels=(),
+        bar=None,
+    )
+    shown = photograph.page(printed)
+    for rings in painted_marks().values():
+        shown.paint(rings, BLUE)
+    pixels = photograph.exposed(shown, SMALL)
+    found = read(pixels, bar_mm=size * made.bar.length_mm)
+    for stroke, rings in painted_marks().items():
+        mean, rms = off_mm(found.marks.outlines_mm[stroke], rings)
+        assert abs(mean) < 0.04 and rms < 0.1, (stroke, mean, rms)
+    wrong = read(pixels)
+    assert off_mm(wrong.marks.outlines_mm["straight-4"], painted_marks()["straight-4"])[1] > 0.5
+    with pytest.raises(
+        Error, match=r"the bar measures 55 mm instead of 110 mm, the range is \[99, 121\] mm: print"
+    ):
+        read(pixels, bar_mm=55.0)
+    with pytest.raises(Error, match="has no bar to measure"):
+        read_chart_photos(printed, [("", b"")], bar_mm=100.0)
+
+
+# The commands ---------------------------------------------------------------------------------------
+
+
+def test_wrong_usage(tmp_path, capsys):
+    out = str(tmp_path / "out.json")
+    for words, said in (
+        (["calibrate", "a.jpg", "-o", out], "photographs need --chart"),
+        (["calibrate", "a.json", "--chart", "c.json", "-o", out], "--chart is for photographs"),
+        (["calibrate", "a.json", "--bar", "150", "-o", out], "--bar is for photographs"),
+        (["calibrate", "a.json", "b.json", "-o", out], "only photographs can be several"),
+        (["calibrate", "a.jpg", "b.json", "--chart", "c.json", "-o", out], "b.json does not end in .jpg"),
+        (
+            ["scan", "a.heic", "--chart", "c.json", "-o", out],
+            "HEIC pictures are not read: export them as JPEG",
+        ),
+        (["scan", "a.jpg", "-o", out], "--chart"),
+        (["scan", "a.jpg", "--chart", "c.json", "-o", "a.jpg"], "a.jpg does not end in .json"),
+        (["scan", "a.jpg", "--chart", out, "-o", out], "cannot be two files at once"),
+        (["scan", "a.jpg", "--chart", "c.json", "-o", out, "--picture", "p.svg"], "does not end in .png"),
+    ):
+        assert main(words) == 2
+        assert said in capsys.readouterr().err, words
+
+
+def test_refusals_name_the_file(tmp_path, capsys):
+    photo, file, out = tmp_path / "photo.png", tmp_path / "chart.json", tmp_path / "own.json"
+    photo.write_bytes(cv2.imencode(".png", np.full((300, 300, 3), 200, np.uint8))[1].tobytes())
+    file.write_text("{")
+    words = ["calibrate", str(photo), "--chart", str(file), "-o", str(out)]
+    assert main(words) == 1 and f"{file}: this is not valid JSON" in capsys.readouterr().err
+    file.write_text(write_chart(a5()))
+    assert main(words) == 1 and f"{photo}: no marker of chart" in capsys.readouterr().err
+    assert not out.exists()
