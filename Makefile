@@ -17,7 +17,7 @@ CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
-	@echo "make quick        what is tested in two minutes, for every save: all but the laws and C++"
+	@echo "make quick        what is tested in a minute, for every save: all but slow tests, the laws and C++"
 	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, Chromium, real lettering (installs them)"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
@@ -115,7 +115,7 @@ python-test: $(VENV)/.dev
 
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
-	$(PYTEST) tests/python
+	$(PYTEST) -m 'not slow' tests/python
 
 integration: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev

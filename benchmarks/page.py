@@ -17,8 +17,9 @@ from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.drawing import read_drawing
 from brushsvg.machine.cell_file import find_cell
-from brushsvg.machine.preflight import problems
-from brushsvg.machine.writer import encode
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.preflight import look
+from brushsvg.machine.writer import encoded
 from brushsvg.strokes.extraction import strokes as strokes_of
 
 STROKES = 1000
@@ -66,8 +67,9 @@ def main() -> None:
             lambda: _core.compensate(strokes, brush, design.sheet_mm),
         )
         marks = stage("simulate", lambda: _core.simulate(done.plan, brush))
-        stage("limits", lambda: problems(done.plan, brush, marks, find_cell(), 0.05))
-        stage("G-code", lambda: "".join(encode(".ngc", done.plan, brush, "page")))
+        loads = in_loads(done.plan, brush, find_cell())
+        walk = stage("limits", lambda: look(loads, brush, marks, find_cell(), 0.05))
+        stage("G-code", lambda: "".join(encoded(".ngc", done.plan, walk, brush, "page")))
         begin = time.perf_counter()
         ran = subprocess.run(
             [Path(sys.executable).with_name("brushsvg"), "convert", drawing, program],

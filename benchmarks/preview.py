@@ -35,21 +35,23 @@ PREFERENCES = (
 STAGES = """
 import time
 begin = time.perf_counter()
-from brushsvg import cli, usage, commands, convert, machine, render
-from brushsvg.cell_file import find_cell
-from brushsvg.importers import read_drawing, svg
+from brushsvg.cli import commands
+from brushsvg.machine import paint_reload, preflight
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.pipeline import outputs, prediction, preparation
 told = []
 def stage(name):
     told.append((name, time.perf_counter()))
 stage("imports")
 cell = find_cell()
-work = convert.prepare({drawing!r})
+work = preparation.prepare({drawing!r})
 stage("read and compensated")
-marks = convert.predict(work, whole=False)
+marks = prediction.predict(work, whole=False)
 stage("simulated and outlined")
-machine.problems(work.plan, work.brush, marks, cell, 0.05)
+loads = paint_reload.in_loads(work.plan, work.brush, cell)
+preflight.look(loads, work.brush, marks, cell, 0.05)
 stage("limits")
-convert.picture(".svg", work, marks)
+outputs.picture(".svg", work, marks)
 stage("written")
 for name, end in told:
     print(name, f"{{end - begin:.3f}}")

@@ -12,6 +12,7 @@ from brushsvg.evaluation import report
 from brushsvg.files import write_files
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.paint_reload import in_loads
 from brushsvg.pictures.marks_png import MIDDLE_LINE, Panel, panels_png
 from brushsvg.pipeline import comparison, outputs, prediction, preparation
 
@@ -23,9 +24,10 @@ def main(drawing: Path, directory: Path) -> None:
     work = works["closed"]
     works["best"] = comparison.best_constant(work)
     marks = {how: prediction.predict(works[how]) for how in works}
-    problems = preflight.problems(work.plan, work.brush, marks["closed"], cell, work.options.tolerance_mm)
-    if problems:
-        raise RefusedError(str(drawing), problems)
+    loads = in_loads(work.plan, work.brush, cell)
+    walk = preflight.look(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)
+    if walk.problems:
+        raise RefusedError(str(drawing), walk.problems)
     warn(str(drawing), work.notices)
 
     totals = {
@@ -40,11 +42,11 @@ def main(drawing: Path, directory: Path) -> None:
     }
     table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
     files = {
-        ".plan.json": writer.encode(".json", work.plan, work.brush, work.title),
-        ".ngc": writer.encode(".ngc", work.plan, work.brush, work.title, outputs.notes(work), cell),
+        ".plan.json": writer.encoded(".json", work.plan, walk, work.brush, work.title),
+        ".ngc": writer.encoded(".ngc", work.plan, walk, work.brush, work.title, outputs.notes(work)),
         ".marks.svg": outputs.picture(".svg", work, marks["closed"]),
         ".report.txt": outputs.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
-        ".html": outputs.played(work, marks["closed"], cell),
+        ".html": outputs.played(work, loads, marks["closed"], cell),
         ".png": three_panels(works, marks, totals),
     }
     directory.mkdir(parents=True, exist_ok=True)

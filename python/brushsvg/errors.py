@@ -39,7 +39,7 @@ class Error(ValueError):
         self.file = file
         self.code = code
         self.advice = advice
-        for name in filter(None, (file, where)):
+        for name in (name for name in (file, where) if isinstance(name, str) and name):
             self.add_note(f"in {name}")  # for whoever meets it as a traceback
 
     def notice(self, where: str | None = None) -> Notice:
@@ -89,6 +89,12 @@ class Notice:
 
 def told(sentence: str, advice: str) -> str:
     return f"{sentence}; {advice}" if advice else sentence
+
+
+def need(value, kind: type | tuple[type, ...], what: str) -> None:
+    """Error for a value of another Python type than what it should be, in words."""
+    if not isinstance(value, kind):
+        raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
 
 
 def lacking(what: str, *packages: str) -> Error:

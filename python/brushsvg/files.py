@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from .errors import Error
+from .errors import Error, need
 
 try:
     import fcntl
@@ -49,6 +49,7 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
     """
     if isinstance(name_or_path, os.PathLike):
         return Path(name_or_path)
+    need(name_or_path, str, f"the name or the path of a {kind}")
     names = names_in(shipped, suffix)
     if name_or_path in names:
         return shipped / f"{name_or_path}{suffix}"

@@ -12,6 +12,7 @@ from command import OPEN, SOUND, brush_file, brushsvg
 import brushsvg as package
 from brushsvg import _core
 from brushsvg.machine.cell_file import SHIPPED, find_cell
+from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.writer import whole_program
 from brushsvg.pictures.timeline import timeline
 from brushsvg.pipeline import outputs, prediction, preparation
@@ -55,6 +56,10 @@ class Browser:
         )
 
 
+def loads_of(work):
+    return in_loads(work.plan, work.brush, find_cell())
+
+
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     return Browser(tmp_path_factory.mktemp("browser"))
@@ -72,7 +77,11 @@ def played(drawing):
     """Work, marks and timeline of the demo's drawing."""
     work = preparation.prepare(drawing("vincent"))
     marks = prediction.predict(work, outlines=False)
-    return work, marks, timeline(whole_program(work.plan, work.brush, find_cell()), marks)
+    return (
+        work,
+        marks,
+        timeline(whole_program(loads_of(work), work.brush, find_cell()), marks),
+    )
 
 
 def painted(image: np.ndarray) -> np.ndarray:
@@ -152,9 +161,9 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     step_mm = np.linalg.norm(np.diff(marks.passes[0].contact_mm, axis=0), axis=1)
     row = int(step_mm.argmax()) + 1
     assert step_mm.max() > 30
-    rows = timeline(whole_program(work.plan, work.brush, find_cell()), marks)
+    rows = timeline(whole_program(loads_of(work), work.brush, find_cell()), marks)
     moment = rows.time_s[np.flatnonzero(~np.isnan(rows.depth_mm))[row]]
-    (tmp_path / "a.html").write_bytes(outputs.played(work, marks, find_cell()))
+    (tmp_path / "a.html").write_bytes(outputs.played(work, loads_of(work), marks, find_cell()))
     image, said = browser.shown(tmp_path / "a.html", f"t={moment:.3f}&bare")
     assert said == []
     assert overlap(image, until(marks, 0, marks.passes[0].pose[row]), work) > 0.98

@@ -6,7 +6,9 @@ A sample, a thousand programs a dialect; benchmarks/mutations.py runs a thousand
 import re
 import subprocess
 
+import numpy as np
 import pytest
+from judge import verdict
 from judge.damage import DAMAGES, damaged
 from judge.table import Figures, measure
 from judge.verdict import judged
@@ -52,6 +54,36 @@ def test_the_judge_tells_them_apart(dialect, tmp_path):
     for name in ("sign", "digit", "line lost", "line moved", "mode"):
         assert "dangerous" in seen[name], name
     assert "harmless" in seen["last digit"] and "neither" in seen["header"]
+
+
+def test_a_retract_of_a_hundred_metres_is_judged_without_millions_of_samples(tmp_path, monkeypatch):
+    """It took twenty gigabytes."""
+    whole = made("corners", "linuxcnc", tmp_path).whole
+    most = 0
+
+    def sampled(points):
+        nonlocal most
+        most = max(most, float(np.ptp(points, axis=0).max()))
+        return points
+
+    monkeypatch.setattr(verdict, "_sampled", sampled)
+    last = [line for line in whole.text.split("\n") if line.startswith("G0 X")][-1]
+    high = last.replace("Z10.0000", "Z99910.0000")
+    text = high.join(whole.text.rsplit(last, 1))
+    assert judged(text, whole)[0] == "neither"
+    assert most < 1e3
+
+
+def test_what_shifts_the_next_program_is_not_harmless(tmp_path):
+    """G54 may be another system than the one that holds; G92 and, where no M2 puts it back, G91 stay behind."""
+    for dialect in ("linuxcnc", "grbl", "grbl-servo"):
+        whole = made("two lines", dialect, tmp_path).whole
+        first, _, rest = whole.text.partition("\n\n")
+        assert judged(f"{first}\nG54\n\n{rest}", whole)[0] == "neither"
+        end = "(end:" if dialect == "grbl-servo" else "M2\n"
+        for line in ("G92 X0 Y0", "G91"):
+            says = judged(whole.text.replace(end, f"{line}\n{end}"), whole)[0]
+            assert says == ("harmless" if line == "G91" and end == "M2\n" else "neither")
 
 
 RS274_SILENT = re.compile("compensation|mode|%|return|places|system|length|M2|letters|comment")

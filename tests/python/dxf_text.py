@@ -4,11 +4,14 @@ import io
 
 import numpy as np
 import shapely
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
 
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.dxf import read_dxf
 from brushsvg.drawing.dxf.library import ezdxf
 
+TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # p goes down to -200
 SHEET = (1000.0, 1000.0)  # given: the drawing's origin stays where it is
 
 
@@ -89,3 +92,25 @@ def bulged(vertices, closed=False):
         centre = (p + q) / 2 + 1j * (q - p) / 2 * (1 - bulge**2) / (2 * bulge)
         points += list(centre + (p - centre) * np.exp(4j * np.arctan(bulge) * np.linspace(0, 1, 4000)))
     return np.column_stack((np.real(points), np.imag(points)))
+
+
+def save_font(path, family, wide=600, slanted=False):
+    """A, x and p are boxes of that width, 1000 to the em and 100 between them, A 700 high; slanted: cut in half."""
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder([".notdef", "space", "A", "x", "p"])
+    builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space"})
+    glyphs = {"space": TTGlyphPen(None).glyph()}
+    for name, top in TOPS.items():
+        pen, bottom = TTGlyphPen(None), -200 if name == "p" else 0
+        pen.moveTo((0, bottom))
+        for corner in ((0, top), (wide, bottom)) if slanted else ((0, top), (wide, top), (wide, bottom)):
+            pen.lineTo(corner)
+        pen.closePath()
+        glyphs[name] = pen.glyph()
+    builder.setupGlyf(glyphs)
+    builder.setupHorizontalMetrics({name: (wide + 100, 0) for name in glyphs})
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupNameTable({"familyName": family, "styleName": "Regular"})
+    builder.setupOS2()
+    builder.setupPost()
+    builder.save(path)

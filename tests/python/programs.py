@@ -1,6 +1,11 @@
-"""What tests of `brushsvg check` share: shipped cells with their extension, and a call of the command."""
+"""What tests of programs share: shipped cells with their extension, a call of the command, and plans gone through."""
+
+from dataclasses import replace
 
 from brushsvg.cli import main
+from brushsvg.machine.paint_reload import PlanInLoads
+from brushsvg.machine.preflight import look
+from brushsvg.machine.program import WHOLE_JOB, walked
 
 LANGUAGES = {
     "linuxcnc-3axis": ".ngc",
@@ -15,3 +20,21 @@ def call(capsys, *words):
     status = main(list(words))
     told = capsys.readouterr()
     return status, told.out, told.err.splitlines()
+
+
+def whole(plan):
+    """A plan with one load for each stroke."""
+    return PlanInLoads(tuple(plan.sheet_mm), tuple(plan.passes))
+
+
+def program(plan, brush, cell, header=(), job=WHOLE_JOB):
+    """Its moves, or an Error where something forbids them."""
+    return replace(walked(whole(plan), brush, cell, job).allowed(), header=header)
+
+
+def forbidden(plan, brush, cell):
+    return walked(whole(plan), brush, cell).problems
+
+
+def problems(plan, brush, marks, cell, tolerance_mm):
+    return look(whole(plan), brush, marks, cell, tolerance_mm).problems

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import problems
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -12,7 +13,7 @@ from brushsvg.cli import main
 from brushsvg.machine.cell import Blending
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.corner_blending import blend_radii, blended, turns_rad
-from brushsvg.machine.preflight import as_exact_as, problems
+from brushsvg.machine.preflight import as_exact_as
 
 CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
 
@@ -80,6 +81,14 @@ def test_a_robot_does_not_blend_where_it_turns_back_or_presses():
     path = np.array([(0, 0, 0), (9, 0, 0), (1, 0.5, 0), (9, 1, 0), (9, 1, -2), (20, 1, -2)], dtype=float)
     assert (blend_radii(path, Blending(0.1, 5.0)) == 0).all()
     assert (blend_radii(path, Blending(0.1)) > 0).any()
+
+
+def test_corners_in_the_air_are_cut_by_little_however_coarse_the_plan():
+    """With 2 mm the tool went sideways from 4.8 mm below the safe height on."""
+    cell = find_cell("linuxcnc-3axis")
+    coarse = replace(cell, blending=replace(cell.blending, tolerance_mm=2.0))
+    assert as_exact_as(coarse, 10.0).blending.tolerance_mm == pytest.approx(0.04)
+    assert as_exact_as(coarse, 0.05).blending.tolerance_mm == pytest.approx(0.01)
 
 
 def test_without_tolerance_nothing_is_cut():

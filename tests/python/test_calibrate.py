@@ -22,6 +22,7 @@ TABLE = "kind,depth_mm,value_mm\n" + "".join(
 )
 
 
+@pytest.mark.slow
 def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"
@@ -409,6 +410,7 @@ WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
 
 
 @pytest.mark.parametrize("floored", [1, 3])
+@pytest.mark.slow
 def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
     """Readings where the law lies on its floor say nothing of its coefficients: 15 % of such calibrations were told to
     measure the first depth again."""

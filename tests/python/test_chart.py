@@ -43,6 +43,7 @@ def marks_of(made, brush):
     ids=["a4", "a5", "liner"],
 )
 @pytest.mark.parametrize("share", [0.75, 1.0, 1.25])
+@pytest.mark.slow
 def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
     """Also those of a brush that trails by a quarter more or less than was thought."""
     made = chart(brush, sheet)
@@ -96,6 +97,7 @@ def test_what_is_on_it():
             )
 
 
+@pytest.mark.slow
 def test_a_larger_sheet_has_more_strokes():
     brush = find_brush("round-6")
     counts = [len(chart(brush, sheet).strokes) for sheet in (A5, A4, (297.0, 420.0), (594.0, 841.0))]
@@ -115,7 +117,13 @@ def test_a_sheet_that_is_too_small_is_told_what_would_do(strokes):
         chart(find_brush("rigid"), A4)
 
 
-@pytest.mark.parametrize("name", [name for name in cell_names() if find_cell(name).language in POSTS])
+def all_but_the_first_slow(names):
+    return [*names[:1], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]
+
+
+@pytest.mark.parametrize(
+    "name", all_but_the_first_slow([name for name in cell_names() if find_cell(name).language in POSTS])
+)
 def test_a_program_for_every_cell(name, tmp_path, capsys):
     suffix = POSTS[find_cell(name).language].extensions[0]
     out = tmp_path / f"chart{suffix}"
@@ -126,7 +134,7 @@ def test_a_program_for_every_cell(name, tmp_path, capsys):
     assert "nothing forbids to run it" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("sheet", ["a5", "letter", "300x200"])
+@pytest.mark.parametrize("sheet", all_but_the_first_slow(["a5", "letter", "300x200"]))
 def test_the_markers_are_found_on_the_page(sheet, tmp_path):
     page, file = tmp_path / "page.svg", tmp_path / "chart.json"
     out = tmp_path / "plan.json"
@@ -173,19 +181,31 @@ def test_the_file_is_read_back():
     [
         ({"format": "x"}, "format", "does not say"),
         ({"version": 2}, "version", "version 2 of brushsvg/chart is not known; known is 1"),
+        ({"version": True}, "version", "version True of"),
+        ({"markers": [{"id": True, "corners_mm": [[0, 0]] * 4}]}, "markers[0]", "needs an id"),
+        (
+            {"markers": [{"id": 0, "corners_mm": [[0, 0]] * 3 + [[0, 0, 0]]}]},
+            "markers[0].corners_mm[3]",
+            "2 finite",
+        ),
+        (
+            {"strokes": [{"id": "a", "kind": "arc", "depth_mm": True}]},
+            "strokes[0].depth_mm",
+            "True is not a finite number",
+        ),
         ({"dictionary": "DICT_6X6"}, "dictionary", "must be of DICT_4X4_50"),
         ({"plan": None}, "plan", "has no plan"),
         ({"markers": [{"id": 0}]}, "markers[0]", "four corners_mm"),
         (
             {"markers": [{"id": 0, "corners_mm": [[0, 0]] * 3 + [[0, None]]}]},
-            "markers[0].corners_mm",
-            "2 finite",
+            "markers[0].corners_mm[3][1]",
+            "None is not a finite number",
         ),
         ({"strokes": []}, "strokes", "are not those of the plan"),
         (
             {"strokes": [{"id": "a", "kind": "arc", "depth_mm": "x"}]},
             "strokes[0].depth_mm",
-            "1 finite number",
+            "'x' is not a finite number",
         ),
     ],
 )
@@ -196,8 +216,11 @@ def test_a_damaged_file_names_the_key(change, where, said):
     assert refusal.value.where == where
     with pytest.raises(Error):
         read_chart(b"{")
+    with pytest.raises(Error, match="the key stands twice"):
+        read_chart(b'{"format": "brushsvg/chart", "format": "brushsvg/chart", "version": 1}')
 
 
+@pytest.mark.slow
 def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
     """A larger sheet makes surer, uneven edges less sure."""
 
@@ -226,6 +249,7 @@ def test_wrong_usage(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("deepest", [5.566, 9.6583])
+@pytest.mark.slow
 def test_no_depth_is_rounded_beyond_the_brush(deepest):
     made = chart(new_brush("own", 6.0, [(2, 1.0), (4, 2.0)], deepest), A4)
     assert max(stroke.depth_mm for stroke in made.strokes) == pytest.approx(deepest, abs=0.01)

@@ -217,6 +217,7 @@ PAINT = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\np
 
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
+@pytest.mark.slow
 def test_any_name_may_stand_beside_any_part(desk, capsys, name):
     """A drawing's own a+2 beside an a in parts, and names that a program writes otherwise, twice the same, cut."""
     long = "n" * 150
@@ -517,6 +518,10 @@ HARMLESS = {
         (r"(?m)^(M3 S6\d+\n)", r"\1\1"),
         (r"(?m)^(G1 X\S+ Y\S+) S(\d+)\n(G1 X\S+ Y\S+) S\2\n", r"\1 S\2\n\3\n"),
         (r"(?m)^F1200\.0", "F1080.0"),
+        (r"(?m)^M3 S640\n(G4 P0\.200\n)", r"\1"),  # the lift's steps one less, and waited for all the same
+        (r"(?m)^(M3 S640\n)(G4 P\S+\n)", r"\2\1"),
+        (r"(?m)^M3 S600\n(G4 P0\.017\n(?:G4 P0\.150\n)?F1200)", r"M3\n\1"),  # landed on the first way
+        (r"(?m)^F1200\.0\n(M3 S640\n)", r"F0.0\n\1"),  # nothing goes sideways at it
     ],
     "ur5e": [
         (r"(?m)^  movel", "movel"),
@@ -559,6 +564,7 @@ STATIONS = [
 
 @pytest.mark.parametrize("hand", [False, True])
 @pytest.mark.parametrize("cell", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
+@pytest.mark.slow
 def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
     """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
     if hand and cell == "grbl-servo":
@@ -732,6 +738,7 @@ CHANGED = {
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("suffix", CHANGED)
+@pytest.mark.slow
 def test_whatever_was_changed_is_told(desk, capsys, suffix):
     """Seen by comparing with the drawing's own plan, and with what would be written for the same strokes."""
     cell = {".script": ("--cell", "ur5e"), ".nc": ("--cell", "grbl-servo")}.get(suffix, ())
@@ -801,14 +808,14 @@ def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
 
 def test_a_blend_may_differ_by_what_rounded_moves_turn():
     """It hangs on the angle between two moves: a thousandth of a millimetre turns one of a millimetre much."""
-    like = _Alike(replace(find_cell("ur5e"), decimals=3), knows_speeds=True)
+    like = _Alike(replace(find_cell("ur5e"), decimals=3))
 
     def blend(mm):
         return Act(1, "move", "movep", (10.0, 20.0, -3.0), (20.0, 500.0), (mm,))
 
     assert like.is_same(blend(0.573), blend(0.540))
     assert not like.is_same(blend(0.900), blend(0.540))
-    like = _Alike(replace(find_cell("ur5e"), decimals=5), knows_speeds=True)
+    like = _Alike(replace(find_cell("ur5e"), decimals=5))
     assert not like.is_same(blend(0.573), blend(0.540))
 
 
@@ -828,6 +835,44 @@ def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
+def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_told(desk, capsys, drawing):
+    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    text = (desk / "two.nc").read_text()
+    for old, new, told in (
+        (r"(?m)^M3 S60[04]\n", "M3\n", "brushsvg would write"),
+        (r"(?m)^F1200\.0\nG1", "F0.0\nG1", "has no feed"),
+        (r"(?m)^F1200\.0\nG1", "F-1200.0\nG1", "is no feed"),
+        (r"(?m)^G1 (F\S+)$", r"G3 \1", "is a circle without end or centre"),
+    ):
+        (desk / "two.nc").write_text(edited(old, new, 0)(text))
+        status, _, err = call(capsys, "check", "two.nc", *drawing)
+        assert status == 1 and any(told in line for line in err), (old, err)
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
+    """Alone, too: a time may only be shorter by what lowered feeds have added since."""
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    seconds, length = (int(re.search(rf"{word}(\d+)", text)[1]) for word in ("time: about ", "length: "))
+    for drawing in ((), ("two.svg",)):
+        for old, new in (
+            (f"about {seconds} s", f"about {seconds - (3 if drawing else 5)} s"),
+            (f"about {seconds} s", f"about {seconds + 5} s"),
+            (f"length: {length} mm", f"length: {length * 9 // 10} mm"),
+            (f"length: {length} mm", f"length: {length + 4} mm"),
+        ):
+            (desk / program).write_text(edited(old, new)(text))
+            status, _, err = call(capsys, "check", program, *drawing)
+            assert status == 1 and any("brushsvg would write" in line for line in err), (drawing, new)
+    paint = {"ur5e": ("v=0.02000", "v=0.01000")}.get(name, ("F1200.0", "F600.0"))
+    (desk / program).write_text(text.replace(*paint))
+    status, _, err = call(capsys, "check", program)
+    assert (status, err) == (0, []), "slower since"
+
+
+@pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_a_servos_jump_within_a_lift_is_told(desk, capsys, drawing):
     """Steps that are waited for are slow only as long as they are steps."""
     words = ("two.svg", "two.nc", "--cell", "grbl-servo", "--compensation", "none")
@@ -838,6 +883,56 @@ def test_a_servos_jump_within_a_lift_is_told(desk, capsys, drawing):
     (desk / "two.nc").write_text("\n".join(lines) + "\n")
     status, _, err = call(capsys, "check", "two.nc", *drawing)
     assert status == 1 and any("at once while the brush touches" in line for line in err), err
+
+
+HUGE = "9" * 400
+NUMBERS = {
+    "linuxcnc-3axis": [r"(?<=Z-)3\.\d+", r"(?<=G1 X)\d+", r"(?<=F)480", r"(?<=G64 P)0"],
+    "grbl-servo": [r"(?<=S)636", r"(?<=F)360", r"(?<=G4 P)0"],
+    "ur5e": [r"(?<=v=)0\.02000", r"(?<=a=)0", r"(?<=r=)0", r"(?<=on_paper\()0", r"(?<=paper = p\[)-0"],
+}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", NUMBERS)
+def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(desk, capsys, name):
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    for old in NUMBERS[name]:
+        for new in (HUGE, "1" + 309 * "0", "12345678901"):
+            (desk / program).write_text(edited(old, new)(text))
+            status, _, err = call(capsys, "check", program, "two.svg")
+            assert (status, len(err)) == (1, 1) and "is larger than any number that brushsvg writes" in err[0]
+
+
+@pytest.mark.parametrize(("name", "most"), [("linuxcnc-3axis", 252), ("grbl-3axis", 79)])
+def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, most):
+    """LinuxCNC's interpreter stops at 253 letters; grbl keeps 79, which count no blanks."""
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    line = re.search(r"(?m)^G1 .*$", text)[0]
+    blanks = line.count(" ") if name == "grbl-3axis" else 0
+    for length in (most, most + 1):
+        longer = line + "0" * (length - len(line) + blanks)
+        (desk / program).write_text(text.replace(line, longer, 1))
+        status, _, err = call(capsys, "check", program, "two.svg")
+        assert (status == 0) == (length == most), err
+        assert length == most or f"has {length} letters, the controller reads no more than {most}" in err[0]
+
+
+def test_a_visit_to_the_paint_more_is_told_by_the_time_of_the_header(desk, capsys):
+    """Alone: nobody knows which colours were asked for, but each visit takes its time."""
+    station = '[[stations]]\nname = "ink"\nplace_mm = [-15, 10]\ndepth_mm = 5\nhold_s = 1\ndrip_s = 2\n'
+    text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "layer"\n' + station
+    (desk / "mine.toml").write_text(text)
+    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    visit = re.search(r"(?s)\(paint: ink\)\n.*?(?=\(stroke 1)", text)[0]
+    (desk / "two.ngc").write_text(text.replace("(stroke 2", f"{visit}F480.0\n(stroke 2"))
+    status, _, err = call(capsys, "check", "two.ngc", "--cell", "mine.toml")
+    assert status == 1 and any("(time: about" in line for line in err), err
 
 
 def test_a_title_that_stands_twice_is_told(desk, capsys):
@@ -859,6 +954,7 @@ SERVO_TABLES = [
 
 @pytest.mark.parametrize("table", SERVO_TABLES)
 @pytest.mark.parametrize("step_mm", [0.01, 0.1, 1.0])
+@pytest.mark.slow
 def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys, table, step_mm):
     text = (SHIPPED / "grbl-servo.toml").read_text()
     text = edited(r"(?m)^table = .*$", f"table = {table}")(text)

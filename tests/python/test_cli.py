@@ -76,7 +76,7 @@ WRITERS = {  # what is typed, what is written, and what more is said of it
     "text T out.svg --font font.svg": "",
     "border a.svg out.ngc": "takes about [0-9]+ s",
     "height out.ngc": "21 strokes, takes about [0-9]+ s",
-    "chart out.ngc --page out.svg --chart out.json": "[0-9]+ strokes, takes about [0-9] min [0-9]{2} s",
+    "chart out.ngc --page out.svg --chart out.json --strokes few": "[0-9]+ strokes, takes about [0-9] min [0-9]{2} s",
     "brush new out --lag 5 --width-at 3=2": "",
     "brush plot rigid out.svg": "",
     "calibrate m.csv -o out.json": "",
@@ -85,6 +85,7 @@ WRITERS = {  # what is typed, what is written, and what more is said of it
 
 
 @pytest.mark.parametrize("words", WRITERS)
+@pytest.mark.slow
 def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     (desk / "one.svg").write_text(drawing(LINE))
     (desk / "font.svg").write_text(
@@ -402,7 +403,8 @@ def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys
     refusal = json.loads(capsys.readouterr().err)
     assert (status, refusal["code"], refusal["advice"]) == (1, "program-format", "give --cell")
     suffix = Path(out).suffix.lower()
-    assert f"extension '{suffix}' is neither .json" in refusal["sentence"]
+    assert refusal["file"] == out, "not the drawing"
+    assert refusal["sentence"].startswith(f"the extension '{suffix}' is neither .json")
     assert refusal["sentence"].endswith(f"; {suffix} is for cell {cells}; give --cell")
     for cell in cells.split(" or "):  # which is true of each
         assert run(capsys, "height", out, "--cell", cell)[0] == 0
@@ -601,6 +603,7 @@ HIDDEN_STOP = f"""
         "cv2",
     ],
 )
+@pytest.mark.slow
 def test_ctrl_c_during_start_up_leaves_no_traceback(desk, name, how):
     code = STOPPED_AT.format(name=name, how=how)
     words = ["convert", "a.svg", "out.ngc", "--preview", "out.png"]

@@ -160,6 +160,18 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     assert "wide: width 12 mm" in refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
 
 
+def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
+    (desk / "fonts").mkdir()
+    (desk / "fonts" / "Lines.svg").write_text(
+        """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
+        <glyph unicode="T" d="M 0 700 L 500 700"/></font></svg>"""
+    )
+    monkeypatch.setattr("brushsvg.cli.commands.text._INKSCAPES", desk / "fonts")
+    assert main(["text", "T", "t.svg", "--font", "Lines.svg"]) == 0
+    capsys.readouterr()
+    assert "no such file" in refusal(capsys, "text", "T", "t.svg", "--font", "./Lines.svg")
+
+
 def test_text(desk, capsys):
     font = """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
       <glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>"""
@@ -167,7 +179,9 @@ def test_text(desk, capsys):
     assert main(["text", "T\\nTT", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
     passes, err = plan(desk, capsys, drawing="t.svg")
     assert (len(passes), err) == (6, [])
-    assert "no such file" in refusal(capsys, "text", "T", "t.svg", "--font", "none.svg")
+    assert "no such file; fonts of single lines come with Inkscape" in refusal(
+        capsys, "text", "T", "t.svg", "--font", "none.svg"
+    )
     assert "has no glyph for" in refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
     for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2

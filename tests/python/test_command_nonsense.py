@@ -103,6 +103,7 @@ def refused(desk, capsys, words) -> list[str]:
 @pytest.mark.parametrize(
     "command", [each for each in COMMANDS if any(word in SOUND for word in each.split())]
 )
+@pytest.mark.slow
 def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
     for word in {*command.split()} & {*SOUND}:
         path = desk / f"bad{Path(SOUND[word]).suffix}"
@@ -122,6 +123,7 @@ def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 @pytest.mark.parametrize("command", [each for each in COMMANDS if "OUT" in each and "MEASURED" not in each])
+@pytest.mark.slow
 def test_whatever_is_written_may_have_no_place(desk, capsys, command):
     for kind, place in PLACES.items():
         suffix = next(Path(word).suffix for word in command.split() if word.startswith("OUT"))

@@ -32,6 +32,7 @@ def by_every_move(points, path):
     some.sampled_from([0.0, 1e-3, 0.5, 30.0]),
     some.sampled_from(["along", "back", "anywhere"]),
 )
+@pytest.mark.slow
 def test_the_farthest_point_is_found_without_looking_at_every_move(seed, moves, points, away_mm, how):
     random = np.random.default_rng(seed)
     path = np.cumsum(
@@ -112,6 +113,7 @@ def leash_mm(one, other):
     some.sampled_from([0.0, 0.1, 0.4]),
     some.sampled_from([0.06, 0.2, 0.5, 1.0]),
 )
+@pytest.mark.slow
 def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves, how, away_mm, limit_mm):
     random = np.random.default_rng(seed)
     asked = np.cumsum(

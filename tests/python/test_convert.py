@@ -6,10 +6,11 @@ from dataclasses import replace
 import pytest
 
 from brushsvg.brush.library import find_brush
+from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.evaluation import report
 from brushsvg.machine import writer
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cell_file import SHIPPED, find_cell
 from brushsvg.pipeline import comparison, prediction, preparation
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -101,3 +102,46 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
     assert [p.stroke for p in moved.plan.passes] == [s.id for s in moved.strokes] == ["a", "near", "far"]
     assert [p.stroke for p in work.plan.passes] == [s.id for s in work.strokes] == ["a", "far", "near"]
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256
+
+
+FEW_COLOURS = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
+width="120mm" height="70mm" viewBox="0 0 120 70"><title>two</title>
+<g inkscape:groupmode="layer" inkscape:label="one" fill="none" stroke="#000000" stroke-width="3">
+<path id="a" d="M20 50 C40 10 60 10 90 40" data-brushsvg-passes="2"/>
+<path id="b" d="M20 60 h30 v-20 h-12" stroke="#ff0000" data-brushsvg-reload="true"/></g>
+<g inkscape:groupmode="layer" inkscape:label="two" fill="none" stroke="#000000" stroke-width="2">
+<path id="c" d="M20 20 h80 m0 3 h-80" data-brushsvg-reload="false"/></g></svg>"""
+PAINT = """
+[reload]
+when = "{when}"
+every_mm = 60
+[[stations]]
+name = "ink"
+place_mm = [-15, 20]
+depth_mm = 3
+[[stations]]
+name = "red"
+place_mm = [-15, 35]
+colours = ["#ff0000"]
+depth_mm = 2
+"""
+
+
+@pytest.mark.parametrize("when", ["length", "stroke", "layer"])
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
+def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypatch, name, when):
+    """But for what no plan tells, in the header: the drawing's title, and how it was planned."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "some.svg").write_text(FEW_COLOURS)
+    (tmp_path / "mine.toml").write_text((SHIPPED / f"{name}.toml").read_text() + PAINT.format(when=when))
+    suffix = ".script" if name == "ur5e" else ".ngc"
+    files = ("some.svg", "some.json"), ("some.json", f"by{suffix}"), ("some.svg", f"direct{suffix}")
+    for each in files:
+        assert main(["convert", *each, "--cell", "mine.toml", "--quiet"]) == 0
+    ours, theirs = ((tmp_path / f"{one}{suffix}").read_text().splitlines() for one in ("by", "direct"))
+    planned = re.compile(r"(\(|  # )(title|compensation|warnings): .*")
+    told = [[line for line in lines if not planned.fullmatch(line)] for lines in (ours, theirs)]
+    assert told[0] == told[1]
+    parts = [line for line in theirs if "stroke " in line]
+    assert any("a+2" in line for line in parts) == (when == "length") and any("a#2" in line for line in parts)
+    assert sum("paint: " in line for line in theirs) >= 3

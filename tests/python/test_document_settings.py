@@ -83,11 +83,12 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
 
 
 def test_a_chart_is_for_the_brush_and_machine_of_a_drawing(desk, capsys):
+    few = ("--strokes", "few")
     (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))
-    assert main(["chart", "said.ngc", "--drawing", "d.svg"]) == 0
-    assert main(["chart", "typed.ngc", "--brush", "round-6", "--cell", "grbl-3axis"]) == 0
+    assert main(["chart", "said.ngc", "--drawing", "d.svg", *few]) == 0
+    assert main(["chart", "typed.ngc", "--brush", "round-6", "--cell", "grbl-3axis", *few]) == 0
     assert (desk / "said.ngc").read_bytes() == (desk / "typed.ngc").read_bytes()
-    assert main(["chart", "said.ngc", "--drawing", "d.svg", "--cell", "linuxcnc-3axis"]) == 0
+    assert main(["chart", "said.ngc", "--drawing", "d.svg", "--cell", "linuxcnc-3axis", *few]) == 0
     assert (desk / "said.ngc").read_bytes() != (desk / "typed.ngc").read_bytes()
 
 

@@ -120,7 +120,7 @@ SHAPES = {
         True,
     ),
     "hatch of edges": (add_edges, EDGES, True),
-    "mpolygon": (lambda m: m.add_mpolygon(fill_color=1).paths.add_polyline_path(SQUARE, is_closed=True), ROUND, True),
+    "mpolygon": (lambda m: m.add_mpolygon().paths.add_polyline_path(SQUARE, is_closed=True), ROUND, True),
     "circle seen from below": (
         lambda m: m.add_circle((-10, 20), 30, dxfattribs={"extrusion": (0, 0, -1)}),
         circle((10, 20), 30),
@@ -137,7 +137,7 @@ SHAPES = {
         False,
     ),
 }  # fmt: skip
-FILLED = {"solid", "trace", "hatch", "hatch of edges", "mpolygon"}
+FILLED = {"solid", "trace", "hatch", "hatch of edges"}
 each_shape = pytest.mark.parametrize("name", SHAPES)
 
 
@@ -153,6 +153,7 @@ def test_every_entity_is_within_a_micrometre_of_the_true_curve(name):
 
 
 @each_shape
+@pytest.mark.slow
 def test_every_entity_in_a_block_goes_where_the_block_goes(name):
     """Scaled unevenly, turned and mirrored, in a block that is scaled and turned itself."""
     draw, points, closed = SHAPES[name]
@@ -215,6 +216,7 @@ def test_the_frame_of_a_smoothed_polyline_is_not_drawn():
 
 @pytest.mark.parametrize("pitch", [5, 0])
 @pytest.mark.parametrize("turns", [0.3, 1, 2.4])
+@pytest.mark.slow
 def test_a_helix_is_seen_from_above(pitch, turns):
     document = drawing()
     helix = document.modelspace().add_helix(30, pitch, turns)
@@ -507,6 +509,52 @@ def test_points_are_dabs_and_dimensions_are_unfolded():
     assert any((e.subpaths[0].cubics[..., 1] == 30).all() for e in rest)  # the dimension line
 
 
+def test_widths_in_a_squeezed_block_are_what_lies_across_the_line():
+    document = drawing()
+    block = document.blocks.new("b")
+    block.add_lwpolyline([(0, 0), (40, 0), (40, 40)], dxfattribs={"const_width": 1})
+    document.modelspace().add_blockref("b", (50, 50), {"yscale": 4, "rotation": 30})
+    (subpath,) = only(document).subpaths
+    assert subpath.widths[[0, -1], 1] == pytest.approx([4, 1])
+
+
+def test_widths_of_vertices_go_before_the_width_of_the_polyline():
+    def draw(msp):
+        msp.add_lwpolyline([(0, 0, 2, 2), (9, 0, 2, 2)], format="xyse", dxfattribs={"const_width": 5})
+
+    assert only(drawing(draw)).stroke_width_mm == 2
+
+
+def test_an_mpolygon_has_a_filling_and_a_border_of_their_colours():
+    document = drawing()
+    document.modelspace().add_mpolygon(color=1, fill_color=5).paths.add_polyline_path(SQUARE, is_closed=True)
+    border, filling = read(document).elements
+    assert (border.colour, border.fill_rule, border.stroke_width_mm) == ("#ff0000", "", 0.25)
+    assert (filling.colour, filling.fill_rule, filling.stroke_width_mm) == ("#0000ff", "evenodd", 0)
+    assert border.id == f"{filling.id}.border"
+
+
+@pytest.mark.parametrize(
+    ("draw", "header", "sentence"),
+    [
+        (lambda m: [m.add_point((k, 3)) for k in range(3)], {"$PDMODE": 3}, "points are shown as marks of kind 3"),
+        (lambda m: m.add_solid(SQUARE), {"$FILLMODE": 0}, "shapes and wide lines are shown by their outlines"),
+        (lambda m: setattr(m.add_line((0, 0), (9, 9)), "transparency", 0.5), {}, "it is see-through"),
+        (lambda m: m.add_line((0, 0), (9, 0), {"thickness": 5, "extrusion": (0, 1, 0)}), {}, "its thickness, which"),
+        (lambda m: m.add_hatch().set_gradient() or SQUARE, {}, "its gradient is not read"),
+    ],
+)  # fmt: skip
+def test_what_is_shown_otherwise_is_named_once(draw, header, sentence):
+    document = drawing()
+    drawn = draw(document.modelspace())
+    if drawn is SQUARE:
+        document.modelspace()[0].paths.add_polyline_path(SQUARE)
+    for name, value in header.items():
+        document.header[name] = value
+    (notice,) = read(document).notices
+    assert notice.sentence.startswith(sentence)
+
+
 def test_heights_are_left_out_once():
     design = read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 25))))
     assert [notice.sentence for notice in design.notices] == [
@@ -544,6 +592,7 @@ def test_from_a_file_to_strokes(tmp_path):
     assert read_dxf(encoded(drawing(draw))).sheet_mm == read_drawing(tmp_path / "a.DXF").sheet_mm
 
 
+@pytest.mark.slow
 def test_ezdxf_is_loaded_for_dxf_alone_and_leaves_nothing_at_home(tmp_path):
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: m.add_line((0, 0), (9, 9)))))
     (tmp_path / "a.svg").write_text(

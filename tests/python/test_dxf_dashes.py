@@ -5,7 +5,7 @@ import pytest
 from dxf_text import circle, drawing, encoded, only, read
 
 from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.dxf import read_dxf
+from brushsvg.drawing.dxf import linetypes, read_dxf
 from brushsvg.drawing.dxf.library import ezdxf
 from brushsvg.errors import Error
 
@@ -147,14 +147,16 @@ def test_lines_of_changing_width_stay_whole():
     assert [sentence for _, sentence, _ in said(design)] == ["its dashes are not read: its width varies"]
 
 
-def test_too_many_dashes_are_refused():
+def test_too_many_dashes_are_refused(monkeypatch):
+    monkeypatch.setattr(linetypes, "_MOST_DASHES", 1000)
+
     def draw(msp):
         for k in range(2):
-            msp.add_line((0, k), (0.12, k), {"linetype": "TINY"})
+            msp.add_line((0, k), (0.0012, k), {"linetype": "TINY"})
 
     with pytest.raises(
         Error,
-        match=r"dashes of 2e-06 mm would make 6e\+04 strokes where 40000 are left of the drawing's limit\nin LINE-",
+        match=r"dashes of 2e-06 mm would make 600 strokes where 400 are left of the drawing's limit\nin LINE-",
     ):
         read(typed(draw))
 

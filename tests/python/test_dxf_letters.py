@@ -6,41 +6,16 @@ import sys
 
 import numpy as np
 import pytest
-from dxf_text import drawing, encoded, only, read, text_dxf
-from fontTools.fontBuilder import FontBuilder
-from fontTools.pens.ttGlyphPen import TTGlyphPen
+from dxf_text import drawing, encoded, only, read, save_font, text_dxf
 
 from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.dxf import read_dxf
+from brushsvg.drawing.dxf import read_dxf, text_entities
 from brushsvg.drawing.dxf.library import ezdxf
 from brushsvg.errors import Error
 
 ALIGN = ezdxf.enums.TextEntityAlignment
 FOLDERS = ezdxf.fonts.font_manager.FONT_DIRECTORIES
-TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # p goes down to -200
 LIKE_SHX = "the drawing's SHX fonts are no strokes here"
-
-
-def save_font(path, family, wide=600):
-    """A, x and p are boxes of that width, 1000 to the em and 100 between them, A 700 high."""
-    builder = FontBuilder(1000, isTTF=True)
-    builder.setupGlyphOrder([".notdef", "space", "A", "x", "p"])
-    builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space"})
-    glyphs = {"space": TTGlyphPen(None).glyph()}
-    for name, top in TOPS.items():
-        pen, bottom = TTGlyphPen(None), -200 if name == "p" else 0
-        pen.moveTo((0, bottom))
-        for corner in ((0, top), (wide, top), (wide, bottom)):
-            pen.lineTo(corner)
-        pen.closePath()
-        glyphs[name] = pen.glyph()
-    builder.setupGlyf(glyphs)
-    builder.setupHorizontalMetrics({name: (wide + 100, 0) for name in glyphs})
-    builder.setupHorizontalHeader(ascent=800, descent=-200)
-    builder.setupNameTable({"familyName": family, "styleName": "Regular"})
-    builder.setupOS2()
-    builder.setupPost()
-    builder.save(path)
 
 
 @pytest.fixture
@@ -102,10 +77,10 @@ def test_text_is_a_filled_shape_in_its_font(fonts):
     ("align", "box"),
     [
         ("LEFT", (0, 0, 13, 7)),
-        ("CENTER", (-6.5, 0, 6.5, 7)),
-        ("RIGHT", (-13, 0, 0, 7)),
+        ("CENTER", (-7, 0, 6, 7)),
+        ("RIGHT", (-14, 0, -1, 7)),
         ("TOP_LEFT", (0, -7, 13, 0)),
-        ("MIDDLE_CENTER", (-6.5, -3.5, 6.5, 3.5)),
+        ("MIDDLE_CENTER", (-7, -3.5, 6, 3.5)),
     ],
 )
 @pytest.mark.parametrize("turned", [0, 90])
@@ -126,9 +101,9 @@ def test_text_is_aligned_turned_and_stretched(fonts, align, box, turned):
 def test_text_fits_between_two_points(fonts):
     document = in_boxes()
     text = document.modelspace().add_text("AA", height=7, dxfattribs={"style": "Boxes"})
-    text.set_placement((0, 0), (26, 0), align=ALIGN.FIT)
+    text.set_placement((0, 0), (28, 0), align=ALIGN.FIT)
     (element,) = read(document).elements
-    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]
+    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]  # and the distance to a next letter, 2
 
 
 def test_text_in_blocks_and_from_below(fonts):
@@ -154,6 +129,63 @@ def test_attributes_are_text_at_their_own_place(fonts):
     assert element.id.startswith(f"INSERT-{insert.dxf.handle}/ATTRIB-")
     assert boxes(element) == [(10, 0, 16, 7)]
     assert element.colour == "#00ff00"
+
+
+def test_constant_attributes_are_text_and_definitions_elsewhere_are_named(fonts):
+    document = in_boxes()
+    block, msp = document.blocks.new("b"), document.modelspace()
+    for flags in (0, 1, 2, 3):
+        block.add_attdef("T", (20 * flags, 0), "A", height=7, dxfattribs={"style": "Boxes", "flags": flags})
+    msp.add_blockref("b", (0, 0))
+    msp.add_attdef("T", (0, 50), "A", height=7, dxfattribs={"style": "Boxes"})
+    design = read(document)
+    (element,) = design.elements
+    assert boxes(element) == [(40, 0, 46, 7)]
+    assert "attribute definitions are no text of the drawing: 1 entity left out" in sentences(design)
+
+
+def test_codes_of_text(fonts):
+    document = in_boxes()
+    for words in ("%%065", "%%uA"):
+        document.modelspace().add_text(words, height=7, dxfattribs={"style": "Boxes"})
+    design = read(document)
+    assert [boxes(element) for element in design.elements] == [[(0, 0, 6, 7)]] * 2
+    assert sum("lines along the letters" in sentence for sentence in sentences(design)) == 1
+
+
+@pytest.mark.parametrize("kind", ["TEXT", "MTEXT"])
+def test_text_that_does_not_say_its_height_is_damaged(fonts, kind):
+    line = "0 LINE 8 0 10 0 20 0 11 5 21 5"
+    design = read_dxf(
+        text_dxf(line, f"0 {kind} 8 0 10 0 20 0 1 A"), ReadOptions(sheet_mm=(99, 99), units="mm")
+    )
+    assert [(notice.sentence, notice.damaged) for notice in design.notices] == [
+        ("it is damaged (it has no height): left out", True)
+    ]
+
+
+def test_letters_of_several_heights_in_one_word_stand_on_one_line(fonts):
+    document = in_boxes()
+    document.modelspace().add_mtext(r"A{\H2x;A}", {"style": "Boxes", "char_height": 7, "insert": (0, 50)})
+    small, large = read(document).elements
+    assert (boxes(small), boxes(large)) == ([(0, 36, 6, 43)], [(7, 36, 19, 50)])
+
+
+@pytest.mark.parametrize(
+    ("words", "attributes", "sentence"),
+    [
+        (r"A{\T2;A}", {}, "the distances between its letters"),
+        ("A", {"bg_fill": 3}, "its background is not painted"),
+        ("A", {"flow_direction": 3}, "its letters one below the other"),
+        (r"A{\H2x;A}", {"line_spacing_style": 2}, "its lines are set as far apart"),
+        (r"A {\H0;A}", {}, "it is damaged (its height is 0.0)"),
+    ],
+)
+def test_what_of_mtext_is_not_read_is_named(fonts, words, attributes, sentence):
+    document = in_boxes()
+    document.modelspace().add_line((0, 0), (5, 5))
+    document.modelspace().add_mtext(words, {"style": "Boxes", "char_height": 7} | attributes)
+    assert any(told.startswith(sentence) for told in sentences(read(document)))
 
 
 def test_an_attribute_may_have_lines(fonts):
@@ -299,12 +331,13 @@ def test_empty_text_is_named(fonts):
 
 
 @pytest.mark.parametrize("kind", ["add_text", "add_mtext"])
-def test_long_text_is_refused_however_it_is_repeated(fonts, kind):
+def test_long_text_is_refused_however_it_is_repeated(fonts, kind, monkeypatch):
+    monkeypatch.setattr(text_entities, "_MOST_LETTERS", 2000)
     document = in_boxes()
     getattr(document.blocks.new("b"), kind)("A" * 100, dxfattribs={"style": "Boxes"})
     grid = {"row_count": 30, "column_count": 30, "row_spacing": 9, "column_spacing": 9}
     document.modelspace().add_blockref("b", (0, 0), grid)
-    with pytest.raises(Error, match="the drawing's text unfolds to more than 50000 letters"):
+    with pytest.raises(Error, match="the drawing's text unfolds to more than 2000 letters"):
         read(document)
 
 
@@ -337,6 +370,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
     assert next(notice.damaged for notice in design.notices if notice.where.startswith("TEXT"))
 
 
+@pytest.mark.slow
 def test_text_leaves_nothing_at_home(tmp_path):
     """Whatever fonts this machine has."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))

@@ -1,7 +1,5 @@
 """Shapes wider than the brush, filled in several passes: what discs and what the brush cover of them."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 import shapely
@@ -146,9 +144,8 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
 
 def test_what_stays_unpainted_is_told():
     """A brush without narrow marks cannot enter corners."""
-    blunt = SimpleNamespace(
-        name="blunt", width_follows_depth=lambda: True, half_width_range_mm=lambda: (4.0, HALF_MM)
-    )
+    blunt = find_brush("round-6")
+    blunt.half_width = _core.Profile([4.0, (HALF_MM - 4.0) / blunt.depth_range_mm[1]])
     (stroke,) = of("M10 5H26V21H10Z")
     passes, _, (notice,) = within_reach([stroke], blunt, "passes")
     left = share_left(region(stroke.wanted_mm), passes)

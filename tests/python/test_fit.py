@@ -118,6 +118,7 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
 
 
 @pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
+@pytest.mark.slow
 def test_intervals_cover_the_truth(norm):
     covered = []
     for seed in range(400):

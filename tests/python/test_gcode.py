@@ -7,12 +7,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from programs import program
 
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
-from brushsvg.machine.program import program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 

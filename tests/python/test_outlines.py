@@ -344,6 +344,7 @@ def test_clearance_is_the_distance_from_the_outline_inside_and_out():
     assert _core.clearance(rings, points) == pytest.approx(lines.distance(shapely.points(points)))
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])

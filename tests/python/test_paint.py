@@ -5,16 +5,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from programs import call, forbidden, whole
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.errors import Error
+from brushsvg.evaluation.report import measure
 from brushsvg.machine import writer
 from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.paint_reload import in_loads, painted_mm, too_long, visits
-from brushsvg.machine.program import forbidden, visit
+from brushsvg.machine.preflight import look
+from brushsvg.machine.program import visit, walked
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
@@ -42,12 +45,12 @@ def names(found):
 
 
 def test_no_reload_no_visits():
-    assert visits(plan_of((10, "#000000", "")), find_cell()) == ()
+    assert visits(whole(plan_of((10, "#000000", ""))), find_cell()) == ()
 
 
 def test_paint_lasts_so_far():
     plan = plan_of(*[(40, "#000000", "")] * 6)
-    assert names(visits(plan, cell_with(Reload("length", 100.0)))) == [
+    assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
         ["black"],
         [],
         ["black"],
@@ -55,18 +58,18 @@ def test_paint_lasts_so_far():
         ["black"],
         [],
     ]
-    assert names(visits(plan, cell_with(Reload("length", 1000.0)))) == [["black"], [], [], [], [], []]
+    assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)))) == [["black"], [], [], [], [], []]
 
 
 def test_every_stroke_or_every_layer():
     plan = plan_of((9, "#000000", "a"), (9, "#000000", "a"), (9, "#000000", "b"))
-    assert names(visits(plan, cell_with(Reload("stroke")))) == [["black"]] * 3
-    assert names(visits(plan, cell_with(Reload("layer")))) == [["black"], [], ["black"]]
+    assert names(visits(whole(plan), cell_with(Reload("stroke")))) == [["black"]] * 3
+    assert names(visits(whole(plan), cell_with(Reload("layer")))) == [["black"], [], ["black"]]
 
 
 def test_another_colour_is_washed_for():
     plan = plan_of((9, "#000000", ""), (9, "#FF0000", ""), (9, "#00ff00", ""), (9, "#000000", ""))
-    found = names(visits(plan, cell_with(Reload("length", wash="water"))))
+    found = names(visits(whole(plan), cell_with(Reload("length", wash="water"))))
     assert found == [["black"], ["water", "any"], [], ["water", "black"]], (
         "red and green come from one vessel"
     )
@@ -74,7 +77,7 @@ def test_another_colour_is_washed_for():
 
 def test_a_resumed_job_begins_with_paint():
     plan = plan_of(*[(40, "#000000", "")] * 4)
-    assert names(visits(plan, cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
+    assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
         ["black"],
         [],
         ["black"],
@@ -85,7 +88,7 @@ def test_a_resumed_job_begins_with_paint():
 def test_a_colour_that_nobody_serves_is_refused():
     cell = cell_with(Reload("stroke"), BLACK)
     with pytest.raises(Error, match="has paint of colour #ff0000; there are #000000") as refusal:
-        visits(plan_of((9, "#000000", ""), (9, "#ff0000", "")), cell)
+        visits(whole(plan_of((9, "#000000", ""), (9, "#ff0000", ""))), cell)
     assert refusal.value.where == "s2"
 
 
@@ -134,8 +137,8 @@ def test_a_stroke_may_ask_for_paint_or_go_without():
     plan = plan_of(
         (9, "#000000", ""), (9, "#000000", "", '{"reload": true}'), (999, "#000000", "", '{"reload": false}')
     )
-    assert names(visits(plan, cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
-    assert in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))) is plan
+    assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
+    assert in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))) == whole(plan)
 
 
 def test_names_do_not_make_a_stroke_a_part_of_another():
@@ -150,7 +153,7 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
     plan = _core.Plan(brush.name, "", (400.0, 100.0), passes)
     cell = cell_with(Reload("length", every, 5.0))
     loads = in_loads(plan, brush, cell)
-    assert [a_pass.stroke for a_pass in loads.passes] == names
+    assert [a_pass.stroke for a_pass in loads.loads] == names
     assert [bool(stations) for stations in visits(loads, cell)] == [
         True,
         False,
@@ -160,7 +163,7 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
         False,
         True,
     ]
-    assert visits(plan, cell) == visits(loads, cell)
+    assert visits(whole(plan), cell) == visits(loads, cell)
 
 
 def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
@@ -171,13 +174,13 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
     for poses in (np.column_stack([step, np.full(40, -5.0)]), hairline):
         passes = [_core.Pass("rub", poses + np.array([30, 30, 0]), 20.0, "", "#000000")]
         plan = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell)
-        assert [a_pass.stroke for a_pass in plan.passes] == ["rub"]
+        assert [a_pass.stroke for a_pass in plan.loads] == ["rub"]
         ((where, sentence),) = too_long(plan, brush, cell)
         assert where == "rub" and sentence.startswith(
             f"{painted_mm(passes[0]):.0f} mm are painted without a place"
         )
         passes[0].settings = '{"reload": false}'
-        assert too_long(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell) == []
+        assert too_long(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
     for every in (40.0, 90.0):  # a line is cut between its two poses
         long = [
             _core.Pass(
@@ -186,7 +189,7 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
         ]
         cell = cell_with(Reload("length", every, 5.0))
         loads = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), long), brush, cell)
-        assert len(loads.passes) >= 350 / every and too_long(loads, brush, cell) == []
+        assert len(loads.loads) >= 350 / every and too_long(loads, brush, cell) == []
 
 
 def long_plan(brush):
@@ -206,28 +209,81 @@ def long_plan(brush):
 def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     brush = find_brush("round-6")
     cell = cell_with(Reload("length", 120.0, 6.0))
-    whole = long_plan(brush)
-    plan = in_loads(whole, brush, cell)
-    assert [a_pass.stroke for a_pass in plan.passes] == [
+    plan = long_plan(brush)
+    loads = in_loads(plan, brush, cell)
+    assert [a_pass.stroke for a_pass in loads.loads] == [
         "short",
         "long",
         "long+2",
         "long+3",
         "last",
     ]
-    loads = [("short", 1), ("long", 1), ("long", 2), ("long", 3), ("last", 1)]
-    assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in plan.passes] == loads
-    assert {a_pass.settings for a_pass in plan.passes} == {"{}"}
-    assert names(visits(plan, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
-    assert max(map(painted_mm, plan.passes)) < 120 + 8
+    names_of_loads = [("short", 1), ("long", 1), ("long", 2), ("long", 3), ("last", 1)]
+    assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in loads.loads] == names_of_loads
+    assert {a_pass.settings for a_pass in loads.loads} == {"{}"}
+    assert names(visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
+    assert max(map(painted_mm, loads.loads)) < 120 + 8
     rings = []
-    for each in (whole, plan):
+    for each in (plan, loads.as_plan()):
         marks = _core.simulate(each, brush)
         _core.trace_outlines(marks, brush)
         rings.append(marks.outline_mm)
     assert len(rings[0]) == len(rings[1]), "no gap, no island"
     assert _core.overlap(*rings) > 0.99
-    assert in_loads(whole, brush, cell_with(Reload("length", 1000.0))) is whole
+    assert in_loads(plan, brush, cell_with(Reload("length", 1000.0))) == whole(plan)
+
+
+def test_loads_are_no_plan():
+    """What was cut is not cut again, nor reported as if each load were a stroke."""
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
+    loads = in_loads(long_plan(brush), brush, cell)
+    for taken in (lambda: in_loads(loads, brush, cell), lambda: measure(loads, None, brush, None)):
+        with pytest.raises(AttributeError, match="passes"):
+            taken()
+    with pytest.raises(AttributeError, match="loads"):
+        visits(long_plan(brush), cell)
+
+
+def test_what_every_load_does_is_told_once_of_its_stroke():
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
+    plan = long_plan(brush)
+    for a_pass in plan.passes:
+        a_pass.speed_mm_s = 99.0
+    told = walked(in_loads(plan, brush, cell), brush, cell).problems
+    assert [where for where, _ in told] == ["short", "long", "last"]
+
+
+def test_all_that_is_told_of_a_job_counts_loads(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    brush = find_brush("round-6")
+    (tmp_path / "long.json").write_text(_core.write_plan(long_plan(brush)))
+    cell = replace(cell_with(Reload("length", 120.0, 6.0), ANY), name="paint")
+    (tmp_path / "paint.toml").write_text(write_cell(cell))
+    told = {}
+    for words in (
+        "convert long.json x.ngc",
+        "animate long.json x.html",
+        "convert long.json last.ngc --from-stroke 4",
+    ):
+        status, _, (line,) = call(capsys, *words.split(), "--cell", "paint.toml")
+        assert status == 0
+        told[words.split()[2]] = line.partition(": written; ")[2]
+    assert told["x.ngc"] == told["x.html"] and told["x.ngc"].startswith("5 strokes, takes about ")
+    assert told["last.ngc"].startswith("2 strokes, ")
+    header = (tmp_path / "x.ngc").read_text()
+    assert "round-6, 5 strokes" in header and told["x.ngc"].partition("takes ")[2] in header
+
+
+def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
+    """Both ends may be where the tool may go, and not all that lies between."""
+    brush = find_brush("round-6")
+    cell = cell_with(Reload("stroke"), ANY)
+    wall = ((-12.0, -50.0, -50.0), (-8.0, 150.0, 50.0))
+    cell = replace(cell, workspace=replace(cell.workspace, keep_out_mm=(wall,)))
+    cell = replace(cell, stations=(replace(ANY, wipe_mm=()),))
+    plan = long_plan(brush)
+    told = look(in_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05).problems
+    assert told and all("keeps it out of" in sentence for _, sentence in told)
 
 
 def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
@@ -256,3 +312,16 @@ def test_a_station_on_the_sheet_or_far_from_it_is_refused():
             sentence for where, sentence in forbidden(plan_of((9, "", "")), BRUSH, cell) if where == "ink"
         ]
         assert len(told) == 1 and words in told[0]
+
+
+def test_before_each_part_of_a_plan_in_loads_that_was_read_back_paint_is_fetched():
+    """plan.json keeps no number of a part: lengths tell again that paint is due."""
+    brush = find_brush("round-6")
+    line = _core.Pass("s", np.array([(20, 50, 0), (40, 50, -3), (380, 50, -3), (372, 50, 0)], float), 20.0)
+    whole = _core.Plan("round-6", "", (400.0, 100.0), [line])
+    cell = cell_with(Reload("length", 100.0, 5.0), ANY)
+    parts = in_loads(whole, brush, cell)
+    assert len(parts.passes) > 3
+    again = _core.read_plan(_core.write_plan(parts))
+    assert [each.stroke for each in again.passes] == [each.stroke for each in parts.passes]
+    assert names(visits(again, cell)) == names(visits(parts, cell)) == [["any"]] * len(parts.passes)

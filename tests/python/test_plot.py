@@ -11,6 +11,7 @@ from brushsvg.cli import main
 
 
 @pytest.mark.parametrize("name", ["round-6", "rigid"])
+@pytest.mark.slow
 def test_both_kinds_of_picture_are_the_same_twice(name):
     brush = find_brush(name)
     for suffix, start in ((".svg", b"<?xml"), (".png", b"\x89PNG")):

@@ -4,11 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from programs import forbidden, program, whole
 
 from brushsvg.errors import Error, Notice
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import SAFE_MEANINGS, duration_s
-from brushsvg.machine.program import Job, forbidden, program, unchecked_program
+from brushsvg.machine.program import Job, unchecked_program
 
 
 def plan_of(*poses, speed=20.0, sheet=(100.0, 60.0)):
@@ -66,11 +67,11 @@ def test_duration_counts_every_way_at_its_speed_from_rest_to_rest():
     cell, fast = find_cell(), brush_of(40.0)
     expected = moving_s(9, 30) + moving_s(1, 8) + moving_s(30, 20) + moving_s(1, 8) + moving_s(9, 60)
     line = [(0, 0, 0), (30, 0, 0)]
-    assert duration_s(unchecked_program(plan_of(line), fast, cell)) == pytest.approx(expected)
-    twice = duration_s(unchecked_program(plan_of(line, line), fast, cell))
+    assert duration_s(unchecked_program(whole(plan_of(line)), fast, cell)) == pytest.approx(expected)
+    twice = duration_s(unchecked_program(whole(plan_of(line, line)), fast, cell))
     assert twice == pytest.approx(2 * expected + moving_s(30, 60))
     slowed = expected + moving_s(9, 25) - moving_s(9, 30)
-    assert duration_s(unchecked_program(plan_of(line), BRUSH, cell)) == pytest.approx(slowed)
+    assert duration_s(unchecked_program(whole(plan_of(line)), BRUSH, cell)) == pytest.approx(slowed)
 
 
 def test_a_job_may_begin_later_and_the_paper_lie_higher():

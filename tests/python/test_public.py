@@ -110,6 +110,7 @@ def test_the_short_example_refuses_in_a_sentence(tmp_path):
     assert not (tmp_path / "x.ngc").exists()
 
 
+@pytest.mark.slow
 def test_the_demo_leaves_everything(tmp_path):
     out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
     names = {path.name for path in (tmp_path / "demo").iterdir()}

@@ -18,6 +18,7 @@ def test_no_public_name_is_forgotten():
 
 
 @pytest.mark.parametrize("batch", range(BATCHES))
+@pytest.mark.slow
 def test_nonsense_ends_in_a_result_or_a_sentence(batch):
     done = subprocess.run(
         [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS)[batch::BATCHES]],

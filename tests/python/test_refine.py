@@ -24,6 +24,7 @@ def curves(count: int, seed: int = 3) -> list:
     return made
 
 
+@pytest.mark.slow
 def test_never_worse_by_the_report_and_better_on_average():
     strokes = curves(10)
     closed, refined = overlaps(strokes, BRUSH, "closed"), overlaps(strokes, BRUSH, "refined")
@@ -31,6 +32,7 @@ def test_never_worse_by_the_report_and_better_on_average():
     assert refined.mean() > closed.mean() + 0.005
 
 
+@pytest.mark.slow
 def test_never_worse_on_small_drawings():
     won = gains(24, 5, BRUSH)  # tests/integration does more of them
     assert won.min() >= 0.0
@@ -43,6 +45,7 @@ def test_a_corner_on_a_knife_s_edge_stays_as_it_was():
     assert overlaps(corner, BRUSH, "refined") >= overlaps(corner, BRUSH, "closed")
 
 
+@pytest.mark.slow
 def test_side_by_side_gives_what_each_alone_does():
     strokes = curves(19)
     together = _core.compensate(strokes, BRUSH, SHEET, "refined")
@@ -84,6 +87,7 @@ def test_an_unknown_way_is_refused():
         _core.compensate(curves(1), BRUSH, SHEET, "best")
 
 
+@pytest.mark.slow
 def test_from_the_command_line(tmp_path, capsys):
     drawing = tmp_path / "curve.svg"
     drawing.write_text(

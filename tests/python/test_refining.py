@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from programs import problems
 
 from brushsvg import _core, cli, compensate, find_brush, find_cell
-from brushsvg.machine.preflight import as_exact_as, problems
+from brushsvg.machine.preflight import as_exact_as
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, _misses, prepare
 from brushsvg.planning.refinement import towards_reach

@@ -8,14 +8,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from programs import call
+from programs import call, program
 from test_gcode import TWO, text_of
 
 from brushsvg.errors import Error
 from brushsvg.machine.cell import Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
-from brushsvg.machine.program import Job, program
+from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
 from brushsvg.verification.against_regenerated import _Alike
 from brushsvg.verification.readback import Act
@@ -167,13 +167,26 @@ def test_the_output_is_never_switched_off():
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     """Where the line before it was held, rounded heights do not tell to the value: a lift that begins four values
     later waits a tenth of a millimetre less, and was taken for one that was changed."""
-    like = _Alike(CELL, knows_speeds=True)
+    like = _Alike(CELL)
 
     def lift(waits_s):
         return Act(1, "lift", same=(510.0, waits_s, 500.0, 510.0))
 
     assert like.is_same(lift(0.275), lift(0.325))
     assert not like.is_same(lift(0.150), lift(0.325)), "shorter than that something was taken away"
+
+
+def test_a_way_too_steep_for_values_that_change_along_with_it_is_refused():
+    """Its parts were shorter than the last decimal: all its heights came at once, at a feed that grbl does not run."""
+    steep = [(20, 20, 0), (20.0008, 20, -4), (40, 20, -4), (40, 20, 0)]
+    sentence = (
+        r"near x 20\.0, y 20\.0 mm the height changes by 4\.00 mm over 0\.0008 mm: too steep for the servo"
+    )
+    with pytest.raises(Error, match=sentence):
+        text_of(("a", steep, 20.0), cell="grbl-servo")
+    for width in (0.0004, 0.05):  # the lift alone, and what every part of is left
+        steep[1] = (20 + width, 20, -4)
+        assert text_of(("a", steep, 20.0), cell="grbl-servo")
 
 
 def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():

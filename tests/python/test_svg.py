@@ -721,14 +721,14 @@ def test_deep_nesting_is_walked_without_recursion():
 @pytest.mark.parametrize(
     "body",
     [
-        f'<path d="M0 0{" " * 300_000}!"/>',
-        f'<path d="M0 0 {"1" * 300_000}!"/>',
-        f'<path style="{"(" * 300_000}" d="M0 0H1"/>',
-        f'<path style="stroke:a{" " * 300_000}b" d="M0 0H1"/>',
-        f'<path transform="{"a" * 300_000}" d="M0 0H1"/>',
-        f'<path transform="rotate({" " * 300_000}" d="M0 0H1"/>',
-        f'<line x2="{"1" * 300_000}!"/>',
-        f'<path stroke="rgb({"1" * 300_000}" d="M0 0H1"/>',
+        f'<path d="M0 0{" " * 100_000}!"/>',
+        f'<path d="M0 0 {"1" * 100_000}!"/>',
+        f'<path style="{"(" * 100_000}" d="M0 0H1"/>',
+        f'<path style="stroke:a{" " * 100_000}b" d="M0 0H1"/>',
+        f'<path transform="{"a" * 100_000}" d="M0 0H1"/>',
+        f'<path transform="rotate({" " * 100_000}" d="M0 0H1"/>',
+        f'<line x2="{"1" * 100_000}!"/>',
+        f'<path stroke="rgb({"1" * 100_000}" d="M0 0H1"/>',
     ],
 )
 def test_long_nonsense_takes_no_longer_than_its_length(body):

@@ -128,12 +128,12 @@ def test_a_variable_that_leads_to_itself_is_no_value():
             "<g>" * 3000 + P + "</g>" * 3000,
         ),
         ("h ~ " + "g ~ " * 6 + "path{stroke:red}", "<g/>" * 3000 + P),
-        ("g:has(x) {stroke:red}", "<g>" * 8000 + P + "</g>" * 8000),
-        ("".join(f"[a{k}]{{stroke:red}}" for k in range(9000)), '<path d="M0 0H1"/>' * 40000),
+        ("g:has(x) {stroke:red}", "<g>" * 2500 + P + "</g>" * 2500),
+        ("".join(f"[a{k}]{{stroke:red}}" for k in range(2000)), '<path d="M0 0H1"/>' * 4000),
     ],
 )
 def test_selectors_that_would_take_for_ever_are_refused(css, body, monkeypatch):
-    monkeypatch.setattr(css_selectors, "STEP_LIMIT", 200_000)
+    monkeypatch.setattr(css_selectors, "STEP_LIMIT", 20_000)
     with pytest.raises(Error, match="take too long"):
         read(f"<style>{css}</style>{body}")
 
@@ -164,7 +164,7 @@ def test_select():
 
 @pytest.mark.parametrize(
     "body",
-    [f'<path style="stroke:{"(" * 100_000}" d="M0 0H5"/>', f"<style>{'a{' * 100_000}</style>{P}"],
+    [f'<path style="stroke:{"(" * 30_000}" d="M0 0H5"/>', f"<style>{'a{' * 30_000}</style>{P}"],
 )
 def test_css_nested_too_deeply(body):
     try:

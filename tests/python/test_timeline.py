@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from brushsvg._core import Marks, Pass, simulate
+from programs import whole
 
 from brushsvg.brush import library
 from brushsvg.errors import Error
@@ -49,7 +50,7 @@ def played(request, works):
     how = request.param
     work, marks = works("closed", "rigid") if how == "rigid" else works("closed" if how == "ur5e" else how)
     cell = cell_with(POT, name="ur5e" if how == "ur5e" else "linuxcnc-3axis")
-    program = whole_program(work.plan, work.brush, cell)
+    program = whole_program(whole(work.plan), work.brush, cell)
     return work, marks, program, timeline(program, marks)
 
 
@@ -117,7 +118,7 @@ def test_the_brush_does_what_the_marks_say_and_nothing_in_the_air(played):
 
 def test_a_wait_for_a_person_is_a_short_pause_with_its_message(works):
     work, marks = works()
-    program = whole_program(work.plan, work.brush, cell_with(HAND))
+    program = whole_program(whole(work.plan), work.brush, cell_with(HAND))
     rows = timeline(program, marks)
     assert [pause.message for pause in rows.pauses] == ["dip the brush: Mary"] * 2
     assert rows.time_s[-1] == pytest.approx(duration_s(program) + 2 * HAND_PAUSE_S)
@@ -133,7 +134,7 @@ def test_a_stroke_may_begin_and_end_pressed(works):
     passes = [Pass("pressed", np.array([(30.0, 30, -2), (60, 30, -2)]), 20.0)]
     passes.append(Pass("spot", np.array([(80.0, 30, -2)]), 20.0))
     plan.passes = passes
-    program, marks = whole_program(plan, work.brush, find_cell()), simulate(plan, work.brush)
+    program, marks = whole_program(whole(plan), work.brush, find_cell()), simulate(plan, work.brush)
     rows = timeline(program, marks)
     assert (np.diff(rows.time_s) >= 0).all()
     assert rows.time_s[-1] == pytest.approx(duration_s(program))
@@ -151,7 +152,7 @@ def test_where_the_marks_say_lifted_the_brush_is_in_the_air(works):
     }
     depth_mm = np.where(columns["pose"] > 5, -1.0, line.depth_mm)
     lifted = SimpleNamespace(**columns, depth_mm=depth_mm)
-    rows = timeline(whole_program(plan, work.brush, find_cell()), SimpleNamespace(passes=[lifted]))
+    rows = timeline(whole_program(whole(plan), work.brush, find_cell()), SimpleNamespace(passes=[lifted]))
     assert (~np.isnan(rows.depth_mm)).sum() == (columns["pose"] <= 5).sum()
     assert (np.isnan(rows.contact_mm[:, 0]) == np.isnan(rows.depth_mm)).all()
 
@@ -161,4 +162,4 @@ def test_nothing_to_play_is_refused(works):
     plan = work.plan
     plan.passes = []
     with pytest.raises(Error, match="nothing to play"):
-        timeline(whole_program(plan, work.brush, find_cell()), Marks())
+        timeline(whole_program(whole(plan), work.brush, find_cell()), Marks())

@@ -64,7 +64,7 @@ def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):
     assert 'class="band"' not in out.read_text()
 
 
-@pytest.mark.parametrize("suffix", [".svg", ".png"])
+@pytest.mark.parametrize("suffix", [".svg", pytest.param(".png", marks=pytest.mark.slow)])
 def test_a_band_with_a_legend(drawing, tmp_path, suffix):
     plain, banded = tmp_path / f"plain{suffix}", tmp_path / f"banded{suffix}"
     assert main(["predict", drawing, str(plain)]) == 0

@@ -1,11 +1,13 @@
 """URScript: what a stub of the robot does with our programs, and that the stub refuses broken ones."""
 
 from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from programs import program
 from urscript_stub import matrix, run
 
 from brushsvg import _core
@@ -15,7 +17,7 @@ from brushsvg.machine.cell import Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.frames import moved
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import Job, program
+from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
 from brushsvg.pipeline import preparation
 
@@ -31,17 +33,19 @@ STROKES = {
 ARCS = {"turn": [SimpleNamespace(first=1, last=9, centre_mm=(20.0, 30.0), direction=-1)]}
 
 
-def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), **job):
+def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours=(), **job):
     passes = [
         SimpleNamespace(
             stroke=name,
             poses_mm=np.array(poses, float),
             speed_mm_s=20.0,
             arcs=ARCS.get(name, ()),
-            colour="",
+            colour=colour,
             layer="",
+            settings="{}",
+            origin=SimpleNamespace(load=1),
         )
-        for name, poses in strokes.items()
+        for (name, poses), colour in zip_longest(strokes.items(), colours, fillvalue="")
     ]
     made = program(SimpleNamespace(sheet_mm=(100.0, 60.0), passes=passes), BRUSH, cell, header, Job(**job))
     return "".join(text_of(POSTS["urscript"], made))
@@ -145,11 +149,11 @@ def test_the_brush_is_raised_before_it_goes_anywhere():
 
 def test_paint_is_waited_for():
     stations = (
-        Station("red", (120.0, 10.0), depth_mm=5.0, hold_s=0.5),
+        Station("red", (120.0, 10.0), ("#ff0000",), depth_mm=5.0, hold_s=0.5),
         Station("hand", (120.0, 50.0), by_hand=True),
     )
-    cell = replace(CELL, reload=Reload("stroke"), stations=stations)
-    robot = run(text_for(cell, visits=((stations[0],), (), (stations[1],))))
+    cell = replace(CELL, reload=Reload("layer"), stations=stations)
+    robot = run(text_for(cell, colours=("#ff0000", "#ff0000", "#000000")))
     waits = [event for event in robot.events if event[0] in ("sleep", "popup")]
     assert waits == [("sleep", 0.5), ("popup", "dip the brush: hand")]
 

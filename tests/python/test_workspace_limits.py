@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from programs import call
+from programs import call, forbidden
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -14,7 +14,6 @@ from brushsvg.machine import workspace_limits as limits
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
-from brushsvg.machine.program import forbidden
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
 

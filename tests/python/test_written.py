@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from programs import LANGUAGES, call
+from programs import LANGUAGES, call, whole
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -37,7 +37,7 @@ def cell_of(name, decimals, **changes):
 def found_by_check(poses, arcs, cell):
     """The text of one stroke, and what check says of its lines."""
     a_pass = _core.Pass("one", np.array(poses), 20.0, arcs=arcs)
-    made = unchecked_program(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass]), BRUSH, cell)
+    made = unchecked_program(whole(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass])), BRUSH, cell)
     text = "".join(text_of(POSTS[cell.language], made))
     read = read_program(text, LANGUAGES[cell.name], cell)
     ran = simulate_program.run(read, BRUSH, cell, SHEET_MM)

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import _core
+from .. import _core, json_fields
 from ..errors import Error
+from ..geometry import polylines
 
 FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
 WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
@@ -109,16 +110,9 @@ def _listed(marks, read) -> list[tuple[str, list]]:
         except Error as refusal:
             raise Error(f"{marks}: {refusal}", "marks", refusal.value, code=refusal.code) from None
         return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
-    if not isinstance(marks, list) or not all(isinstance(row, dict) for row in marks):
-        raise Error("this must be a list of objects, or the path of a marks.json", "marks", code="wrong-type")
     out = []
-    for i, row in enumerate(marks):
-        if unknown := [key for key in row if key not in ("stroke", "outline_mm", "note")]:
-            raise Error(
-                "this is not known here; known are stroke, outline_mm, note",
-                f"marks[{i}].{unknown[0]}",
-                code="key-unknown",
-            )
+    for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):
+        json_fields.refuse_unknown(row, ("stroke", "outline_mm", "note"), f"marks[{i}]")
         for key, kind, what in (("stroke", str, "a stroke's id"), ("outline_mm", list, "a list of rings")):
             if not isinstance(row.get(key), kind):
                 raise Error(f"{key} must be {what}", f"marks[{i}]", code="wrong-type")
@@ -267,7 +261,7 @@ def depths_painted(ways: list[np.ndarray]) -> int:
         return 0
     painted = np.zeros(DEPTH_BINS)
     for poses in ways:
-        length = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+        length = polylines.steps(poses[:, :2])
         for (a, b), along in zip(np.column_stack([poses[:-1, 2], poses[1:, 2]]), length, strict=True):
             # a ramp paints a little at each of its depths
             at = np.linspace(-a, -b, 10) / deepest * DEPTH_BINS
@@ -304,7 +298,7 @@ def _refuse_what_tells_nothing(found: list) -> None:
 
 def _turning(poses: np.ndarray) -> float:
     """By how much the TCP turns in all [rad], trembling left out."""
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
+    at = polylines.lengths(poses[:, :2])
     if at[-1] < 1.0:
         return 0.0
     places = np.linspace(0, at[-1], max(3, min(200, int(at[-1]))))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
+from ..geometry.rings import signed_area
+
 FINER = 4  # the picture is enlarged so often, so that an edge lies between pixels where their brightness says
 
 
@@ -32,7 +34,7 @@ def mask_outlines(
         along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
         ring = ring + 0.5 * np.column_stack([-along[:, 1], along[:, 0]]) * _outward(ring, parent < 0)
         mm = ((ring + 0.5) / FINER - 1.0) * mm_per_px * [1, -1] + np.asarray(left_top_mm, float)
-        area = _area(mm)
+        area = signed_area(mm)
         if abs(area) < least_mm2:
             continue
         rings.append(mm if (area > 0) == (parent < 0) else mm[::-1])
@@ -41,9 +43,4 @@ def mask_outlines(
 
 def _outward(ring: np.ndarray, outer: bool) -> float:
     """Sign of the normal (-y, x) of the direction that leads away from the paint."""
-    return (-1.0 if _area(ring) > 0 else 1.0) * (1.0 if outer else -1.0)
-
-
-def _area(ring: np.ndarray) -> float:
-    x, y = ring.T
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    return (-1.0 if signed_area(ring) > 0 else 1.0) * (1.0 if outer else -1.0)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-import json
-import math
 import re
-from contextlib import suppress
 from dataclasses import dataclass, field
 
+from .. import json_fields
 from ..errors import Error
 
 FORMAT = "brushsvg/measurements"
@@ -185,48 +183,25 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
 
 
 def _read_json(text: str) -> Measurements:
-    try:
-        content = json.loads(text, object_pairs_hook=_once)
-    except Error:
-        raise
-    except (ValueError, RecursionError) as problem:
-        raise Error(f"this is not valid JSON: {problem}", code="not-json") from None
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise Error(f'the file does not say "format": "{FORMAT}"', "format", code="format-unknown")
-    if content.get("version") != 1:
-        raise Error(
-            f"version {content.get('version')} of {FORMAT} is not known; known is 1",
-            "version",
-            code="version-unknown",
-        )
-    if unknown := [key for key in content if key not in (*_ABOUT, *_PAINTED)]:
-        raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0], code="key-unknown")
+    content = json_fields.document(text, FORMAT)
+    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), told=(*KINDS, "marks"))
     rows = {}
     for kind in KINDS:
-        listed = content.get(kind, [])
-        if not isinstance(listed, list) or not all(isinstance(row, dict) for row in listed):
-            raise Error("this must be a list of objects", kind, code="wrong-type")
-        if listed:
+        if listed := json_fields.objects(content.get(kind, []), kind):
             rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
         raise Error("name and about must be text", "name", code="wrong-type")
     span = content.get("depth_range_mm")
     if span is not None:
-        if not isinstance(span, list) or len(span) != 2:
-            raise Error(
-                "this must be two numbers, the least and the greatest depth",
-                "depth_range_mm",
-                code="wrong-type",
-            )
-        span = tuple(_number(value, "depth_range_mm") for value in span)
+        span = json_fields.numbers(span, "depth_range_mm", 2)
         if not 0 <= span[0] < span[1] <= LONGEST_MM:
             raise Error(
                 f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm",
                 "depth_range_mm",
                 code="depth-out-of-range",
             )
-    speed = _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
     if "marks" not in content:
         if lost := [key for key in _PAINTED if key in content]:
             raise Error(
@@ -248,40 +223,22 @@ def _read_json(text: str) -> Measurements:
 def _expected(given) -> dict:
     if not isinstance(given, dict):
         raise Error("this must be an object", "expected", code="wrong-type")
-    if unknown := [key for key in given if key not in EXPECTED]:
-        raise Error(
-            f"this is not known; known are {', '.join(EXPECTED)}",
-            f"expected.{unknown[0]}",
-            code="key-unknown",
-        )
-    out = {key: _number(value, f"expected.{key}") for key, value in given.items()}
-    for key, value in out.items():
-        if not 0 <= value <= 30:
-            raise Error(
-                f"{value:g} is outside the range [0, 30]", f"expected.{key}", value, code="out-of-range"
-            )
-    return out
+    json_fields.refuse_unknown(given, EXPECTED, "expected")
+    return {key: json_fields.number(value, f"expected.{key}", 0, 30) for key, value in given.items()}
 
 
 def _row(kind: str, row: dict, where: str) -> Row:
     names = ("depth_mm", *KINDS[kind])
     series = _SERIES if kind == "angles" else ()
-    if unknown := [key for key in row if key not in (*names, *series, "note")]:
-        raise Error(
-            f"this is not known here; known are {', '.join((*names, *series, 'note'))}",
-            f"{where}.{unknown[0]}",
-            code="key-unknown",
-        )
+    json_fields.refuse_unknown(row, (*names, *series, "note"), where)
     numbers = {}
     for name in names:
         if name not in row:
             raise Error(f"the key {name} is missing", where, code="key-missing")
-        numbers[name] = _number(row[name], f"{where}.{name}")
+        numbers[name] = json_fields.number(row[name], f"{where}.{name}")
     for name in series:
         values = row.get(name, [] if name == "beta_deg" else None)
-        if not isinstance(values, list):
-            raise Error("this must be a list of numbers", f"{where}.{name}", code="wrong-type")
-        numbers[name] = tuple(_number(value, f"{where}.{name}[{i}]") for i, value in enumerate(values))
+        numbers[name] = json_fields.numbers(values, f"{where}.{name}")
     depth = numbers.pop("depth_mm")
     if not 0 < depth <= LONGEST_MM:
         raise Error(
@@ -298,21 +255,3 @@ def _row(kind: str, row: dict, where: str) -> Row:
                 code="out-of-range",
             )
     return Row(kind, where, depth, numbers)
-
-
-def _number(value, where: str) -> float:
-    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
-        with suppress(OverflowError):  # an integer beyond all floats
-            return float(value)
-    raise Error(f"{value!r:.24} is not a finite number", where, code="not-a-number")
-
-
-def _once(pairs: list[tuple[str, object]]) -> dict:
-    """An object; Error for a key that stands twice, of which one would be lost."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise Error(
-            "the key stands twice", next(name for name in names if names.count(name) > 1), code="key-twice"
-        )
-    return found

@@ -57,16 +57,3 @@ class Design:
     notices: tuple[Notice, ...] = ()
     title: str = ""
     layers: dict[str, str] = field(default_factory=dict)
-
-
-def extremes(cubics: np.ndarray) -> np.ndarray:
-    """Points that bound cubics (n, 4, 2): their ends, and where x or y turns back."""
-    p0, p1, p2, p3 = (cubics[:, k] for k in range(4))
-    a, b, c = p3 - 3 * p2 + 3 * p1 - p0, 2 * (p2 - 2 * p1 + p0), p1 - p0
-    found = [p0, p3]
-    with np.errstate(all="ignore"):
-        root = np.sqrt(b * b - 4 * a * c)
-        for t in ((-b + root) / (2 * a), (-b - root) / (2 * a), -c / b):
-            t = np.where((t > 0) & (t < 1), t, 0.0)
-            found.append((1 - t) ** 3 * p0 + 3 * t * (1 - t) ** 2 * p1 + 3 * t * t * (1 - t) * p2 + t**3 * p3)
-    return np.concatenate(found)

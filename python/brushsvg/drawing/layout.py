@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import Error
-from .design import Design, Element, SubPath, extremes
+from ..geometry.cubics import extremes
+from .design import Design, Element, SubPath
 
 
 @dataclass(frozen=True)

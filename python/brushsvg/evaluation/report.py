@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Notice
+from ..geometry.polylines import length
 from ..units import clock
 from .error_causes import cause
 from .uncertainty import Uncertainty
@@ -137,7 +138,7 @@ def groups(marks, brush, strokes) -> tuple[Group, ...]:
 
 def _bare_figures(a_pass) -> Figures:
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
-    painted_mm = float(np.linalg.norm(np.diff(poses, axis=0), axis=1).sum())
+    painted_mm = length(poses)
     return Figures(a_pass.stroke, None, None, None, None, None, None, painted_mm, len(poses))
 
 

@@ -1,1 +1,1 @@
-"""Curves and arcs, whatever they are of."""
+"""Curves, arcs, polylines and rings, whatever they are of."""

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Error, Notice
 from .cell import NEEDED_BY, RELOADS, Cell, Station, robot_from_paper, value_mm
 from .frames import moved, normal_tilt_deg
-from .move_extents import ways
+from .move_extents import from_origin, ways
 from .workspace_limits import astray
 
 COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
@@ -104,7 +104,7 @@ def _beyond(cell: Cell, height_mm: float) -> list[Notice]:
                 sentence = f"{at} has {name} {where} {bound:g} mm, outside the range [{low:g}, {high:g}] mm of the box"
                 return [Notice("workspace.box_mm", sentence, code="sheet-out-of-reach")]
     if reach_mm:
-        nearest_mm, farthest_mm = _nearest_mm(left), float(np.linalg.norm(left, axis=1).max())
+        nearest_mm, farthest_mm = _distances_mm(left)
         if nearest_mm > reach_mm[1] or farthest_mm < reach_mm[0]:
             away = (
                 f"{nearest_mm:.0f} mm and more"
@@ -129,20 +129,18 @@ def _clipped(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
     return np.array(kept).reshape(-1, 3)
 
 
-def _nearest_mm(corners: np.ndarray) -> float:
-    """Distance [mm] of a flat convex polygon (n, 3) from the origin."""
+def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
+    """The least and the greatest distance [mm] of a flat convex polygon (n, 3) from the origin."""
+    nearest, farthest = from_origin(ways([[*corners, corners[0]]]))
     sides = np.roll(corners, -1, axis=0) - corners
-    squares = np.maximum((sides**2).sum(axis=1), 1e-12)
-    along = np.clip(-(corners * sides).sum(axis=1) / squares, 0, 1)[:, None]
-    nearest = np.linalg.norm(corners + along * sides, axis=1).min()
     normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
     if size := np.linalg.norm(normal):
         normal = normal / size
         foot = normal * (normal @ corners[0])
         turns = np.cross(sides, foot - corners) @ normal
         if (turns >= 0).all():
-            nearest = min(nearest, np.linalg.norm(foot))
-    return float(nearest)
+            nearest = min(nearest, float(np.linalg.norm(foot)))
+    return nearest, farthest
 
 
 def _check_servo(cell: Cell) -> None:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from ..units import clock
 from .motion import Program, duration_s, painting_mm
+from .paint_reload import PlanInLoads
 from .posts import POSTS
 from .program import WHOLE_JOB, Job
 
 
-def header_of(title: str, brush: str, plan, notes, made: Program, job: Job) -> tuple[str, ...]:
-    """The header of a program made of a plan in loads; its passes before the first one of the job are only counted."""
+def header_of(title: str, brush: str, loads: PlanInLoads, notes, made: Program, job: Job) -> tuple[str, ...]:
+    """The header of a program; loads before the first one of the job are only counted."""
     return (
         f"title: {title}",
-        f"brush: {brush}, {len(plan.passes)} strokes",
-        _sheet_line(plan.sheet_mm),
+        f"brush: {brush}, {len(loads.loads)} strokes",
+        _sheet_line(loads.sheet_mm),
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
         *about(made, job),

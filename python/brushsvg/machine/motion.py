@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..geometry import polylines
 from .cell import Cell
 from .frames import is_upright, moved
 
@@ -154,7 +155,7 @@ def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
     ):  # most moves by far: no arrays for them
         return np.array([math.dist(here, move.points_mm[0])])
     path = np.vstack([move.points_mm[:1] if here is None else here[None], move.points_mm])
-    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    steps = polylines.steps(path)
     if move.arc is not None:
         radius = np.linalg.norm(path[:, :2] - move.arc.centre_mm, axis=1).mean()
         steps = 2 * radius * np.arcsin(np.clip(steps / (2 * radius), 0, 1))

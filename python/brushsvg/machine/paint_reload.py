@@ -3,33 +3,55 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 
 import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
+from ..geometry.polylines import length
 from .cell import Cell, Station
 
 
-def in_loads(plan, brush, cell: Cell):
-    """The plan with every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
+@dataclass(frozen=True)
+class PlanInLoads:
+    """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
 
-    The same plan for cells that do not count the length, and for strokes whose setting reload is false.
+    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. A plan.json
+    does not tell that a pass is a part: plans are kept as they were planned, and cut for the machine.
     """
-    if not cell.reload or cell.reload.when != "length":
-        return plan
-    every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
-    passes = []
-    for a_pass in plan.passes:
-        whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
-        parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-        passes += parts
-    if len(passes) == len(plan.passes):
-        return plan
-    return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, plan.extra)
+
+    sheet_mm: tuple[float, float]
+    loads: tuple
+
+    def strokes(self) -> list[str]:
+        """For each load the stroke that it paints, or a part of."""
+        names: list[str] = []
+        for a_pass in self.loads:
+            names.append(names[-1] if is_later_part(a_pass) else a_pass.stroke)
+        return names
+
+    def as_plan(self):
+        """For who simulates what is run."""
+        return _core.Plan(sheet_mm=self.sheet_mm, passes=list(self.loads))
 
 
-def too_long(plan, brush, cell: Cell) -> list[Notice]:
+def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
+    """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
+
+    Whole are all strokes of cells that do not count the length, and those whose setting reload is false.
+    """
+    loads = list(plan.passes)
+    if cell.reload and cell.reload.when == "length":
+        every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
+        loads = []
+        for a_pass in plan.passes:
+            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
+            loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+    return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
+
+
+def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
     """A notice of the stroke for parts that are longer than a load of paint lasts, unless they may not be cut."""
     if not cell.reload or cell.reload.when != "length":
         return []
@@ -42,13 +64,13 @@ def too_long(plan, brush, cell: Cell) -> list[Notice]:
             f"{length_mm:.0f} {sentence} {every_mm:g}] mm of a load of paint",
             code="load-too-long",
         )
-        for a_pass in plan.passes
+        for a_pass in loads.loads
         if (length_mm := painted_mm(a_pass)) > last_mm and _asked(a_pass) is not False
     ]
 
 
-def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
-    """For each pass of a plan in loads the stations to visit before it; () for a cell without paint.
+def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
+    """For each load the stations to visit before it; () for a cell without paint.
 
     Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
     cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
@@ -57,7 +79,7 @@ def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...]
     if not cell.reload:
         return ()
     found, last, used_mm = [], None, 0.0
-    for number, a_pass in enumerate(plan.passes, 1):
+    for number, a_pass in enumerate(loads.loads, 1):
         station = _station_for(a_pass, cell)
         length_mm = painted_mm(a_pass)
         changed = last is not None and _station_for(last, cell) != station
@@ -76,7 +98,7 @@ def visits(plan, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...]
 
 def painted_mm(a_pass) -> float:
     """Length of the TCP's path on the paper [mm]."""
-    return float(np.linalg.norm(np.diff(np.asarray(a_pass.poses_mm), axis=0), axis=1).sum())
+    return length(np.asarray(a_pass.poses_mm))
 
 
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
@@ -93,7 +115,7 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
 
 
 def is_later_part(a_pass) -> bool:
-    """Whether a pass of a plan in loads goes on with the stroke that the pass before it paints."""
+    """Whether a load goes on with the stroke that the load before it paints."""
     return a_pass.origin.load > 1
 
 

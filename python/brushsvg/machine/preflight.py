@@ -11,23 +11,31 @@ from .. import _core
 from ..errors import Error, Notice
 from .cell import Cell, robot_from_paper
 from .corner_blending import blend_radii, blended
-from .program import WHOLE_JOB, Job, forbidden
+from .paint_reload import PlanInLoads
+from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, walked
 from .rounding import as_written
 from .workspace_limits import beyond_edges
 
 DEFAULT_TOLERANCE_MM = 0.05
 
 
-def problems(plan, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB) -> list[Notice]:
-    """A notice of the stroke for everything that forbids to run the plan on the robot; empty when all is well."""
-    found = forbidden(plan, brush, cell, job) + off_sheet(marks, brush, plan.sheet_mm)
-    return found or shifted_by_blends(plan, brush, cell, tolerance_mm)
+def look(loads: PlanInLoads, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB) -> Walked:
+    """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads."""
+    walk = walked(loads, brush, cell, job)
+    found = walk.problems + off_sheet(marks, brush, loads.sheet_mm)
+    return replace(walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm))
 
 
 def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
-    """The cell, cutting corners by at most a fifth of a plan's tolerance: they must not use it up."""
-    cut_mm = min(cell.blending.tolerance_mm, tolerance_mm / 5)
+    """The cell, cutting corners by at most a fifth of a plan's tolerance: they must not use it up. Nor by more than
+    CUT_IN_AIR_MM, or the tool would begin to go sideways well below the safe height."""
+    cut_mm = min(cell.blending.tolerance_mm, tolerance_mm / 5, CUT_IN_AIR_MM)
     return replace(cell, blending=replace(cell.blending, tolerance_mm=cut_mm))
+
+
+CUT_IN_AIR_MM = (
+    0.04  # a right angle that is cut by so much is left 0.04 / tan(22.5 degrees) = 0.1 mm before it
+)
 
 
 def check_rounding(cell: Cell, tolerance_mm: float) -> None:
@@ -71,24 +79,24 @@ def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
     return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
 
 
-def shifted_by_blends(plan, brush, cell: Cell, tolerance_mm: float) -> list[Notice]:
+def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float) -> list[Notice]:
     """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance.
 
-    The path as it is run is simulated, and where the brush is taut its widest section compared with the plan's.
+    The path as it is run is simulated, and where the brush is taut its widest section compared with what was meant.
     """
     if not cell.blending.tolerance_mm:
         return []
     # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
     rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
-    told = [_with_circles_that_are_told(a_pass, cell) for a_pass in plan.passes]
-    for first, last in _groups(plan.passes):
+    told = [_with_circles_that_are_told(a_pass, cell) for a_pass in loads.loads]
+    for first, last in _groups(loads.loads):
         runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
-        pairs = zip(plan.passes[first:last], runs, strict=True)
+        pairs = zip(loads.loads[first:last], runs, strict=True)
         cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
         both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
         traces = _core.simulate(
-            _core.Plan(sheet_mm=plan.sheet_mm, passes=both), brush, rows_mm, for_outlines=False
+            _core.Plan(sheet_mm=loads.sheet_mm, passes=both), brush, rows_mm, for_outlines=False
         ).passes
         for (a_pass, _, at), meant, run in zip(cut, traces[: len(cut)], traces[len(cut) :], strict=True):
             shift_mm = _largest_shift_mm(meant, run, at, brush)
@@ -102,9 +110,6 @@ def shifted_by_blends(plan, brush, cell: Cell, tolerance_mm: float) -> list[Noti
 
 
 ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
-
-
-POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
 
 
 def _with_circles_that_are_told(a_pass, cell: Cell):

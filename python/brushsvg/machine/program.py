@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -11,10 +12,11 @@ from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .motion import Arc, Move, Program, Section, Wait, rise_over
+from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import told_apart
 from .rounding import Written, as_written
-from .workspace_limits import broken_limits, height_astray, walked_astray
+from .workspace_limits import broken_limits, height_astray, touching_mm_s, walked_astray
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
@@ -23,7 +25,8 @@ PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 class Job:
     """How a plan is run: the paper so much higher than the cell says, from which stroke on.
 
-    visits: for each pass the stations to visit before it; () for a brush that is loaded once.
+    first_stroke counts loads, as a program's titles do. visits: for each load the stations to visit before it; () for a
+    brush that is loaded once.
     """
 
     z_offset_mm: float = 0.0
@@ -32,34 +35,63 @@ class Job:
 
 
 WHOLE_JOB = Job()
+POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
 
 
-def program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
-    """Moves for every pass of the plan, in order. Error, naming stroke and range, where a limit is broken.
+@dataclass(frozen=True)
+class Walked:
+    """A job that was gone through before it is run. job: with its visits; made: all that the machine does, without a
+    header; problems: a notice of the stroke or station for whatever forbids to run it, empty when the robot may."""
+
+    loads: PlanInLoads
+    job: Job
+    made: Program
+    problems: list[Notice]
+
+    def allowed(self) -> Program:
+        """What is run. Error, naming stroke and range, where something forbids it."""
+        for notice in self.problems:
+            raise Error(notice.sentence, where=notice.where, code=notice.code)
+        first, count = self.job.first_stroke, len(self.loads.loads)
+        if not 1 <= first <= count:
+            raise Error(
+                f"stroke {first} is outside the range [1, {count}] of this job", code="stroke-unknown"
+            )
+        return self.made
+
+
+def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walked:
+    """Moves for every load, in order, with the visits to the paint, and each limit that is broken anywhere on the way
+    of the whole job, whichever stroke it begins with, or on that of a visit to any station.
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    for notice in forbidden(plan, brush, cell, job):
-        raise Error(notice.sentence, where=notice.where, code=notice.code)
-    if not 1 <= job.first_stroke <= len(plan.passes):
-        raise Error(
-            f"stroke {job.first_stroke} is outside the range [1, {len(plan.passes)}] of this job",
-            code="stroke-unknown",
-        )
-    return unchecked_program(plan, brush, cell, header, job)
+    problems = []
+    try:
+        job = replace(job, visits=visits(loads, cell, job.first_stroke))
+    except Error as unserved:
+        problems.append(unserved.notice())
+    made = _held(unchecked_program(loads, brush, cell, job), loads)
+    problems += broken_limits(loads.loads, loads.sheet_mm, brush, cell)
+    if all(np.isfinite(a_pass.poses_mm).all() for a_pass in loads.loads):
+        from_first = replace(job, first_stroke=1)
+        whole = made if job == from_first else unchecked_program(loads, brush, cell, from_first)
+        problems += astray_in(whole, loads.sheet_mm)
+        for station in cell.stations:
+            one = [visit(station, brush, cell)]
+            problems += walked_astray(one, made.robot_from_frame, cell, loads.sheet_mm)
+    if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
+        drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
+        problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
+    return Walked(loads, job, made, list(dict.fromkeys(problems)))
 
 
-def forbidden(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> list[Notice]:
-    """A notice of the stroke or station for each limit that is broken anywhere on the way of the whole job, whichever
-    stroke it begins with, or on that of a visit to any station; empty when the robot may run it."""
-    found = broken_limits(plan, brush, cell)
-    if not all(np.isfinite(a_pass.poses_mm).all() for a_pass in plan.passes):
-        return found
-    made = unchecked_program(plan, brush, cell, (), replace(job, first_stroke=1))
-    found += astray_in(made, plan.sheet_mm)
-    for station in cell.stations:
-        found += walked_astray([visit(station, brush, cell)], made.robot_from_frame, cell, plan.sheet_mm)
-    return list(dict.fromkeys(found))
+def _held(made: Program, loads: PlanInLoads) -> Program:
+    """The program with its sections made once, where that is little: they are walked for limits, time and text."""
+    if sum(len(a_pass.poses_mm) for a_pass in loads.loads) > POSES_AT_ONCE:
+        return made
+    sections = cache(lambda: tuple(made.sections()))
+    return replace(made, sections=lambda: iter(sections()))
 
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
@@ -71,23 +103,23 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
     return found
 
 
-def unchecked_program(plan, brush, cell: Cell, header: tuple[str, ...] = (), job: Job = WHOLE_JOB) -> Program:
+def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """The same for who only asks how long it takes or wants to see it: limits are not looked at."""
 
     frame = robot_from_paper(cell, job.z_offset_mm)
 
     def sections() -> Iterator[Section]:
-        count = len(plan.passes)
-        for number, a_pass in enumerate(plan.passes, 1):
+        count = len(loads.loads)
+        for number, a_pass in enumerate(loads.loads, 1):
             if number < job.first_stroke:
                 continue
-            visits = job.visits[number - 1] if job.visits else ()
-            yield from (visit(station, brush, cell) for station in visits)
+            stations = job.visits[number - 1] if job.visits else ()
+            yield from (visit(station, brush, cell) for station in stations)
             moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
             yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
 
-    rise_mm = rise_over(cell, plan.sheet_mm, frame)
-    return Program(header, cell, frame, sections, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
+    rise_mm = rise_over(cell, loads.sheet_mm, frame)
+    return Program((), cell, frame, sections, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
 
 
 def over(point, height_mm: float) -> np.ndarray:
@@ -98,11 +130,6 @@ def over(point, height_mm: float) -> np.ndarray:
 def approach_mm_s(brush, cell: Cell) -> float:
     """In the air nothing bends; yet a program is easier to trust if no feed in it is above the brush's limit."""
     return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
-
-
-def touching_mm_s(brush, cell: Cell) -> float:
-    """The most that the brush's tip may have where it touches."""
-    return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
 
 
 def names_of_stations(cell: Cell) -> dict[Station, str]:

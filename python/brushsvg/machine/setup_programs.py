@@ -10,7 +10,8 @@ import numpy as np
 from ..errors import Error
 from .cell import Cell, robot_from_paper
 from .motion import Move, Program, Section, Wait, rise_over
-from .program import approach_mm_s, astray_in, over, touching_mm_s
+from .program import approach_mm_s, astray_in, over
+from .workspace_limits import touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
 SPEED_MM_S = 15.0

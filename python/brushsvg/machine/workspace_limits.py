@@ -15,15 +15,20 @@ from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
 ROUNDING_MM = 1e-6
 
 
-def broken_limits(plan, brush, cell: Cell) -> list[Notice]:
-    """A notice of the stroke or station for each limit that the plan breaks wherever the paper lies.
+def touching_mm_s(brush, cell: Cell) -> float:
+    """The most that the brush's tip may have where it touches."""
+    return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
+
+
+def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[Notice]:
+    """A notice of the stroke or station for each limit that passes break wherever the paper lies.
 
     brush: asked for nothing but its name and how fast it may go.
     """
-    problems = [] if plan.passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
-    limits = (brush.max_speed_mm_s, f"brush {brush.name}"), (cell.speeds.paint_mm_s, f"cell {cell.name}")
-    limit, whose = min(limits)
-    for a_pass in plan.passes:
+    problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
+    limit = touching_mm_s(brush, cell)
+    whose = f"brush {brush.name}" if limit == brush.max_speed_mm_s else f"cell {cell.name}"
+    for a_pass in passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         if len(poses) == 0:
             found = [Notice("", "the pass has no poses", code="pass-empty")]
@@ -34,6 +39,8 @@ def broken_limits(plan, brush, cell: Cell) -> list[Notice]:
             if not (poses[:, 2] < 0).any():
                 sentence = "the brush is never pressed to the paper: nothing would be painted"
                 found.append(Notice("", sentence, code="never-pressed"))
+            if cell.servo:
+                found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
         if not 0 < speed <= limit:
             sentence = f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}"
@@ -42,7 +49,7 @@ def broken_limits(plan, brush, cell: Cell) -> list[Notice]:
     for station in cell.stations:
         if station.by_hand:
             continue  # at the safe height
-        width, height = plan.sheet_mm
+        width, height = sheet_mm
         on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         if any(place_inside(ways([[point]]), *on_sheet) is not None for point in path):
@@ -156,6 +163,28 @@ def _heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
     elif lowest < cell.heights.lowest_mm:
         reach = f"[{cell.heights.lowest_mm:.1f}, 0.0] mm of cell {cell.name}"
         yield Notice("", f"height {lowest:.1f} mm is outside the range {reach}", code="too-low")
+
+
+def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:
+    """A notice for a way that a servo could not go: its values change along with moves beside the lift, whose parts
+    must be left by the rounding, and whose feed must not be below grbl's least."""
+    unit_mm, steps = 10.0**-cell.decimals, np.diff(poses, axis=0)
+    flat_mm, way_mm = np.linalg.norm(steps[:, :2], axis=1), np.linalg.norm(steps, axis=1)
+    goes = np.abs(steps[:, :2]).max(axis=1, initial=0.0) >= 0.5 * unit_mm  # else it is the lift alone
+    parts = np.ceil(np.abs(steps[:, 2]) / cell.servo.step_mm - 1e-9)
+    is_steep = (parts > 1) & (
+        (flat_mm < parts * unit_mm) | (60 * fastest_mm_s * flat_mm < LEAST_MM_MIN * way_mm)
+    )
+    for k in np.flatnonzero(goes & is_steep)[:1]:
+        x, y, _ = poses[k]
+        sentence = (
+            f"near x {x:.1f}, y {y:.1f} mm the height changes by {abs(steps[k, 2]):.2f} mm over {flat_mm[k]:.2g} mm: "
+            f"too steep for the servo of cell {cell.name}; on the spot it could be done"
+        )
+        yield Notice("", sentence, code="too-steep")
+
+
+LEAST_MM_MIN = 1.0  # grbl runs a lower feed at this one
 
 
 def _sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_mm: float) -> Iterator[Notice]:

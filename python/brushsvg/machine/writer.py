@@ -8,16 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, need
 from ..files import write_files
 from .cell import Cell
 from .cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
 from .motion import Program, duration_s, in_robot_frame
-from .paint_reload import in_loads, visits
+from .paint_reload import PlanInLoads, in_loads, visits
 from .posts import POSTS, Post
-from .preflight import DEFAULT_TOLERANCE_MM, POSES_AT_ONCE, as_exact_as, problems
-from .program import WHOLE_JOB, Job, program, unchecked_program
+from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
+from .program import WHOLE_JOB, Job, Walked, unchecked_program, walked
 
 
 def post_for(suffix: str, cell: Cell) -> Post:
@@ -55,23 +55,25 @@ def encode(
 
     Error for any other extension, and for a program where a limit of brush or cell is broken.
     """
+    cell = cell or find_cell()
     if suffix == ".json":
         return _core.write_plan(plan).encode()
-    cell = cell or find_cell()
-    post = post_for(suffix, cell)
-    plan = in_loads(plan, brush, cell)
-    job = replace(job, visits=visits(plan, cell, job.first_stroke))
-    made = _held(program(plan, brush, cell, (), job), plan)
-    header = header_of(title or "untitled", brush.name, plan, notes, made, job)
-    return text_of(post, replace(made, header=header))
+    post_for(suffix, cell)
+    return encoded(suffix, plan, walked(in_loads(plan, brush, cell), brush, cell, job), brush, title, notes)
 
 
-def _held(made: Program, plan) -> Program:
-    """The program with its sections made once, where that is little: they are walked for the time and for the text."""
-    if sum(len(a_pass.poses_mm) for a_pass in plan.passes) > POSES_AT_ONCE:
-        return made
-    sections = tuple(made.sections())
-    return replace(made, sections=lambda: iter(sections))
+def encoded(suffix: str, plan, walk: Walked, brush, title: str, notes=()) -> bytes | Iterator[str]:
+    """The same for who has gone through the plan's loads before. Error where something forbids to run them."""
+    made = walk.allowed()
+    if suffix == ".json":
+        return _core.write_plan(plan).encode()
+    header = header_of(title or "untitled", brush.name, walk.loads, notes, made, walk.job)
+    return text_of(post_for(suffix, made.cell), replace(made, header=header))
+
+
+def painting_cell(suffix: str, cell: Cell) -> Cell:
+    """The cell whose limits an output is asked for: a plan.json has whole strokes, and goes for no paint."""
+    return replace(cell, reload=None) if suffix == ".json" else cell
 
 
 def text_of(post: Post, made: Program) -> Iterator[str]:
@@ -79,15 +81,15 @@ def text_of(post: Post, made: Program) -> Iterator[str]:
     return post.write(in_robot_frame(made) if post.in_robot_frame else made)
 
 
-def whole_program(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
-    """All that the machine does with a plan in loads, paint included, for who only looks: limits are not asked."""
-    job = replace(job, visits=visits(plan, cell, job.first_stroke))
-    return unchecked_program(plan, brush, cell, (), job)
+def whole_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
+    """All that the machine does, paint included, for who only looks: limits are not asked."""
+    job = replace(job, visits=visits(loads, cell, job.first_stroke))
+    return unchecked_program(loads, brush, cell, job)
 
 
-def time_s(plan, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
-    """Estimated time of the plan, paint included; limits are not looked at."""
-    return duration_s(whole_program(in_loads(plan, brush, cell), brush, cell, job))
+def time_s(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+    """Estimated time, paint included; limits are not looked at."""
+    return duration_s(whole_program(loads, brush, cell, job))
 
 
 def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
@@ -97,10 +99,11 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
+    need(title, str, "a title")
     # a cell made by hand must be one that a file may hold: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
-    cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
     suffix = Path(path).suffix.lower()
-    for notice in problems(plan, brush, _core.simulate(plan, brush), cell, DEFAULT_TOLERANCE_MM):
-        raise Error(notice.sentence, where=notice.where, code=notice.code)
-    write_files({path: encode(suffix, plan, brush, title, cell=cell)})
+    cell = painting_cell(suffix, as_exact_as(cell, DEFAULT_TOLERANCE_MM))
+    marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)  # the former refuses other types
+    walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
+    write_files({path: encoded(suffix, plan, walk, brush, title)})

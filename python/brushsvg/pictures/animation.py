@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..machine.paint_reload import PlanInLoads
 from .timeline import Timeline
 
 PAGE = Path(__file__).parents[1] / "data" / "page"
@@ -14,19 +15,21 @@ SCRIPTS = ("rows.js", "footprint.js", "layers.js", "drawing.js", "controls.js") 
 FINE, COARSE = 1000, 100  # whole numbers are written: ms, mrad, outlines in um; lengths in 0.01 mm, pull in %
 
 
-def animation(moves: Timeline, plan, brush, marks, wanted: list, stations, title: str, speed: float) -> bytes:
-    """The page. marks: with outlines; wanted: rings [mm] of what was drawn, [] where that is not known; speed: how
-    many times faster than the robot it plays at first."""
+def animation(
+    moves: Timeline, loads: PlanInLoads, brush, marks, wanted: list, stations, title: str, speed: float
+) -> bytes:
+    """The page. marks: of the loads, with outlines; wanted: rings [mm] of what was drawn, [] where that is not known;
+    speed: how many times faster than the robot it plays at first."""
     data = {
         "title": title,
-        "brush": plan.brush,
+        "brush": brush.name,
         "speed": speed,
-        "sheet": list(plan.sheet_mm),
+        "sheet": list(loads.sheet_mm),
         "wanted": [_rings(rings) for rings in wanted],
         "stations": [[station.name, *station.place_mm] for station in stations],
         "passes": [
             {"name": a_pass.stroke, "colour": a_pass.colour, "rings": _rings(trace.outline_mm)}
-            for a_pass, trace in zip(plan.passes, marks.passes, strict=True)
+            for a_pass, trace in zip(loads.loads, marks.passes, strict=True)
         ],
         "chapters": [[chapter.title, chapter.first_row, chapter.trace] for chapter in moves.chapters],
         "pauses": [[pause.start_s, pause.end_s, pause.message] for pause in moves.pauses],

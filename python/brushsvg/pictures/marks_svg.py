@@ -7,7 +7,8 @@ from html import escape
 
 import numpy as np
 
-from ..errors import Error
+from .. import _core
+from ..errors import Error, need
 
 BAND = "#e0862b"  # where an edge lies with 95 %
 
@@ -47,6 +48,8 @@ def marks_svg(
 
 def check_picture(marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
     """Error for a sheet that has no size, or where not every pass has a colour."""
+    need(marks, _core.Marks, "marks, as simulate returns them")
+    need(sheet_mm, (tuple, list), "a sheet's width and height")
     if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
         raise Error(
             f"a sheet of {sheet_mm} mm cannot be drawn: both sides must lie within (0, 1e6] mm",

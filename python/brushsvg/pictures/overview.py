@@ -15,6 +15,8 @@ import numpy as np
 from .. import _core
 from ..drawing.design import Design, Notice
 from ..drawing.layout import bounds_mm
+from ..geometry import polylines
+from ..geometry.cubics import at
 from ..text_summary import folded
 from .stroke_labels import Room, Run, ahead, runs_of, width_text
 
@@ -109,20 +111,20 @@ def _inks(runs: list[Run]) -> list[str]:
 def _flat(cubics: np.ndarray) -> np.ndarray:
     t = np.linspace(0.0, 1.0, 17)[1:, None]
     p0, p1, p2, p3 = (cubics[:, None, k] for k in range(4))
-    points = (1 - t) ** 3 * p0 + 3 * t * (1 - t) ** 2 * p1 + 3 * t**2 * (1 - t) * p2 + t**3 * p3
-    return np.vstack([cubics[0, :1], points.reshape(-1, 2)])
+    return np.vstack([cubics[0, :1], at(t, p0, p1, p2, p3).reshape(-1, 2)])
 
 
 def _direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
     """Middle line, arrows and a dot at its start."""
-    steps = np.hypot(*np.diff(line, axis=0).T) if len(line) > 1 else np.zeros(0)
-    length = float(steps.sum())
+    length = polylines.length(line)
     if length > 0:
         canvas.line(line, ink, 2.0)
-        at = np.concatenate([[0.0], np.cumsum(steps)])
+        along_mm = polylines.lengths(line)
         head = min(14.0, 0.4 * length)
         for end in np.arange(min(length, 90.0), length + 1e-9, 180.0) if length > 180 else (0.6 * length,):
-            tip, tail = (np.array([np.interp(s, at, line[:, k]) for k in (0, 1)]) for s in (end, end - head))
+            tip, tail = (
+                np.array([np.interp(s, along_mm, line[:, k]) for k in (0, 1)]) for s in (end, end - head)
+            )
             if (norm := np.hypot(*(tip - tail))) > 0:
                 along = (tip - tail) / norm
                 side = np.array([-along[1], along[0]]) * head * 0.45

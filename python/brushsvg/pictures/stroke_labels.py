@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.polylines import lengths
+
 FOLDED = 6  # strokes alike from which on they are one entry
 CELL_PX = 8.0  # grid of the room for numbers: half their height
 
@@ -71,7 +73,7 @@ class Room:
         self.lines: set[tuple[int, int]] = set()
         self.numbers: set[tuple[int, int]] = set()
         for line in lines:
-            at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+            at = lengths(line)
             dense = np.linspace(0.0, at[-1], math.ceil(2 * at[-1] / CELL_PX) + 1)
             points = np.column_stack([np.interp(dense, at, line[:, k]) for k in (0, 1)])
             self.lines.update(map(tuple, (points // CELL_PX).astype(int).tolist()))

@@ -7,6 +7,7 @@ from ..errors import Error
 from ..evaluation import report
 from ..evaluation.uncertainty import uncertainty
 from ..machine.cell import Cell
+from ..machine.paint_reload import PlanInLoads, in_loads
 from ..machine.writer import time_s, whole_program
 from ..pictures.animation import animation
 from ..pictures.marks_svg import marks_svg, misses_svg
@@ -58,11 +59,12 @@ def misses_picture(suffix: str, work: Work, marks) -> bytes:
     return marks_png.misses_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
 
 
-def played(work: Work, marks, cell: Cell, speed: float = 1.0) -> bytes:
-    """An HTML page that plays tool and paint over time, speed times as fast at first. marks: with outlines."""
-    moves = timeline(whole_program(work.plan, work.brush, cell), marks)
+def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:
+    """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
+    loads, with outlines."""
+    moves = timeline(whole_program(loads, work.brush, cell), marks)
     wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
-    return animation(moves, work.plan, work.brush, marks, wanted, cell.stations, work.title, speed)
+    return animation(moves, loads, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
 def report_text(suffix: str, *measured, **told) -> str:
@@ -101,7 +103,9 @@ def reported(
         tolerance_mm=work.options.tolerance_mm if is_drawing else None,
         strokes=rows,
         total=total,
-        time_s=time_s(work.plan, work.brush, cell) if seconds is None else seconds,
+        time_s=time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
+        if seconds is None
+        else seconds,
         warnings=tuple(known),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),

@@ -10,12 +10,15 @@ from .preparation import Work
 
 def predict(work: Work, outlines: bool = True, stage=lambda text: None, whole: bool = True):
     """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
+    return marks_of(work.plan, work.brush, outlines, stage, whole)
 
-    progress = _counted(stage, "simulated")
-    marks = _core.simulate(work.plan, work.brush, progress=progress)
+
+def marks_of(plan, brush, outlines: bool = True, stage=lambda text: None, whole: bool = True):
+    """The marks of any plan."""
+    marks = _core.simulate(plan, brush, progress=_counted(stage, "simulated"))
     if not outlines:
         return marks
-    return outlined(marks, work.brush, stage) if whole else _outlined_apart(marks, work.brush, stage)
+    return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
 
 
 def outlined(marks, brush, stage=lambda text: None):

@@ -13,9 +13,8 @@ from ..drawing import layout
 from ..drawing.design import Notice
 from ..errors import Error
 from ..machine.cell import Cell
-from ..machine.paint_reload import in_loads as in_loads_of
-from ..machine.paint_reload import is_later_part
-from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, problems
+from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
+from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
 from ..machine.program import Job
 from ..planning import travel_order
 from ..planning.refinement import refined
@@ -41,6 +40,10 @@ class Options:
     wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
+
+    def __post_init__(self):
+        if self.cell is not None:  # from here on it is as exact as the plan
+            object.__setattr__(self, "cell", as_exact_as(self.cell, self.tolerance_mm))
 
 
 @dataclass(frozen=True)
@@ -137,10 +140,11 @@ def _forbidden(brush, options: Options):
     """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
     if options.cell is None:
         return None
-    cell, job = as_exact_as(options.cell, options.tolerance_mm), Job(options.z_offset_mm)
+    cell, job = options.cell, Job(options.z_offset_mm)
 
     def sentences(plan) -> list:
-        return problems(plan, brush, _core.simulate(plan, brush), cell, options.tolerance_mm, job)
+        loads, marks = in_loads(plan, brush, cell), _core.simulate(plan, brush)
+        return look(loads, brush, marks, cell, options.tolerance_mm, job).problems
 
     return sentences
 
@@ -233,16 +237,10 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
     return Work("", brush, plan, None, (), options, tuple(notices))
 
 
-def in_loads(work: Work, cell: Cell) -> Work:
-    """The work as the cell paints it: strokes longer than a load of paint in parts. Fit to be looked at, not measured:
-    strokes and misses are those of the whole drawing."""
-    return replace(work, plan=in_loads_of(work.plan, work.brush, cell))
-
-
-def whole_strokes(work: Work, loads) -> list:
-    """For each pass of the work's plan in loads the stroke that it paints whole; None for the parts of one."""
+def whole_strokes(work: Work, loads: PlanInLoads) -> list:
+    """For each of the work's loads the stroke that it paints whole; None for the parts of one."""
     whole, left = [], iter(work.strokes)
-    for a_pass in loads.passes:
+    for a_pass in loads.loads:
         if is_later_part(a_pass):
             whole[-1:] = [None, None]
         else:

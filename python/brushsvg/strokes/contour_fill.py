@@ -14,6 +14,8 @@ import numpy as np
 import shapely
 
 from .. import _core
+from ..geometry.polylines import length, lengths
+from ..geometry.rings import with_holes
 from .offset_passes import FITTED, Line
 
 # From ring to ring at most, in half widths: at corners of 90 degrees a step of 1.7 leaves a gap, of 60 one of 1.5.
@@ -43,13 +45,8 @@ _MOST_PAIRS, _MOST_RINGS, _MOST_LINES = 10_000, 400, 2_000
 
 def region(rings: list[np.ndarray]):
     """Rings as _core.unite returns them, as shapely sees them."""
-    areas: list[list[np.ndarray]] = []
-    for ring in rings:
-        if _core.area([ring]) > 0:
-            areas.append([ring])
-        else:
-            areas[-1].append(ring)
-    return shapely.union_all([shapely.make_valid(shapely.Polygon(outer, holes)) for outer, *holes in areas])
+    parts = [shapely.make_valid(shapely.Polygon(outer, holes)) for outer, *holes in with_holes(rings)]
+    return shapely.union_all(parts)
 
 
 def painted(strokes: list):
@@ -184,7 +181,7 @@ def _with_sharp_tips(ring: np.ndarray, wide_mm: float) -> np.ndarray:
 def _amid_longest(ring: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, list[int]]:
     """The ring from the middle of its longest stretch between corners on, and its corners then."""
     ring, corners = np.roll(ring, -corners[0], axis=0), corners - corners[0]
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0, append=ring[:1]).T))])
+    at = lengths(np.vstack([ring, ring[:1]]))
     ends = np.append(at[corners], at[-1])
     longest = int(np.diff(ends).round(3).argmax())
     middle = (ends[longest] + ends[longest + 1]) / 2
@@ -245,7 +242,7 @@ def _axis(shape, half: float) -> list[np.ndarray]:
 
 
 def _evenly(line: np.ndarray, half: float) -> np.ndarray:
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+    at = lengths(line[:, :2])
     count = min(int(at[-1] / (_EVEN * half)) + 2, 5000)
     return np.column_stack([np.interp(np.linspace(0, at[-1], count), at, line[:, k]) for k in range(3)])
 
@@ -276,8 +273,7 @@ def _fill(
 
 
 def _slope(rows: np.ndarray) -> float:
-    length = np.hypot(*np.diff(rows[:, :2], axis=0).T).sum()
-    return abs(float(rows[-1, 2] - rows[0, 2])) / max(length, 1e-9)
+    return abs(float(rows[-1, 2] - rows[0, 2])) / max(length(rows[:, :2]), 1e-9)
 
 
 def _wide(rows: np.ndarray, half: float) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..drawing.design import Design, Element, Notice, SubPath
-from ..errors import Error
+from ..errors import Error, need
 
 if TYPE_CHECKING:
     from .._core import Stroke
@@ -41,6 +41,7 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
 
     Error if nothing is left to paint.
     """
+    need(design, Design, "a drawing, as read_drawing returns it")
     found, empty, notices = [], [], []
     for element in design.elements:
         try:

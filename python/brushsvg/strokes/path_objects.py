@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..drawing.svg.path_data import parse_path, snippet
 from ..drawing.svg.path_to_cubics import trace
-from ..errors import Error
+from ..errors import Error, need
 
 if TYPE_CHECKING:
     import svgpathtools
@@ -28,6 +28,8 @@ def stroke_from_path(
 
     Error where the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not positive.
     """
+    need(width_mm, (int, float, np.number), "a width in mm")
+    need(id, str, "a stroke's id")
     if not (np.isfinite(width_mm) and width_mm > 0):
         raise Error(
             f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range"
@@ -44,6 +46,7 @@ def stroke_from_path(
             and np.ptp(cubics.reshape(-1, 2), axis=0).any()
             and _meets(cubics[-1, 3], cubics[0, 0])
         )
+    _need_height(page_height_mm)
     if page_height_mm is not None:
         cubics = cubics * (1.0, -1.0) + (0.0, page_height_mm)
     half_mm = width_mm / 2
@@ -56,6 +59,7 @@ def path_from_stroke(stroke: _core.Stroke, page_height_mm: float | None = None) 
     """The middle line as a svgpathtools.Path of cubics [mm], y up, or down from the upper edge of a page."""
     from svgpathtools import CubicBezier, Path
 
+    need(stroke, _core.Stroke, "a stroke")
     points = _complex(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), page_height_mm)
     return Path(*(CubicBezier(*each) for each in points.tolist()))
 
@@ -65,13 +69,19 @@ def path_from_pass(a_pass: _core.Pass, page_height_mm: float | None = None) -> s
     Poses where the tool only rises or sinks add nothing to it."""
     from svgpathtools import Line, Path
 
+    need(a_pass, _core.Pass, "a pass of a plan")
     points = _complex(np.asarray(a_pass.poses_mm)[:, :2], page_height_mm).tolist()
     return Path(*(Line(here, there) for here, there in itertools.pairwise(points) if here != there))
 
 
 def _complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
+    _need_height(page_height_mm)
     y = points[..., 1] if page_height_mm is None else page_height_mm - points[..., 1]
     return points[..., 0] + 1j * y
+
+
+def _need_height(page_height_mm) -> None:
+    need(page_height_mm, (int, float, np.number, type(None)), "a page's height in mm, or None")
 
 
 def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import _core
 from ..drawing.design import Notice
-from ..errors import Error
+from ..errors import Error, need
 from .offset_passes import clamped
 
 WIDE = ("clamp", "passes", "refuse")
@@ -19,6 +19,10 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
     wide: "clamp", the nearest width; "passes", several passes, called id, id~2, id~3 ..., which fill the shape that is
     wider than the brush and stay in it; "refuse", Error naming stroke, width and range.
     """
+    need(brush, _core.Brush, "a brush")
+    need(wide, str, "clamp, passes or refuse")
+    for stroke in strokes:
+        need(stroke, _core.Stroke, "a stroke")
     if not brush.width_follows_depth():
         return strokes, strokes, []
     least, greatest = brush.half_width_range_mm()

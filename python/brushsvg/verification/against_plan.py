@@ -10,26 +10,28 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..machine.cell import Cell
-from ..machine.paint_reload import visits
+from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
 from .simulate_program import Problems, Ran, chords, slack_mm
 
 STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a brush does not show it
 
 
-def with_plan(ran: Ran, expected, cell: Cell, first_stroke: int = 1) -> tuple[list[int | None], Problems]:
-    """For each pass that was read which of a plan in loads it is (None: none), and a notice for whatever is
-    missing, in another order, elsewhere, at another speed or with other paint.
+def with_plan(
+    ran: Ran, expected: PlanInLoads, cell: Cell, first_stroke: int = 1
+) -> tuple[list[int | None], Problems]:
+    """For each pass that was read which load it is (None: none), and a notice for whatever is missing, in another
+    order, elsewhere, at another speed or with other paint.
 
     Passes before the program's first stroke were painted before. Error when the plan has no such stroke.
     """
-    first, count = first_stroke, len(expected.passes)
+    first, count = first_stroke, len(expected.loads)
     if first > count:
         raise Error(
             f"the program goes on with stroke {first}, the drawing has strokes 1 to {count}",
             code="stroke-unknown",
         )
-    due = expected.passes[first - 1 :]
+    due = expected.loads[first - 1 :]
     partners, problems = _partners(ran.plan.passes, due)
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
     for a_pass, lines, k in rows:

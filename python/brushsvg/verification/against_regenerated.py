@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 
 import numpy as np
 
 from .. import _core
 from ..machine.cell import Cell, value_mm
 from ..machine.header_lines import header_of
-from ..machine.motion import Program
+from ..machine.motion import Program, duration_s, painting_mm
+from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
 from ..machine.program import Job, unchecked_program
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
+from .servo_lifts import as_lifts, seen_from_above_mm, without_steps
 from .simulate_program import Ran
 
 
@@ -38,18 +39,18 @@ def again(
     passes = ran.plan.passes
     if cell.servo:
         rests = [waits_s >= cell.servo.settle_s for waits_s in ran.waits_s]
-        passes = [_without(*each) for each in zip(passes, ran.lines, rests, strict=True)]
+        passes = [without_steps(*each) for each in zip(passes, ran.lines, rests, strict=True)]
     if speeds_mm_s:
         passes = [
             _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs)
             for each, speed in zip(passes, speeds_mm_s, strict=True)
         ]
-    plan = SimpleNamespace(sheet_mm=ran.plan.sheet_mm, passes=[None] * before + list(passes))
+    loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
-    made = unchecked_program(plan, brush, cell, (), job)
+    made = unchecked_program(loads, brush, cell, job)
     if told is None:
         return made
-    return replace(made, header=header_of(told.title, brush.name, plan, told.notes, made, job))
+    return replace(made, header=header_of(told.title, brush.name, loads, told.notes, made, job))
 
 
 @dataclass(frozen=True)
@@ -60,33 +61,14 @@ class Told:
     notes: tuple[str, ...]
 
 
-def _without(a_pass, lines: np.ndarray, rests: np.ndarray):
-    """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone.
-    Where the servo rests at no pose of the last lift, that is the one off the paper, from beside which its last way was
-    held.
-    """
-    goes = np.diff(np.asarray(a_pass.poses_mm)[:, :2], axis=0).any(axis=1)
-    is_off = not rests[1:][np.flatnonzero(np.r_[True, goes])[-1] :].any()
-    poses = np.asarray(a_pass.poses_mm)[np.r_[lines[1:] != lines[:-1], True]]
-    poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
-    steps = np.diff(poses, axis=0)
-    still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
-    inner = np.zeros(len(poses), dtype=bool)
-    inner[1:-1] = still[:-1] & still[1:] & (rising[:-1] == rising[1:])
-    if len(still) > 1 and still[-1] and is_off:
-        held = np.flatnonzero(np.r_[True, ~still])[-1]  # where the last way ends
-        inner[held:-1] = held > 0
-    return _core.Pass(a_pass.stroke, poses[~inner], a_pass.speed_mm_s)
-
-
 def differing_line(
-    text: str, read: Readback, program: Program, cell: Cell, knows_speeds: bool = True
+    text: str, read: Readback, program: Program, cell: Cell, least_time_s: float | None = None
 ) -> str | None:
     """A sentence on the first line that does something else than what brushsvg would write; None where there is none.
 
     However the numbers are written, places may be off by what a brush does not show, feeds may be lower, and what does
     nothing may be missing or stand twice. Of a servo's ways in paint, whose heights were rounded to whole values, only
-    the ends are looked at. knows_speeds: those of the program are what was meant, not what was read.
+    the ends are looked at. least_time_s: that of the program before its feeds were lowered; None: they are as meant.
     """
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
@@ -97,8 +79,8 @@ def differing_line(
         return f"{lost[0]} is missing before the first move"
     ours, theirs = _with_header_sorted(read.acts), _with_header_sorted(again.acts)
     if cell.servo:
-        ours, theirs = _folded(ours), _folded(theirs)
-    like = _Alike(cell, knows_speeds)
+        ours, theirs = as_lifts(ours), as_lifts(theirs)
+    like = _Alike(cell, _header_ranges(program, least_time_s))
     here: tuple = ()
     i, k = 0, 0
     while i < len(ours) or k < len(theirs):
@@ -162,36 +144,6 @@ def _with_header_sorted(acts: list[Act]) -> list[Act]:
     )
 
 
-def _folded(acts: list[Act]) -> list[Act]:
-    """A servo's acts: ways in paint that follow each other as the last one, all that it does at one place as one lift:
-    its last value, what is waited in all, its least and its greatest value. How fast a stroke may be is asked of the
-    way itself."""
-    out: list[Act] = []
-    value, place, in_stroke = 0.0, (), False
-    up = next((act.same[0] for act in acts if act.kind == "lift"), None)
-    for act in acts:
-        last = out[-1] if out else None
-        if act.kind == "way":
-            if (act.place, act.same[0]) == (place, value):
-                continue
-            value, place = act.same[0], act.place
-            if last and last.kind == "way" and up not in (value, last.same[0]):
-                most = () if in_stroke else (max(act.at_most[0], last.at_most[0]),)
-                out[-1] = act._replace(at_most=most)
-                continue
-            act = act._replace(at_most=()) if in_stroke and value != up else act
-        elif act.kind in ("lift", "wait"):
-            value = act.same[0] if act.kind == "lift" else value
-            waited_s = act.same[0] if act.kind == "wait" else 0.0
-            before = out.pop().same if last and last.kind == "lift" else (value, 0.0, value, value)
-            same = (value, before[1] + waited_s, min(before[2], value), max(before[3], value))
-            act = act._replace(kind="lift", same=same)
-        elif act.kind == "text":
-            in_stroke = in_stroke if act.text[:1] != "(" else act.text.startswith("(stroke")
-        out.append(act)
-    return out
-
-
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")
 NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, and the last digit of what is written
 WAITS_S = 0.0031
@@ -208,13 +160,12 @@ LEAST_BLEND_MM, BLENDS, BLENDS_PER_MM = 1e-2, 0.05, 2e2
 class _Alike:
     """Whether one act does what another does, on a machine."""
 
-    def __init__(self, cell: Cell, knows_speeds: bool):
+    def __init__(self, cell: Cell, header_ranges: tuple = ((0.0, math.inf), (0.0, math.inf))):
+        self.length_mm, self.time_s = header_ranges
         self.near_mm = max(NEAR_MM, 3.1 * 10.0**-cell.decimals)
         self.blends = max(BLENDS, BLENDS_PER_MM * 10.0**-cell.decimals)
-        self.is_servo, self.knows_speeds = bool(cell.servo), knows_speeds
-        if (
-            cell.servo
-        ):  # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
+        if cell.servo:
+            # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
             self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
             rows = np.diff(np.array(cell.servo.table), axis=0)
             self.step_values = 1 + cell.servo.step_mm * np.abs(rows[:, 1] / rows[:, 0]).max()
@@ -273,7 +224,7 @@ class _Alike:
             return (WAITS_S,)
         if act.kind == "lift":
             waits_s = max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s
-            return (1, waits_s, self.step_values, self.step_values)
+            return (self.step_values, waits_s, self.step_values, self.step_values)
         if act.kind == "way":
             return (self.step_values,)
         if act.kind == "circle":
@@ -282,8 +233,10 @@ class _Alike:
 
     def _says_same(self, found: str, wanted: str) -> bool:
         """Time and length in a header, and the numbers of a statement."""
-        if (about := _ABOUT.fullmatch(found)) and (asked := _ABOUT.fullmatch(wanted)):
-            return _nearly(about, asked, 0.25 if self.is_servo else 0.01, self.knows_speeds)
+        if (about := _ABOUT.fullmatch(found)) and (found[:6] == wanted[:6]):
+            value, unit = _about(about)
+            least, most = self.length_mm if about[4] else self.time_s
+            return least - 2 * unit <= value <= most + 2 * unit
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
         tilts = 3 if wanted.startswith(("set_tcp", "return", "paper")) else 0
@@ -305,14 +258,29 @@ _ABOUT = re.compile(
 )
 
 
-def _nearly(found: re.Match, asked: re.Match, part: float, knows_speeds: bool) -> bool:
-    """Whether two times, or two lengths, are the same up to a part of them and two of their last unit; a time may be
-    shorter than what is read, where feeds may have been lowered."""
-    if (found[4] is None) != (asked[4] is None):
-        return False
-    seconds = [
-        sum(int(each[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1))) for each in (found, asked)
-    ]
-    value, wanted = (int(found[4]), int(asked[4])) if asked[4] else seconds
-    slack = max(60 if asked[1] else 5 if part > 0.1 else 2, part * wanted)
-    return value <= wanted + slack and (value >= wanted - slack or not (asked[4] or knows_speeds))
+def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
+    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for two units of the last digit.
+
+    A servo's heights in steps make a way longer than it was meant, but not shorter than it is seen from above; and each
+    stroke may have lost a step and a value at both ends.
+    """
+    length_mm, time_s = painting_mm(program), duration_s(program)
+    least_mm, most_mm = length_mm * (1 - LENGTHS), length_mm * (1 + LENGTHS)
+    if program.cell.servo:
+        ends_mm = 2 * len([*program.sections()]) * (program.cell.servo.step_mm + value_mm(program.cell))
+        least_mm, most_mm = seen_from_above_mm(program) - ends_mm, most_mm + ends_mm
+    fewer, more = (least_mm / length_mm, most_mm / length_mm) if length_mm else (1.0, 1.0)
+    least_s = time_s if least_time_s is None else min(time_s, least_time_s)
+    return (least_mm, most_mm), (least_s * fewer * (1 - TIMES), time_s * more * (1 + TIMES))
+
+
+# what rounded places make of lengths and times; on paper that leans a circle, which takes a rest, is read as lines
+LENGTHS, TIMES = 1e-3, 1e-2
+
+
+def _about(found: re.Match) -> tuple[float, float]:
+    """The seconds or millimetres that a header tells, and the unit that they are rounded to."""
+    if found[4]:
+        return float(found[4]), 1.0
+    seconds = sum(int(found[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1)))
+    return float(seconds), 60.0 if found[1] else 1.0

@@ -16,8 +16,14 @@ from ..machine.frames import moved
 from ..machine.move_extents import ways
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
-from ..machine.program import names_of_stations, touching_mm_s
-from ..machine.workspace_limits import astray, astray_between, broken_limits, height_astray
+from ..machine.program import names_of_stations
+from ..machine.workspace_limits import (
+    astray,
+    astray_between,
+    broken_limits,
+    height_astray,
+    touching_mm_s,
+)
 from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
@@ -77,7 +83,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             waits_s.append(np.array([section.steps[number].wait_s for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
-    problems += broken_limits(plan, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
+    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
     return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines), tuple(waits_s))
 
 

@@ -170,6 +170,8 @@ def strokes_swapped(page, random):
 def stroke_reversed(page, random):
     a, b = _pick(random, page.sections())
     moves = [k for k in range(a, b) if k in page.moves]
+    if not moves:
+        return None
     first, last = moves[0], moves[-1] + 1
     return page.lines[:first] + page.lines[first:last][::-1] + page.lines[last:]
 

@@ -1,7 +1,7 @@
 """LinuxCNC's and grbl 1.1's G-code, run as their manuals say: strict, and with everything that could be damaged.
 
-LinuxCNC: RS274/NGC of its manual, lines of 255 letters, G64 P, comments that act. grbl 1.1: its own list of commands,
-real-time letters wherever they stand, lines of 80 letters; with a servo in laser mode ($32=1).
+LinuxCNC: RS274/NGC of its manual, lines of 252 letters, G64 P, comments that act. grbl 1.1: its own list of commands,
+real-time letters wherever they stand, lines of 79 letters; with a servo in laser mode ($32=1).
 """
 
 from __future__ import annotations
@@ -66,9 +66,11 @@ KNOWN = {
     )
     for dialect, groups in GROUPS.items()
 }
+USUAL = {"units": 21.0, "distance": 90.0, "centres": 91.1, "plane": 17.0, "radius": 40.0, "feed": 94.0}
+PUT_BACK = {"distance", "plane", "radius", "feed"}  # by M2 and M30
 AXES = "XYZ"
 OTHER_AXES = "ABCUVW"
-LONGEST = {"linuxcnc": 255, "grbl": 80}
+LONGEST = {"linuxcnc": 252, "grbl": 79}  # rs274 stops at 253; grbl counts no blanks and no comments
 
 
 def run_gcode(text: str, dialect: str, start, servo=None, travel_mm_s: float = math.inf) -> Run:
@@ -87,6 +89,7 @@ def run_gcode(text: str, dialect: str, start, servo=None, travel_mm_s: float = m
         done = controller.number if controller.ended else len(lines)
         for number, line in enumerate(lines[done:], done + 1):
             controller.behind_the_end(number, line)
+        controller.leave()
     except RefusedError as refusal:
         controller.run.refused = str(refusal)
     return controller.run
@@ -104,6 +107,7 @@ class _Controller:
         self.absolute = False
         self.absolute_centres = dialect == "linuxcnc"
         self.plane = "XZ"
+        self.chosen: dict[str, float] = {}
         self.odd = {"radius compensation": dialect == "linuxcnc", "another mode of feed": True}
         self.feed_mm_s = 0.0
         self.cut_mm = math.inf if dialect == "linuxcnc" else 0.0
@@ -125,8 +129,9 @@ class _Controller:
             for part in line.split("\r"):
                 self.line(number, part)
             return
-        if len(line) > LONGEST[self.dialect]:
-            self._act(f"a line of {len(line)} letters")
+        read = line if self.dialect == "linuxcnc" else re.sub(r"\(.*\)|\s", "", line)
+        if len(read) > LONGEST[self.dialect]:
+            self._act(f"a line of {len(read)} letters")
             if self.dialect == "linuxcnc":
                 raise RefusedError(f"line {number}: command too long")
         code = self._without_comments(line).upper()
@@ -157,6 +162,13 @@ class _Controller:
                 self._act("goes on behind the end")
         elif line.strip():
             self.run.titles.append((line.strip(), len(self.run.legs)))
+
+    def leave(self) -> None:
+        """What this program leaves otherwise than it is used to for whoever comes next, or goes on by hand. Its end
+        puts some of that back, but no offset."""
+        holds = set(USUAL) - (PUT_BACK if self.ended else set())
+        left = [f"G{code:g}" for name, code in self.chosen.items() if name in holds and code != USUAL[name]]
+        self.run.frame += [f"leaves {word}" for word in left + ["G92"] * any(self.shift)]
 
     def _at_once(self, line: str) -> None:
         for letter in line:
@@ -264,6 +276,7 @@ class _Controller:
             self._light()
 
     def _settings(self, codes, m_codes, values) -> None:
+        self.chosen |= codes
         if "units" in codes:
             self.mm = 25.4 if codes["units"] == 20.0 else 1.0
         if "feed" in codes:
@@ -289,6 +302,8 @@ class _Controller:
             self._act("a tool's length")
         if codes.get("system", 54.0) != 54.0:
             self._act("another coordinate system")
+        elif "system" in codes:  # in another one the sound program would run where that is: nobody knows
+            self.run.frame.append("chooses the coordinate system")
         if "distance" in codes:
             self.absolute = codes["distance"] == 90.0
         if "centres" in codes:

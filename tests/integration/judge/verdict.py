@@ -617,11 +617,12 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False
-    one, other = (
-        _sampled(np.array([each[0][0].start] + [leg.end for leg, _ in each])) for each in (ours, theirs)
-    )
     flat = (1.0, 1.0, ROUNDING_MM / near)  # a servo's heights are rounded to values, its places are not
-    one, other = one * flat, other * flat
+    both = [np.array([each[0][0].start] + [leg.end for leg, _ in each]) for each in (ours, theirs)]
+    boxes = [np.vstack([points.min(axis=0), points.max(axis=0)]) * flat for points in both]
+    if np.abs(boxes[0] - boxes[1]).max() > ROUNDING_MM:
+        return False  # without its samples, which may be millions: up to a height of ten metres, say
+    one, other = (_sampled(points) * flat for points in both)
     both = max(_to_path(one, other).max(), _to_path(other, one).max())
     return both <= ROUNDING_MM and walkable(one, other, ROUNDING_MM + STEP_MM)
 

@@ -125,7 +125,10 @@ def add_text(commands) -> None:
     text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
     text.add_argument("output", metavar="OUT", help="a drawing (.svg)")
     text.add_argument(
-        "--font", metavar="FILE", required=True, help="an SVG font of single lines, or TrueType, OpenType"
+        "--font",
+        metavar="FILE",
+        required=True,
+        help="an SVG font of single lines, also by name from Inkscape's, or TrueType, OpenType",
     )
     text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="of the em; default: 20")
     text.add_argument(

@@ -12,9 +12,10 @@ from . import values
 def programs() -> str:
     """The extensions of programs, each with the language it stands for."""
     titles: dict[str, str] = {}
-    for post in POSTS.values():  # the shortest title of those that share an extension
+    for post in POSTS.values():
         name = " ".join(post.extensions)
-        titles[name] = min(titles.get(name, post.title), post.title, key=len)
+        # of languages that share an extension what they have in common, as in: G-code for grbl
+        titles[name] = post.title.partition(" for ")[0] if name in titles else post.title
     return " or ".join(f"{title} ({name})" for name, title in titles.items())
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from ... import _core
 from ...brush.library import find_brush
 from ...machine import preflight, writer
+from ...machine.paint_reload import in_loads
 from ...machine.program import Job
 from ...pipeline import preparation
 from ...text_summary import folded
 from ..console import RefusedError, about, stage, tell
-from .options import brush_of, cell_of, settle, warn_of_example
+from .options import brush_of, exact_cell, settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
+from .prepare import seconds_written
 
 
 def chart_file(args) -> None:
@@ -20,26 +22,28 @@ def chart_file(args) -> None:
     from ...calibration.chart.page import chart_page
 
     check_places(args.output, args.page, args.chart)
+    chosen = typed(args)
     if args.drawing:
-        settle(args, args.drawing, alone=True)
-    brush = brush_of(args) or find_brush(preparation.DEFAULT_BRUSH)
-    cell = preflight.as_exact_as(cell_of(args), preflight.DEFAULT_TOLERANCE_MM)
+        chosen = settled(chosen, args.drawing, alone=True)
+    brush = brush_of(chosen.brush) or find_brush(preparation.DEFAULT_BRUSH)
+    suffix, cell = suffix_of(args.output), exact_cell(chosen.cell)
     with about(args.output):
-        if suffix_of(args.output) != ".json":
-            writer.post_for(suffix_of(args.output), cell)
+        if suffix != ".json":
+            writer.post_for(suffix, cell)
         stage("laying out the chart")
         made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm)
-        job = Job(args.z_offset)
-        marks = _core.simulate(made.plan, brush)
-        problems = preflight.problems(made.plan, brush, marks, cell, preflight.DEFAULT_TOLERANCE_MM, job)
-        if problems:
-            raise RefusedError(args.output, folded(problems))
+        painting = writer.painting_cell(suffix, cell)
+        loads, marks = in_loads(made.plan, brush, painting), _core.simulate(made.plan, brush)
+        tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
+        walk = preflight.look(loads, brush, marks, painting, tolerance_mm, Job(args.z_offset))
+        if walk.problems:
+            raise RefusedError(args.output, folded(walk.problems))
         title = f"calibration chart of brush {brush.name}"
-        files = {args.output: writer.encode(suffix_of(args.output), made.plan, brush, title, (), cell, job)}
+        files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
     if args.page:
         files[args.page] = chart_page(made).encode()
     if args.chart:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)
-    write(args, files, len(made.plan.passes), writer.time_s(made.plan, brush, cell, job))
+    write(args, files, len(loads.loads), seconds_written(suffix, made.plan, walk, brush, cell))
     tell(chart_report(made, brush, args.noise))

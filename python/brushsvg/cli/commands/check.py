@@ -11,13 +11,14 @@ from ...evaluation import report
 from ...files import read_bytes
 from ...machine import preflight
 from ...machine.cell import Cell
-from ...machine.cell_file import cell_names, find_cell
+from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
+from ...machine.paint_reload import in_loads
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import folded
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
-from .options import brush_of
+from .options import brush_of, exact_cell, typed
 from .outputs import check_places, suffix_of, write
 from .prepare import prepare
 
@@ -38,14 +39,13 @@ def check_file(args) -> None:
                     code=f"{kind}-unknown",
                     advice=f"give --{kind} FILE",
                 )
-        cell = find_cell(args.cell if args.cell is not None else made.cell)
-        brush = brush_of(args) or find_brush(made.brush)
+        cell = exact_cell(args.cell if args.cell is not None else made.cell, made.tolerance_mm)
+        brush = brush_of(args.brush) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, suffix_of(args.program), cell)
     if made.border_mm or made.heights_mm:
         return _check_job(args, text, made, read, cell, brush, z_offset_mm)
     work = _as_made(args, made, cell, brush) if args.input else None
-    cell = preflight.as_exact_as(cell, made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM)
     with about(args.program):
         sheet_mm = work.plan.sheet_mm if work else args.sheet or made.sheet_mm
         if sheet_mm is None:
@@ -57,17 +57,23 @@ def check_file(args) -> None:
         problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
         strokes, drawn, speeds = None, None, None
         if work:
-            loads = preparation.in_loads(work, cell).plan
+            loads = in_loads(work.plan, brush, cell)
             which, unlike = against_plan.with_plan(ran, loads, cell, made.first_stroke)
             problems = problems + unlike
-            speeds = None if None in which else [loads.passes[k].speed_mm_s for k in which]
+            speeds = None if None in which else [loads.loads[k].speed_mm_s for k in which]
             if work.strokes is not None:
                 whole = preparation.whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
                 drawn = work.strokes if made.first_stroke == 1 else None
         told = against_regenerated.Told(*_told_by(made, work))
         again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
-        changed = again and against_regenerated.differing_line(text, read, again, cell, speeds is not None)
+        least_s = None
+        if again and speeds is None:  # feeds may have been lowered since its time was told
+            fastest = [again.touching_mm_s] * len(ran.plan.passes)
+            least_s = duration_s(
+                against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
+            )
+        changed = again and against_regenerated.differing_line(text, read, again, cell, least_s)
         problems = problems + ([Notice("", changed, code="program-changed")] if changed else [])
         shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
         if args.preview:
@@ -109,7 +115,6 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
         if made.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
     work = _as_made(args, made, cell, brush) if args.input else None
-    cell = preflight.as_exact_as(cell, made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM)
     with about(args.program):
         if made.border_mm:
             left, bottom, right, top = made.border_mm
@@ -161,10 +166,17 @@ def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
 
 def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
     """The drawing or plan that a program should paint, prepared as its header says."""
+    chosen = typed(args)
     if suffix_of(args.input) != ".json":
-        args.compensation, args.tolerance, args.lag = made.compensation, made.tolerance_mm, made.lag_mm
-        args.z_offset = made.z_offset_mm
         with about(args.input):
-            args.wide = args.wide or settings_in(args.input).get("wide")
-    work = prepare(args, cell, brush)
+            wide = args.wide or settings_in(args.input).get("wide")
+        chosen = typed(
+            args,
+            compensation=made.compensation,
+            tolerance=made.tolerance_mm,
+            lag=made.lag_mm,
+            z_offset=made.z_offset_mm,
+            wide=wide,
+        )
+    work = prepare(chosen, cell, brush)
     return preparation.nearest_first(work) if made.nearest_first else work

@@ -5,52 +5,54 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...evaluation import report
-from ...machine import paint_reload, preflight, writer
+from ...machine import preflight, writer
+from ...machine.paint_reload import in_loads, too_long
 from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import folded
 from ..console import RefusedError, about, stage, warn
-from .options import cell_of, settle, warn_of_example
+from .options import settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
-from .prepare import prepare, seconds_of
+from .prepare import prepare, seconds_written
 
 
 def convert_file(args) -> None:
     check_places(args.output, args.preview, args.report)
-    settle(args, args.input)
-    cell = cell_of(args)
-    work = prepare(args, cell)
-    cell = preflight.as_exact_as(cell, work.options.tolerance_mm)
+    work = prepare(settled(typed(args), args.input))
+    suffix, brush, tolerance_mm = suffix_of(args.output), work.brush, work.options.tolerance_mm
+    is_program = suffix != ".json"
+    cell = writer.painting_cell(suffix, work.options.cell)
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [notice for notice in work.notices if notice not in damaged])
-    job = Job(args.z_offset, args.from_stroke)
+    job = Job(args.z_offset, args.from_stroke if is_program else 1)
     notes = outputs.notes(work)
     if args.order == "nearest":
         work, notes = preparation.nearest_first(work), (*notes, "order: nearest first")
+    if is_program:
+        with about(args.output):
+            writer.post_for(suffix, cell)
     with about(args.input):
-        if suffix_of(args.output) != ".json":
-            writer.post_for(suffix_of(args.output), cell)
-            preflight.check_rounding(cell, work.options.tolerance_mm)
+        if is_program:
+            preflight.check_rounding(cell, tolerance_mm)
         marks = prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
-        problems = preflight.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm, job)
-        problems = folded([*problems, *damaged])
+        loads = in_loads(work.plan, brush, cell)
+        walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job)
+        problems = folded([*walk.problems, *damaged])
         if damaged:
             problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
         if problems:
             raise RefusedError(args.input, problems)
-        program = writer.encode(suffix_of(args.output), work.plan, work.brush, work.title, notes, cell, job)
-        files = {args.output: program}
+        files = {args.output: writer.encoded(suffix, work.plan, walk, brush, work.title, notes)}
         if args.preview:
             files[args.preview] = outputs.picture(suffix_of(args.preview), work, marks)
         overlap = None
         if args.report:
-            figures = outputs.reported(work, marks, cell)
+            figures = outputs.reported(work, marks, work.options.cell)
             files[args.report], overlap = (
                 report.as_text(suffix_of(args.report), figures),
                 figures.total.overlap,
             )
-        too_long = paint_reload.too_long(preparation.in_loads(work, cell).plan, work.brush, cell)
-    if suffix_of(args.output) != ".json":
-        warn(args.input, too_long)
+    warn(args.input, too_long(loads, brush, cell))
     warn_of_example(args, cell)
-    write(args, files, len(work.plan.passes) - args.from_stroke + 1, seconds_of(work, cell, job), overlap)
+    seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
+    write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields, replace
+
 from ...brush.library import brush_names, find_brush
 from ...drawing import ReadOptions, settings_in
 from ...drawing.layout import Layout
@@ -9,18 +11,48 @@ from ...errors import Error
 from ...machine.cell import Cell
 from ...machine.cell_check import OF_EXAMPLE
 from ...machine.cell_file import cell_names, find_cell
+from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ...pipeline import preparation
 from ..console import about, warn
 from .outputs import suffix_of
 
 
-def settle(args, drawing: str, alone: bool = False) -> None:
+@dataclass(frozen=True)
+class Choices:
+    """What a drawing or plan is read and painted with, as typed or as the drawing says; None where nobody says it."""
+
+    input: str | None
+    brush: str | None
+    cell: str | None
+    sheet: tuple[float, float] | None
+    units: str | None
+    layer: list[str] | None
+    select: str | None
+    width: float | None
+    paths_as: str | None
+    fit: tuple[float, float] | None
+    scale: float | None
+    origin: tuple[float, float] | None
+    wide: str | None
+    compensation: str | None
+    lag: float | None
+    tolerance: float | None
+    z_offset: float | None
+
+
+def typed(args, **instead) -> Choices:
+    """What was typed, but for what is known better."""
+    names = [field.name for field in fields(Choices)]
+    return Choices(**({name: getattr(args, name, None) for name in names} | instead))
+
+
+def settled(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
     """What was not typed is as the drawing says. It can only name what comes along: it reads no other file. alone:
     nothing else of the drawing is read."""
     with about(drawing):
         said = settings_in(drawing, alone)
         for kind, names in (("brush", brush_names()), ("cell", cell_names())):
-            if getattr(args, kind) is None and said.get(kind, names[0]) not in names:
+            if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
                 raise Error(
                     f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
                     f"{', '.join(names)}",
@@ -28,43 +60,50 @@ def settle(args, drawing: str, alone: bool = False) -> None:
                     code=f"{kind}-unknown",
                     advice=f"give --{kind}",
                 )
-    for name, value in said.items():
-        if getattr(args, name, value) is None:
-            setattr(args, name, value)
+    return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
 
 
-def brush_of(args):
-    with about(args.brush or ""):
-        return find_brush(args.brush) if args.brush is not None else None
+def brush_of(name: str | None):
+    with about(name or ""):
+        return find_brush(name) if name is not None else None
 
 
-def cell_of(args) -> Cell:
-    with about(args.cell or ""):
-        return find_cell(args.cell) if args.cell is not None else find_cell()
+def cell_of(name: str | None) -> Cell:
+    with about(name or ""):
+        return find_cell(name) if name is not None else find_cell()
 
 
-def reading_of(args) -> ReadOptions:
-    return ReadOptions(args.sheet, args.units, args.select, lenient=True)  # damage is told with all the rest
+def exact_cell(name: str | None, tolerance_mm: float | None = None) -> Cell:
+    """The machine for what is prepared with no Options, which would make it as exact."""
+    return as_exact_as(cell_of(name), tolerance_mm or DEFAULT_TOLERANCE_MM)
 
 
-def layout_of(args) -> Layout:
-    return Layout(tuple(args.layer or ()), args.width, args.fit, args.scale, args.origin)
+def reading_of(chosen: Choices) -> ReadOptions:
+    return ReadOptions(
+        chosen.sheet, chosen.units, chosen.select, lenient=True
+    )  # damage is told with all the rest
 
 
-def options_of(args, cell: Cell, brush=None) -> preparation.Options:
+def layout_of(chosen: Choices) -> Layout:
+    return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin)
+
+
+def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> preparation.Options:
+    """cell, brush: where they are known already."""
+    cell = cell or cell_of(chosen.cell)
     return preparation.Options(
-        brush=brush or brush_of(args),
-        reading=reading_of(args),
-        layout=layout_of(args),
-        compensation=args.compensation or preparation.Options.compensation,
-        lag_mm=args.lag,
-        tolerance_mm=(suffix_of(args.input) != ".json" and args.tolerance)
+        brush=brush or brush_of(chosen.brush),
+        reading=reading_of(chosen),
+        layout=layout_of(chosen),
+        compensation=chosen.compensation or preparation.Options.compensation,
+        lag_mm=chosen.lag,
+        tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance)
         or preparation.Options.tolerance_mm,
-        paths_as=args.paths_as,
-        wide=args.wide or preparation.Options.wide,
+        paths_as=chosen.paths_as,
+        wide=chosen.wide or preparation.Options.wide,
         speed_mm_s=min(preparation.Options.speed_mm_s, cell.speeds.paint_mm_s),
         cell=cell,
-        z_offset_mm=getattr(args, "z_offset", None) or 0.0,
+        z_offset_mm=chosen.z_offset or 0.0,
     )
 
 

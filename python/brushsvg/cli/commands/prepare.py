@@ -3,49 +3,72 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import dataclass
 
 from ...errors import Error, Notice
-from ...machine import paint_reload, preflight, writer
+from ...machine import preflight, writer
 from ...machine.cell import Cell
-from ...machine.program import WHOLE_JOB, Job
+from ...machine.motion import duration_s
+from ...machine.paint_reload import PlanInLoads, in_loads, too_long
+from ...machine.program import Walked
 from ...pipeline import prediction, preparation
 from ..console import about, stage, warn
-from .options import options_of
+from .options import Choices, options_of
 from .outputs import suffix_of
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
 
 
-def prepare(args, cell: Cell, brush=None, partly: bool = False) -> preparation.Work:
-    if suffix_of(args.input) == ".json":
+def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> preparation.Work:
+    if suffix_of(chosen.input) == ".json":
         for flag in (*LAYOUT_FLAGS, "wide", "compensation", "lag", "tolerance"):
-            if getattr(args, {"as": "paths_as"}.get(flag, flag)) is not None:
+            if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None:
                 sentence = f"--{flag} has no effect on a plan, whose poses are fixed"
-                warn(args.input, [Notice("", sentence, code="flag-without-effect", about=flag)])
-    with about(args.input):
-        return preparation.prepare(args.input, options_of(args, cell, brush), stage, partly)
+                warn(chosen.input, [Notice("", sentence, code="flag-without-effect", about=flag)])
+    options = options_of(chosen, cell, brush)
+    with about(chosen.input):
+        return preparation.prepare(chosen.input, options, stage, partly)
 
 
-def seconds_of(work: preparation.Work, cell: Cell, job: Job = WHOLE_JOB) -> float | None:
-    """How long the machine takes; None where it cannot paint this, which a plan or a picture does not ask."""
+def seconds_of(loads: PlanInLoads, brush, cell: Cell) -> float | None:
+    """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
     with suppress(Error):
-        return writer.time_s(work.plan, work.brush, cell, job)
+        return writer.time_s(loads, brush, cell)
     return None
 
 
-def look(args, cell: Cell, outlines: bool, in_loads: bool = False, partly: bool = False, whole: bool = True):
-    """Work, marks, warnings, and which of these forbid to run a program: to someone who looks they only warn."""
-    work = prepare(args, cell, partly=partly)
-    with about(args.input):
-        cell = preflight.as_exact_as(cell, work.options.tolerance_mm)
-        if in_loads:
-            work = preparation.in_loads(work, cell)
-            too_long = paint_reload.too_long(work.plan, work.brush, cell)
-        marks = prediction.predict(work, outlines, stage, whole)
+def seconds_written(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
+    """How long the machine takes for a program that was gone through, or for one of a plan.json."""
+    if suffix != ".json":
+        return duration_s(walk.made)
+    return seconds_of(in_loads(plan, brush, cell), brush, cell)
+
+
+@dataclass(frozen=True)
+class Looked:
+    """marks: of the strokes, or of the loads where those are looked at; forbidden: which of the warnings forbid to run
+    a program: to someone who looks they only warn."""
+
+    work: preparation.Work
+    loads: PlanInLoads
+    marks: object
+    warnings: list[Notice]
+    forbidden: list[Notice]
+
+
+def look(
+    chosen: Choices, outlines: bool, at_loads: bool = False, partly: bool = False, whole: bool = True
+) -> Looked:
+    work = prepare(chosen, partly=partly)
+    brush, cell = work.brush, work.options.cell
+    with about(chosen.input):
+        loads = in_loads(work.plan, brush, cell)
+        plan = loads.as_plan() if at_loads else work.plan
+        marks = prediction.marks_of(plan, brush, outlines, stage, whole)
         warnings, forbidden = [*work.notices], []
         if work.plan.passes or not work.refused:
-            forbidden = preflight.problems(work.plan, work.brush, marks, cell, work.options.tolerance_mm)
+            forbidden = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm).problems
         warnings += forbidden
-        warnings += too_long if in_loads else []
-    warn(args.input, warnings)
-    return work, marks, warnings, forbidden
+        warnings += too_long(loads, brush, cell) if at_loads else []
+    warn(chosen.input, warnings)
+    return Looked(work, loads, marks, warnings, forbidden)

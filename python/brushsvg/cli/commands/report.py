@@ -9,7 +9,7 @@ from ...evaluation import report
 from ...pipeline import comparison, outputs, preparation
 from ...text_summary import folded
 from ..console import RefusedError, about, stage, tell
-from .options import cell_of, layout_of, options_of, reading_of, settle
+from .options import layout_of, options_of, reading_of, settled, typed
 from .outputs import check_places, suffix_of, write
 from .prepare import look
 
@@ -18,16 +18,15 @@ def report_file(args) -> None:
     check_places(args.preview)
     if args.all_brushes:
         return _all_brushes(args)
-    args.brush = args.brush[0] if args.brush else None
-    settle(args, args.input)
-    cell = cell_of(args)
-    work, marks, warnings, forbidden = look(
-        args, cell, outlines=suffix_of(args.preview) == ".svg", partly=True
-    )
+    chosen = settled(typed(args, brush=args.brush[0] if args.brush else None), args.input)
+    looked = look(chosen, outlines=suffix_of(args.preview) == ".svg", partly=True)
+    work, marks = looked.work, looked.marks
     with about(args.input):
         stage("trying other sizes")
         advice = comparison.advice(work)
-        figures = outputs.reported(work, marks, cell, warnings, advice=advice, forbidden=forbidden)
+        figures = outputs.reported(
+            work, marks, work.options.cell, looked.warnings, advice=advice, forbidden=looked.forbidden
+        )
         text = report.as_text(".json" if args.json else ".txt", figures)
         if args.preview:
             picture = outputs.misses_picture(suffix_of(args.preview), work, marks)
@@ -41,15 +40,15 @@ def report_file(args) -> None:
 
 
 def _all_brushes(args) -> None:
-    given, args.brush = args.brush or [], preparation.DEFAULT_BRUSH  # whatever brush the drawing asks for
-    settle(args, args.input)
-    asked = [*brush_names(), *(name for name in given if name not in brush_names())]
+    # whatever brush the drawing asks for
+    chosen = settled(typed(args, brush=preparation.DEFAULT_BRUSH), args.input)
+    asked = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
     brushes = []
     for name in asked:
         with about(name):
             brushes.append(find_brush(name))
-    cell = cell_of(args)
+    options = options_of(chosen)
     with about(args.input):
-        suits = comparison.suits(args.input, options_of(args, cell), brushes, stage)
-        title = arrange(read_drawing(args.input, reading_of(args)), layout_of(args)).title
+        suits = comparison.suits(args.input, options, brushes, stage)
+        title = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen)).title
         tell(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))

@@ -10,7 +10,7 @@ from ...machine.motion import duration_s
 from ...machine.program import Job
 from ...pipeline import outputs, preparation
 from ..console import about
-from .options import brush_of, cell_of, settle, warn_of_example
+from .options import brush_of, exact_cell, settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
 from .prepare import look
 
@@ -19,13 +19,12 @@ def border_file(args) -> None:
     from ...machine.setup_programs import around, border
 
     check_places(args.output)
-    settle(args, args.input)
-    cell = cell_of(args)
-    work, marks, *_ = look(args, cell, outlines=False)
-    cell = preflight.as_exact_as(cell, work.options.tolerance_mm)
-    with about(args.input):
+    looked = look(settled(typed(args), args.input), outlines=False)
+    work, cell = looked.work, looked.work.options.cell
+    with about(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
-        around_mm = around(preflight.bounds_mm(marks, work.brush))
+    with about(args.input):
+        around_mm = around(preflight.bounds_mm(looked.marks, work.brush))
         made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
         title, count = f"border of {work.title or 'untitled'}", len(work.plan.passes)
         job = Job(args.z_offset)
@@ -41,10 +40,11 @@ def height_file(args) -> None:
     from ...machine.setup_programs import paper_height
 
     check_places(args.output)
-    cell = preflight.as_exact_as(cell_of(args), preflight.DEFAULT_TOLERANCE_MM)
-    brush = brush_of(args) or find_brush(preparation.DEFAULT_BRUSH)
-    with about(cell.name):
+    cell = exact_cell(args.cell)
+    brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
+    with about(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
+    with about(cell.name):
         made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
         heights_mm = (args.highest, args.lowest, args.step)
         header = header_lines.height_header(brush.name, args.sheet, heights_mm, made)

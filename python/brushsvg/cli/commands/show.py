@@ -8,17 +8,17 @@ from ...errors import Error
 from ...pipeline import outputs
 from ...strokes.extraction import strokes as strokes_of
 from ..console import about, say, stage, warn
-from .options import cell_of, layout_of, reading_of, settle
+from .options import layout_of, reading_of, settled, typed
 from .outputs import check_places, suffix_of, write
 from .prepare import look, seconds_of
 
 
 def predict_file(args) -> None:
     check_places(args.output)
-    settle(args, args.input)
-    cell, suffix = cell_of(args), suffix_of(args.output)
+    suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
-    work, marks, *_ = look(args, cell, outlines=outlines, whole=suffix == ".json")
+    looked = look(settled(typed(args), args.input), outlines=outlines, whole=suffix == ".json")
+    work, marks = looked.work, looked.marks
     with about(args.input):
         band = None
         if args.band:
@@ -28,25 +28,26 @@ def predict_file(args) -> None:
             band = band_of(work.plan, work.brush, marks)
             if not any(band.rings):
                 say(work.brush.name, band.words)
-        picture = outputs.picture(suffix_of(args.output), work, marks, band)
-    write(args, {args.output: picture}, len(work.plan.passes), seconds_of(work, cell))
+        picture = outputs.picture(suffix, work, marks, band)
+    seconds = seconds_of(looked.loads, work.brush, work.options.cell)
+    write(args, {args.output: picture}, len(work.plan.passes), seconds)
 
 
 def animate_file(args) -> None:
     check_places(args.output)
-    settle(args, args.input)
-    cell = cell_of(args)
-    work, marks, *_ = look(args, cell, outlines=True, in_loads=True)
+    looked = look(settled(typed(args), args.input), outlines=True, at_loads=True)
+    work, loads, cell = looked.work, looked.loads, looked.work.options.cell
     with about(args.input):
-        page = outputs.played(work, marks, cell, args.speed)
-    write(args, {args.output: page}, len(work.plan.passes), seconds_of(work, cell))
+        page = outputs.played(work, loads, looked.marks, cell, args.speed)
+    write(args, {args.output: page}, len(loads.loads), seconds_of(loads, work.brush, cell))
 
 
 def import_file(args) -> None:
     check_places(args.output)
+    chosen = typed(args)
     with about(args.input):
         stage("reading")
-        design = arrange(read_drawing(args.input, reading_of(args)), layout_of(args))
+        design = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen))
         try:
             strokes, notices = strokes_of(design, args.paths_as)
         except Error as nothing:  # a drawing with nothing to paint is worth looking at, too

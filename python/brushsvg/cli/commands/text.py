@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from ...errors import Error
 from ...files import read_bytes
 from ..console import about, stage, warn
 from .outputs import check_places, write
+
+_INKSCAPES = Path("/usr/share/inkscape/extensions/svg_fonts")
 
 
 def text_file(args) -> None:
@@ -15,10 +20,25 @@ def text_file(args) -> None:
         stage("setting the text")
         drawing, notices = text_svg(
             args.input.replace("\\n", "\n"),
-            read_bytes(args.font),
+            _font(args.font),
             size_mm=args.size,
             width_mm=args.width,
             sheet_mm=args.sheet,
         )
     warn(args.font, notices)
     write(args, {args.output: drawing.encode()})
+
+
+def _font(name: str) -> bytes:
+    """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
+    if not Path(name).exists():
+        known = _INKSCAPES / name
+        if Path(name).name == name and known.is_file():
+            return read_bytes(known)
+        raise Error(
+            "there is no such file; fonts of single lines come with Inkscape and are found by name, such as "
+            f"EMSAllure.svg, where they lie in {_INKSCAPES}",
+            file=name,
+            code="file-unreadable",
+        )
+    return read_bytes(name)

@@ -84,7 +84,7 @@ def _elliptical(tool, tolerance: float) -> list[Curve]:
 
 def _lwpolyline(entity, tolerance: float) -> list[Curve]:
     rows = np.array(entity.get_points("xybse"), dtype=float).reshape(-1, 5)
-    if entity.dxf.hasattr("const_width"):
+    if entity.dxf.hasattr("const_width") and not rows[:, 3:].any():  # widths of its own go first
         rows[:, 3:] = entity.dxf.const_width
     return _polyline_2d(rows, entity.closed, entity.ocs(), entity.dxf.elevation, tolerance)
 

@@ -15,7 +15,7 @@ from ..design import Notice
 from ..svg.path_to_cubics import LARGEST_MM
 from . import curves as dxf_curves
 from .curves import Curve
-from .file import reason, shown
+from .file import not_read, reason, shown
 from .fonts import NoFontError
 from .library import ezdxf
 from .lineweights import Pen, Pens
@@ -27,8 +27,8 @@ _MOST_CUBICS = 1_000_000
 _FARTHEST_MM = 1e11  # from the origin: beyond it a number of 64 bits does not know hundredths of a hair
 _DEEPEST = 50  # blocks in blocks
 _JOINABLE = frozenset(("LINE", "ARC", "ELLIPSE", "SPLINE"))
-_SILENT = frozenset(("VIEWPORT", "ATTDEF", "SEQEND"))
-_TEXT = frozenset(("TEXT", "ATTRIB"))
+_SILENT = frozenset(("VIEWPORT", "SEQEND"))
+_TEXT = frozenset(("TEXT", "ATTRIB", "ATTDEF"))
 _TEXT_ADVICE = "text is not read: explode it into lines in the program that made the drawing"
 _ENDLESS = frozenset(("RAY", "XLINE"))
 
@@ -63,9 +63,18 @@ class _Place:
         """Greatest length on paper of a unit [mm]."""
         return float(np.linalg.norm(self.mm_from_block[:3, :3], 2))
 
-    @cached_property
-    def mean_stretch(self) -> float:
-        return math.sqrt(abs(float(np.linalg.det(self.mm_from_block[:2, :2]))))
+    def widths_mm(self, line: Curve, normal) -> np.ndarray:
+        """Of a polyline in the plane of its normal, across the line as it lies on paper: blocks can be squeezed."""
+        mean = math.sqrt(abs(float(np.linalg.det(self.mm_from_block[:2, :2]))))
+        along = line.cubics[:, (1, 3)] - line.cubics[:, (0, 2)]  # at the start and end of each
+        along /= np.linalg.norm(along, axis=2, keepdims=True)
+        across = np.cross(np.asarray(normal, dtype=float), along)
+        (tx, ty), (nx, ny) = (
+            (each @ self.mm_from_block[:3, :2]).transpose(2, 0, 1) for each in (along, across)
+        )
+        squeezed = np.abs(tx * ny - ty * nx) / np.hypot(tx, ty) / mean
+        # Rounded, for one width is to stay one; where a piece has no length, it has no direction.
+        return line.widths * mean * np.where(np.isfinite(squeezed), squeezed.round(9), 1.0)
 
 
 def _top(name: str) -> str:
@@ -90,6 +99,7 @@ class Walk:
         self.notices: list[Notice] = []
         self._counts: Counter[tuple[str, str, str | None, str]] = Counter()
         self._known: dict[tuple[str | None, float], list[Curve] | None] = {}
+        self._told: set[tuple[str, str]] = set()
         self._entities = self._cubics = 0
 
     def run(self) -> None:
@@ -125,8 +135,10 @@ class Walk:
                 if kind in _SILENT:
                     continue
                 if not isinstance(entity, ezdxf.entities.DXFGraphic):
-                    self._leave_out(kind, f"{kind} is not read", code="dxf-entity-unread")
+                    self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
                     continue
+                if kind == "ATTDEF" and place.blocks and not (entity.is_const and not entity.is_invisible):
+                    continue  # what stands in its place is an ATTRIB of the INSERT
                 pen = self.pens.pen(entity, place.pen)
                 layer = pen.layer
                 self._entity(entity, kind, name, pen, place)
@@ -150,11 +162,16 @@ class Walk:
             self._insert(entity, name, pen, place)
         elif pen.hidden:
             self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
+        elif kind == "ATTDEF" and not place.blocks:
+            sentence = "attribute definitions are no text of the drawing"
+            self._leave_out(kind, sentence, pen.layer, code="attribute-definition")
         elif kind in _TEXT:
             lines = self.letters.outlines(entity, name, pen.layer)
             self._piece(entity, kind, name, pen, place, lines)
         elif kind == "MTEXT":
-            self._parts(self.letters.parts(entity, name), name, pen, place)
+            parts = self.letters.parts(entity, name, pen.layer)
+            # its letters know their colour: "by block" is the block that the whole text is in
+            self._parts(parts, name, place.pen, place)
         elif kind in _ENDLESS:
             self._leave_out(kind, f"{kind} has no ends", code="line-without-ends")
         elif (lines := self._curves(entity, place.stretch)) is not None:
@@ -162,12 +179,12 @@ class Walk:
         elif isinstance(entity, ezdxf.protocols.SupportsVirtualEntities):
             parts = list(ezdxf.protocols.virtual_entities(entity))
             if not parts:
-                self._leave_out(kind, f"{kind} is not read", code="dxf-entity-unread")
+                self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
             self._parts(parts, name, pen, place)
         else:
-            self._leave_out(kind, f"{kind} is not read", code="dxf-entity-unread")
+            self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
 
-    def _parts(self, parts: list, name: str, pen: Pen, place: _Place) -> None:
+    def _parts(self, parts: list, name: str, pen: Pen | None, place: _Place) -> None:
         self._deeper(name, place)
         self._walk(parts, _Place(place.mm_from_block, pen, name, (*place.blocks, name)))
 
@@ -256,7 +273,7 @@ class Walk:
                     code="drawing-too-large",
                 )
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
-            widths = None if line.widths is None else line.widths * place.mean_stretch
+            widths = None if line.widths is None else place.widths_mm(line, entity.dxf.extrusion.normalize())
             if not (np.abs(cubics).max() <= _FARTHEST_MM and np.ptp(cubics, axis=(0, 1)).max() <= LARGEST_MM):
                 sentence = "its geometry is not finite or beyond 1e6 mm: left out"
                 self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
@@ -269,10 +286,46 @@ class Walk:
         if not found:
             self._note(name, "it has no geometry: left out", pen.layer, code="geometry-empty")
             return
-        if kind in ("HATCH", "MPOLYGON") and not entity.dxf.solid_fill:
-            self._note(name, "its pattern is not read: it counts as filled", pen.layer, code="paint-unread")
+        filling = pen
+        if kind == "MPOLYGON":
+            self.pieces.append(Piece(f"{name}.border", place.name, pen, tuple(found)))
+            if not (entity.dxf.solid_fill or entity.dxf.pattern_name not in ("", "SOLID")):
+                return
+            filling = self.pens.filling(entity, pen, place.pen) if entity.dxf.solid_fill else pen
+        if kind in ("HATCH", "MPOLYGON"):
+            if not entity.dxf.solid_fill:
+                self._note(
+                    name, "its pattern is not read: it counts as filled", pen.layer, code="paint-unread"
+                )
+            elif entity.gradient is not None and entity.gradient.number_of_colors:
+                self._note(
+                    name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread"
+                )
+        self._tell_what_is_not_painted(
+            entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None
+        )
         joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
-        self.pieces.append(Piece(name, place.name, pen, tuple(found), fill_rule, joinable))
+        self.pieces.append(Piece(name, place.name, filling, tuple(found), fill_rule, joinable))
+
+    def _tell_what_is_not_painted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
+        header, dxf = self.document.header, entity.dxf
+        if pen.see_through:
+            self._note(name, "it is see-through: it counts as opaque", pen.layer, code="opacity-unread")
+        if dxf.hasattr("thickness") and dxf.thickness and np.hypot(*dxf.extrusion.vec2) > 1e-9:
+            sentence = "its thickness, which would show from above, is not read"
+            self._note(name, sentence, pen.layer, code="thickness-unread")
+        if kind == "POINT" and (mode := header.get("$PDMODE", 0)):
+            self._once("$PDMODE", f"points are shown as marks of kind {mode}: they are painted as dabs")
+        if filled and kind not in _TEXT and not header.get("$FILLMODE", 1):
+            self._once(
+                "$FILLMODE",
+                "shapes and wide lines are shown by their outlines alone: they are painted filled",
+            )
+
+    def _once(self, where: str, sentence: str) -> None:
+        if (where, sentence) not in self._told:
+            self._told.add((where, sentence))
+            self._note(where, sentence, None, code="shown-otherwise")
 
     def _leave_out(
         self, where: str, why: str, layer: str | None = None, *, code: str, count: int = 1

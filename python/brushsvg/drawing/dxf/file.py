@@ -67,7 +67,7 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     counts = [
         Notice(
             shown(kind),
-            f"{shown(kind)} is not read: {n} {'entity' if n == 1 else 'entities'} left out",
+            f"{not_read(shown(kind))}: {n} {'entity' if n == 1 else 'entities'} left out",
             code="dxf-entity-unread",
         )
         for kind, n in entities.left_out.items()
@@ -89,6 +89,11 @@ def _up_to_the_last_entity(data: bytes) -> bytes:
     codes = range(0, len(lines), 2)
     last = next((k for k in reversed(codes) if lines[k].strip() == b"0"), 0)
     return b"\n".join([*lines[:last], b"0", b"ENDSEC", b"0", b"EOF", b""])
+
+
+def not_read(kind: str) -> str:
+    """The beginning of the sentence on entities of a kind that nobody here reads."""
+    return f"{kind} is not read" + (", what it covers is painted" if kind == "WIPEOUT" else "")
 
 
 def reason(problem: Exception) -> str:

@@ -57,6 +57,7 @@ with _empty_home():
     import ezdxf.protocols
     import ezdxf.recover
     import ezdxf.tools.text
+    import ezdxf.tools.text_layout
     import ezdxf.xclip
 
 # What it logs is told as notices; without a handler the standard library would print it.

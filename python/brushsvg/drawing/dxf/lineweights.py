@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .file import shown
 from .library import ezdxf
 
 _BYBLOCK, _BYLAYER = 0, 256  # as colours
 _WEIGHT_BYLAYER, _WEIGHT_BYBLOCK = -1, -2
+_OWN_TRANSPARENCY, _TRANSPARENCY_BYBLOCK = 0x02000000, 0x01000000
 _DEFAULT_WIDTH_MM = 0.25  # what CAD programs draw line weight "default" with; DXF itself does not say
 _BLACK = "#000000"
 
@@ -26,7 +27,7 @@ class Pen:
     """layer: its name, for people and to look it up; hidden: why nothing of it is painted, "" if it is.
 
     line_type: None if unbroken; line_scale: of its pattern; frozen: blocks inserted on this layer are hidden with all
-    they hold.
+    they hold; see_through: paint cannot be.
     """
 
     layer: str = "0"
@@ -37,6 +38,7 @@ class Pen:
     line_scale: float = 1.0
     hidden: str = ""
     frozen: bool = False
+    see_through: bool = False
 
 
 class Pens:
@@ -70,7 +72,14 @@ class Pens:
             dxf.get("ltscale", 1.0),
             layer.hidden,
             layer.frozen,
+            self._see_through(entity, layer, block),
         )
+
+    def filling(self, entity, pen: Pen, outer: Pen | None) -> Pen:
+        """What an MPOLYGON is filled with: its own pen draws its border."""
+        layer = self._layers.get(pen.key) or Pen()
+        number = entity.dxf.get("fill_color", _BYLAYER)
+        return replace(pen, colour=self._numbered(number, layer, outer or Pen()))
 
     def _of_layer(self, layer) -> Pen:
         name = layer.dxf.name
@@ -89,13 +98,24 @@ class Pens:
             self._line_types.get(_key(layer.dxf.get("linetype", ""))),
             hidden=hidden,
             frozen=layer.is_frozen(),
+            see_through=layer.transparency > 0,
         )
 
-    @staticmethod
-    def _colour(entity, layer: Pen, block: Pen) -> str:
+    def _colour(self, entity, layer: Pen, block: Pen) -> str:
         number = entity.dxf.get("color", _BYLAYER)
         if entity.dxf.hasattr("true_color"):
             return _rgb(entity.rgb, number)
+        return self._numbered(number, layer, block)
+
+    @staticmethod
+    def _see_through(entity, layer: Pen, block: Pen) -> bool:
+        value = entity.dxf.get("transparency", 0)
+        if value & _OWN_TRANSPARENCY:
+            return ezdxf.colors.transparency2float(value) > 0
+        return block.see_through if value & _TRANSPARENCY_BYBLOCK else layer.see_through
+
+    @staticmethod
+    def _numbered(number: int, layer: Pen, block: Pen) -> str:
         if number == _BYLAYER:
             return layer.colour
         return block.colour if number == _BYBLOCK else _rgb(None, number)

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..design import Element, Notice, extremes
+from ...geometry.cubics import extremes
+from ..design import Element, Notice
 from ..svg.path_to_cubics import LARGEST_MM
 from .entity_walk import Piece
 

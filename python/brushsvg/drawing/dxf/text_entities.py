@@ -15,13 +15,18 @@ from .file import shown
 from .fonts import Font, Fonts
 from .library import ezdxf
 
-_tools = ezdxf.tools.text
+_tools, _boxes = ezdxf.tools.text, ezdxf.tools.text_layout
 
 _MOST_LETTERS = 50_000  # a brush paints some hundred a day
 _WIDEST = 10_000.0  # columns of MTEXT, in letters: ezdxf makes a tab stop for every fourth
 _MOST_COLUMNS = 1000
 _TAB = 4.0  # heights between the tab stops that ezdxf makes where a text has none of its own
 _FRAME = 16  # of MTEXT's bg_fill; the others are paint behind the letters
+_EXACTLY = 2  # of MTEXT's line_spacing_style
+_VERTICALLY = 3  # of MTEXT's flow_direction
+_UPRIGHT_STACK = 4  # of a style's flags: letters one below the other
+_CHARACTER = re.compile(r"(?<!%)%%(\d{3})")  # by its number, in TEXT
+_STROKES = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # lines along TEXT
 
 
 class Letters:
@@ -35,10 +40,11 @@ class Letters:
         self._drawn: dict[tuple[Font, str], tuple[str, str]] = {}
         self._count: Counter[tuple[Font, str]] = Counter()
         self._missing: dict[tuple[Font, str], dict[str, None]] = {}
+        self._unread: list[Notice] = []
 
     @property
     def notices(self) -> list[Notice]:
-        found = []
+        found = list(self._unread)
         for (font, layer), (where, text) in self._drawn.items():
             more = self._count[font, layer] - 1
             said = f"text {shown(text, 40)!r}" + (f" and {more} more" if more else "")
@@ -67,9 +73,9 @@ class Letters:
     def outlines(self, entity, name: str, layer: str) -> list[Curve]:
         """Of a TEXT or ATTRIB, in its own world. NoFontError if this machine has no font."""
         dxf = entity.dxf
-        if not dxf.height > 0:
-            raise ValueError(f"its height is {dxf.height}")
-        text = " ".join(entity.plain_text().splitlines())
+        _check_height(dxf.get("height"))
+        written = _CHARACTER.sub(lambda found: chr(int(found[1])), dxf.text)
+        text = " ".join(_tools.plain_text(written).splitlines())
         if dxf.style not in self._faces:  # the letters of MTEXT were counted as such
             self._count_letters(text, name)
         if not text.strip():
@@ -85,16 +91,21 @@ class Letters:
         path = drawn.text_path_ex(text, cap_height=dxf.height).to_path()
         if not len(path):
             return []
+        if _STROKES.search(written):
+            self._not_read(name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer)
+        if self._is_stacked(dxf.style):
+            self._not_read(name, _SET_IN_A_LINE, layer)
+        length = drawn.text_width_ex(text, cap_height=dxf.height)  # blanks at its ends take their place, too
         placed = ezdxf.addons.text2path.alignment_transformation(
             drawn.measurements.scale_from_baseline(dxf.height),
-            ezdxf.path.bbox([path], fast=True),
+            ezdxf.math.BoundingBox([(0, 0), (length, dxf.height)]),
             entity.get_align_enum(),
             entity.fit_length(),
         )
         path = path.transform(placed * entity.wcs_transformation_matrix())
         return [Curve(_cubics(outline), True) for outline in path.sub_paths() if len(outline)]
 
-    def parts(self, mtext, name: str) -> list:
+    def parts(self, mtext, name: str, layer: str) -> list:
         """An MTEXT as TEXT and LINE, in its own world. NoFontError if this machine has no font."""
         mtext = mtext.copy()
         mtext.doc = self._document
@@ -104,16 +115,33 @@ class Letters:
             raise ValueError(f"it has {columns.count} columns")
         for part in (mtext, *(columns.linked_columns if columns is not None else ())):
             part.text = _STACK.sub(r"\1^ ", part.text)
-        mtext.dxf.bg_fill = mtext.dxf.get("bg_fill", 0) & _FRAME
-        height = mtext.dxf.char_height
-        if not 0 < height < math.inf:
-            raise ValueError(f"its height is {height}")
+        background = mtext.dxf.get("bg_fill", 0)
+        mtext.dxf.bg_fill = background & _FRAME
+        height = _check_height(mtext.dxf.get("char_height"))
         layout = ezdxf.layouts.VirtualLayout()
         apart = _Apart(layout, self._document, self._fonts, self._faces)
         width = mtext.dxf.get("width", 0.0)
         mtext.dxf.width = min(width if width > 1e-6 else apart.unbroken_width(mtext), _WIDEST * height)
-        apart.explode(mtext, destroy=False)
+        apart.explode(mtext)
+        if background & ~_FRAME:
+            self._not_read(name, "its background is not painted, and covers nothing", layer)
+        if apart.spread:
+            self._not_read(
+                name, "the distances between its letters (\\T) are not read: they count as 1", layer
+            )
+        if apart.uneven and mtext.dxf.get("line_spacing_style", 1) == _EXACTLY:
+            self._not_read(name, "its lines are set as far apart as their tallest letters ask for", layer)
+        if mtext.dxf.get("flow_direction", 1) == _VERTICALLY or self._is_stacked(mtext.dxf.style):
+            self._not_read(name, _SET_IN_A_LINE, layer)
         return list(layout)
+
+    def _is_stacked(self, style: str) -> bool:
+        return style in self._document.styles and bool(
+            self._document.styles.get(style).dxf.get("flags", 0) & _UPRIGHT_STACK
+        )
+
+    def _not_read(self, name: str, sentence: str, layer: str) -> None:
+        self._unread.append(Notice(name, sentence, layer=layer, code="text-unread"))
 
     def _count_letters(self, text: str, name: str) -> None:
         self._left -= len(text)
@@ -126,17 +154,65 @@ class Letters:
             )
 
 
+_SET_IN_A_LINE = "its letters one below the other are not read: they are set in a line"
+
+
+def _check_height(height: float | None) -> float:
+    if height is None:
+        raise ValueError("it has no height")
+    if not 0 < height < math.inf:
+        raise ValueError(f"its height is {height}")
+    return height
+
+
 # "^" between the two numbers of a stack, as CAD programs write it: ezdxf takes it and the letter behind it for a
 # control character, unless that is a blank
 _STACK = re.compile(r"((?<!\\)(?:\\\\)*\\S[^;^]*)\^(?! )")
 
 
 class _Apart(ezdxf.addons.mtxpl.MTextExplode):
-    """With fonts of ours, in styles that no document needs to know."""
+    """With fonts of ours, in styles that no document needs to know.
+
+    uneven: its letters have several heights; spread: their distance is not the font's.
+    """
 
     def __init__(self, layout, document, fonts: Fonts, faces: dict[str, object]):
         super().__init__(layout, document)
         self._fonts, self._faces = fonts, faces
+        self._heights: set[float] = set()
+        self.spread = False
+
+    @property
+    def uneven(self) -> bool:
+        return len(self._heights) > 1
+
+    def explode(self, mtext) -> None:
+        layout = self.layout_engine(mtext)
+        layout.place(align=_boxes.LayoutAlignment(mtext.dxf.attachment_point))
+        for column in layout:
+            for paragraph in column:
+                if isinstance(paragraph, _boxes.Paragraph):
+                    for line in paragraph:
+                        _stand_on_one_line(line)
+        layout.render(mtext.ucs().matrix)
+
+    def word(self, text: str, ctx):
+        self._heights.add(_check_height(ctx.cap_height))
+        self.spread |= ctx.char_tracking_factor != 1
+        return super().word(text, ctx)
+
+    def fraction(self, data: tuple, ctx):
+        cell = super().fraction(data, ctx)
+        if isinstance(cell, _boxes.Fraction):  # its line is of the colour of its numbers
+            attributes = self.current_base_attribs | ezdxf.addons.mtxpl.get_color_attribs(ctx)
+            cell.renderer = ezdxf.addons.mtxpl.FrameRenderer(attributes, self.layout)
+        return cell
+
+    def make_bg_renderer(self, mtext):
+        frame = super().make_bg_renderer(mtext)
+        if mtext.rgb is not None:
+            frame.line_attribs["true_color"] = ezdxf.colors.rgb2int(mtext.rgb)
+        return frame
 
     def get_font_face(self, mtext):
         return self._fonts.face(mtext.dxf.style)
@@ -173,6 +249,16 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
         name = f"\n{font_face}"  # no name in a DXF has more than one line
         self._faces[name] = font_face
         return name
+
+
+def _stand_on_one_line(line) -> None:
+    """Letters of several heights in one word: ezdxf hangs them from one line, unless it can break between them."""
+    for group in line.cells():
+        if isinstance(group, _boxes.RigidConnection):
+            for cell in group:
+                if isinstance(cell, _boxes.ContentCell):
+                    x, y = cell.final_location()
+                    cell.place(x, y + _boxes.vertical_cell_shift(cell, group.total_height))
 
 
 def _cubics(path) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...errors import Error
 from ...geometry.arc_length import knots, parameters_at
+from ...geometry.cubics import split
 from ..design import SubPath
 
 _ROUNDING = 1e-9  # of a length: a dash that begins nearer to the end would be a dab that nobody drew
@@ -57,16 +58,9 @@ def _piece(cubics: np.ndarray, begin: tuple[int, float], end: tuple[int, float])
     """Cubics between two places on the line, each a cubic's number and a parameter in it."""
     (first, t0), (last, t1) = begin, end
     if begin == end:
-        return np.repeat(_split(cubics[first], t0)[0][None, 3:], 4, axis=1)
+        return np.repeat(split(cubics[first], t0)[0][None, 3:], 4, axis=1)
     if first == last:
-        return _split(_split(cubics[last], t1)[0], t0 / t1)[1][None]
-    head = [_split(cubics[first], t0)[1][None]] if t0 < 1 else []
-    tail = [_split(cubics[last], t1)[0][None]] if t1 > 0 else []
+        return split(split(cubics[last], t1)[0], t0 / t1)[1][None]
+    head = [split(cubics[first], t0)[1][None]] if t0 < 1 else []
+    tail = [split(cubics[last], t1)[0][None]] if t1 > 0 else []
     return np.concatenate([*head, cubics[first + 1 : last], *tail])
-
-
-def _split(cubic: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-    from svgpathtools.bezier import split_bezier  # brings scipy, half a second: only where there are dashes
-
-    halves = split_bezier(cubic[:, 0] + 1j * cubic[:, 1], t)
-    return tuple(np.column_stack([np.real(half), np.imag(half)]) for half in halves)

@@ -10,8 +10,9 @@ import numpy as np
 
 from ...errors import Error
 from ...geometry.arc_length import knots
+from ...geometry.cubics import extremes
 from ...units import MM_PER, number
-from ..design import Element, SubPath, extremes
+from ..design import Element, SubPath
 from . import shapes
 from .context import Context, Notes, local
 from .css_cascade import MARKERS

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import Notice
+from ...geometry import cubics
 from ...geometry.arc_length import knots
 from ..design import SubPath
 from .path_data import numbers
@@ -148,10 +149,7 @@ def _linear(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
 def _cubic(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.ndarray:
     """Cubic Bezier pieces between points in the plane of place and half width; handles: (k - 1, 2, 2)."""
     t = np.linspace(0.0, 1.0, 65)[:, None]
-    curve = [
-        (1 - t) ** 3 * p + 3 * t * (1 - t) ** 2 * h[0] + 3 * t**2 * (1 - t) * h[1] + t**3 * q
-        for p, q, h in zip(points[:-1], points[1:], handles, strict=True)
-    ]
+    curve = [cubics.at(t, p, h[0], h[1], q) for p, q, h in zip(points[:-1], points[1:], handles, strict=True)]
     curve = np.concatenate(curve)
     return np.interp(place, np.maximum.accumulate(curve[:, 0]), curve[:, 1])
 

@@ -185,13 +185,9 @@ class Walk:
         if not written and _TRANSFORMS.isdisjoint(said):
             return None
         if node is self.root and not context.used:
-            self.notes.add(
-                node,
-                context,
-                "its own transform is not read: it counts as none",
-                damaged=True,
-                code="transform-unread",
-            )
+            sentence = "programs disagree on a transform of the drawing itself, which counts as none: put it on a group"
+            sentence += " around all that is drawn"
+            self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
             return None
 
         @cache  # one transform can ask for it a thousand times

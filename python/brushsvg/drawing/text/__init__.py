@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import unicodedata
 
-from ...errors import Error, lacking
+from ...errors import Error, lacking, need
 from ..design import Notice
 from . import svg_font
 from .page import document
@@ -32,6 +32,8 @@ def text_svg(
 
     Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
     """
+    need(text, str, "a text")
+    need(font, bytes, "what a font file holds, as bytes")
     _in_range("size", size_mm, 1000, " mm")
     _in_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
     _in_range("line spacing", line_spacing, 100)

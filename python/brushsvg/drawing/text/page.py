@@ -7,6 +7,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ...errors import Error
+from ...geometry.cubics import extremes
 from ..design import SubPath
 from ..svg.path_to_cubics import LARGEST_MM
 from .placed_glyphs import Placed, Setting
@@ -87,25 +88,12 @@ def _extents(placed: list[tuple[Placed, np.ndarray]]) -> tuple[np.ndarray, np.nd
     corners = []
     for glyph, origin in placed:
         if id(glyph.subpaths) not in known:
-            points = np.concatenate([_turns(subpath.cubics) for subpath in glyph.subpaths])
+            points = np.concatenate([extremes(subpath.cubics) for subpath in glyph.subpaths])
             known[id(glyph.subpaths)] = points.min(axis=0), points.max(axis=0)
         corners += [corner + origin for corner in known[id(glyph.subpaths)]]
     if not corners:
         raise Error("the text leaves nothing to paint", "text", code="nothing-to-paint")
     return np.min(corners, axis=0), np.max(corners, axis=0)
-
-
-def _turns(cubics: np.ndarray) -> np.ndarray:
-    """Points of cubics that hold their extremes: the ends, and in x and in y where they turn back."""
-    p = np.moveaxis(cubics, 1, 0)
-    a, b, c = p[3] - p[0] + 3 * (p[1] - p[2]), 2 * (p[0] - 2 * p[1] + p[2]), p[1] - p[0]
-    # a t^2 + b t + c = 0 by the form of the roots that is exact where a is small, too
-    with np.errstate(all="ignore"):
-        q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
-        t = np.stack((q / a, c / q))
-    t = np.where((t > 0) & (t < 1), t, 0.0)
-    inner = (1 - t) ** 3 * p[0] + 3 * t * (1 - t) ** 2 * p[1] + 3 * t**2 * (1 - t) * p[2] + t**3 * p[3]
-    return np.concatenate((cubics[:, 0], cubics[:, 3], inner.reshape(-1, 2)))
 
 
 def _path(subpaths: tuple[SubPath, ...], shift: np.ndarray) -> str:

@@ -9,8 +9,8 @@ import numpy as np
 from ..motion import SAFE_MEANINGS, Move, Program, Wait
 from .text import AT_ONCE, BRACKETS, feed_mm_min, number, plain, rows
 
-LINE_LIMIT = 120  # LinuxCNC reads 255 characters; this also fits a screen
-GRBL_LINE_LIMIT = 70  # grbl 1.1 keeps 80 characters of a line, builds with less memory 70
+LINE_LIMIT = 120  # LinuxCNC reads 252 characters; this also fits a screen
+GRBL_LINE_LIMIT = 70  # grbl 1.1 reads 79 characters of a line beside blanks, builds with less memory 69
 MODES = "G21 G90 G94 G17 G40 G80"
 
 

@@ -12,11 +12,12 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error
-from .fill_rule import filled, flattened
+from ...geometry.rings import with_holes
+from .fill_rule import filled
 from .graph import Skeleton, skeleton
 from .writing_order import in_rows, joined, ordered
 
-__all__ = ["OutlineStroke", "filled", "flattened", "outline_strokes"]
+__all__ = ["OutlineStroke", "filled", "outline_strokes"]
 
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
 # outline, more shows in the overlap.
@@ -44,7 +45,7 @@ class OutlineStroke:
 def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
     """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them. Error if it has more
     branches than any lettering."""
-    areas = _connected(rings)
+    areas = with_holes(rings)
     axes = [_core.medial_axis(area, LEAST_SHARE) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MOST_BRANCHES:
         raise Error(
@@ -52,16 +53,6 @@ def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
         )
     boxes = np.array([[*area[0].min(axis=0), *area[0].max(axis=0)] for area in areas]).reshape(-1, 4)
     return [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k])]
-
-
-def _connected(rings: list[np.ndarray]) -> list[list[np.ndarray]]:
-    """Each outer ring with its holes, which follow it."""
-    areas: list[list[np.ndarray]] = []
-    for ring in rings:
-        if _core.area([ring]) > 0:
-            areas.append([])
-        areas[-1].append(ring)
-    return areas
 
 
 def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[OutlineStroke]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...geometry.cubics import at
 from .junctions import Arm, Crossing
 
 _PLACES = 9  # looked at on the way from a corner's disc to where the lines of its arms meet
@@ -15,10 +16,8 @@ def bridge(a: Arm, b: Arm) -> np.ndarray:
     p, q = a.line[a.out], b.line[b.out]
     length = np.hypot(*(q - p)[:2])
     t = np.linspace(0, 1, 10)[1:-1, None]
-    u = 1 - t
     c1, c2 = p[:2] - a.direction * length / 3, q[:2] - b.direction * length / 3
-    xy = u**3 * p[:2] + 3 * t * u**2 * c1 + 3 * t**2 * u * c2 + t**3 * q[:2]
-    return np.column_stack([xy, u * p[2] + t * q[2]])
+    return np.column_stack([at(t, p[:2], c1, c2, q[:2]), (1 - t) * p[2] + t * q[2]])
 
 
 def stub(arm: Arm, crossing: Crossing) -> np.ndarray:

@@ -8,6 +8,8 @@ from itertools import combinations
 
 import numpy as np
 
+from ...geometry.polylines import length
+
 # Nodes whose discs overlap by more are one crossing.
 CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
@@ -94,7 +96,7 @@ def _merged(nodes, lines, ends, degree) -> tuple[dict[int, list[int]], set[int]]
     bowl leaves it right below."""
     home = {k: [k] for k in range(len(nodes)) if degree[k] >= 2}
     inner = set()
-    lengths = [float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum()) for line in lines]
+    lengths = [length(line[:, :2]) for line in lines]
     for number in np.argsort(lengths, kind="stable").tolist():
         a, b = ends[number]
         if a not in home or b not in home or (degree[a] == 2) != (degree[b] == 2):

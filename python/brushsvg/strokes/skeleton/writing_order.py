@@ -9,6 +9,8 @@ from itertools import pairwise, permutations, product
 
 import numpy as np
 
+from ...geometry.polylines import length, steps
+from ...geometry.rings import signed_area
 from .graph import Piece, Skeleton
 
 # Lines run towards this direction: down, and to the right where they lie flatter than 30 degrees.
@@ -24,6 +26,9 @@ UPPER_LEFT_FIRST = np.array([1.0, -1.0])
 # Of parts in a line of writing: with more a dot would come before the letter left of it, with less the roof of a
 # Chinese character after what stands below.
 HIGHER = 0.5
+# A dot is hardly longer than wide, hardly farther above its stem than it is high, and so many times lower than that at
+# least, and narrower at most.
+DOT, STEM = 1.3, 2.5
 # Lines of which one is so much flatter are a bar and what crosses it.
 FLATTER_RAD = np.radians(30)
 
@@ -51,23 +56,18 @@ def reversed_(piece: Piece) -> Piece:
 def _ring(piece: Piece) -> Piece:
     """Counter-clockwise, from the top, a little to the right."""
     line = piece.line[:-1]
-    x, y = line[:, 0], line[:, 1]
-    if (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() < 0:
+    if signed_area(line[:, :2]) < 0:
         line = line[::-1]
     first = int(np.argmax(line[:, :2] @ (0.3, 1.0)))
     line = np.roll(line, -first, axis=0)
     return replace(piece, line=np.vstack([line, line[:1]]))
 
 
-def length_mm(line: np.ndarray) -> float:
-    return float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
-
-
 def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
     """Pieces in their directions, those that a corner joins in one list: where one ends and the next begins there, or
     where one is but a flick."""
     chains = {k: [directed(piece)] for k, piece in enumerate(pieces)}
-    lengths = [length_mm(piece.line) for piece in pieces]
+    lengths = [length(piece.line[:, :2]) for piece in pieces]
     at_crossing: dict[int | None, set[int]] = {}
     for k, piece in enumerate(pieces):
         for crossing in piece.ends:
@@ -137,13 +137,14 @@ def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
 def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray) -> list[set[int]]:
     """For each chain those that are painted before it: of two that begin at one place the one that leads farther to the
     left, a stem before its bowl; of two that cross the flatter one; and what it begins on, unless that lies to its
-    right, a bowl before the stem behind it."""
+    right, a bowl before the stem behind it; a bar from one line to another after both."""
     begin, pass_ = defaultdict(list), defaultdict(list)
     for k, chain in enumerate(chains):
         begin[chain[0].ends[0]].append(k)
         for crossing in {crossing for piece in chain for crossing in piece.through}:
             pass_[crossing].append(k)
     begin.pop(None, None)
+    end = [chain[-1].ends[1] for chain in chains]
     steep = [float(np.arctan2(*np.abs(line[-1] - line[0])[::-1])) for line in lines]
     to_right = [
         float(np.arctan2(c[0] - line[0, 0], line[0, 1] - c[1]))
@@ -158,14 +159,20 @@ def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.nda
             if steep[one] < steep[two] - FLATTER_RAD:
                 earlier[two].add(one)
         for host, guest in product(pass_[crossing], begin[crossing]):
-            if host != guest and centres[host, 0] <= centres[guest, 0]:
+            if host == guest:
+                continue
+            if centres[host, 0] <= centres[guest, 0]:
                 earlier[guest].add(host)
+            for other in pass_.get(end[guest], ()):
+                bar = steep[guest] < min(FLATTER_RAD, steep[host] - FLATTER_RAD, steep[other] - FLATTER_RAD)
+                if bar and other not in (host, guest):
+                    earlier[guest] |= {host, other}
     return earlier
 
 
 def _centre(line: np.ndarray) -> np.ndarray:
-    steps = np.hypot(*np.diff(line, axis=0).T)
-    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=steps) if steps.sum() > 0 else line[0]
+    weights = steps(line)
+    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=weights) if weights.sum() > 0 else line[0]
 
 
 def in_rows(boxes: np.ndarray) -> list[int]:
@@ -180,4 +187,22 @@ def in_rows(boxes: np.ndarray) -> list[int]:
         rows[-1].append(k)
         floor = min(floor, boxes[k, 1])
     across = (boxes[:, 0] + boxes[:, 2]) - HIGHER * (boxes[:, 1] + boxes[:, 3])
-    return [k for row in rows for k in sorted(row, key=lambda k: across[k])]
+    return _dots_last([k for row in rows for k in sorted(row, key=lambda k: across[k])], boxes)
+
+
+def _dots_last(order: list[int], boxes: np.ndarray) -> list[int]:
+    """The dots of i and j after their stems. Those of Chinese characters, over what is wider, stay before it."""
+    sizes = boxes[:, 2:] - boxes[:, :2]
+    for dot in [k for k in order if sizes[k].max() < DOT * sizes[k].min()]:
+        stems = [
+            k
+            for k in order
+            if 0 <= boxes[dot, 1] - boxes[k, 3] < DOT * sizes[dot, 1]
+            and min(boxes[k, 2], boxes[dot, 2]) > max(boxes[k, 0], boxes[dot, 0])
+            and sizes[k, 0] < STEM * sizes[dot, 0]
+            and sizes[k, 1] > STEM * sizes[dot, 1]
+        ]
+        if stems:
+            order.remove(dot)
+            order.insert(order.index(max(stems, key=lambda k: boxes[k, 3])) + 1, dot)
+    return order

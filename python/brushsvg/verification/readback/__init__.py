@@ -105,7 +105,16 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(
             f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text", code="line-unread"
         )
+    for number, line in enumerate(text.splitlines(), 1):
+        if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(("(", "#", "popup")):
+            raise Error(
+                f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
+                code="line-unread",
+            )
     return _READERS[cell.language](text, cell)
+
+
+_HUGE = re.compile(r"(?<![\d.])\d{10,}")  # no place in mm, no feed in mm/min: nothing can be computed with it
 
 
 def _gcode(text: str, cell: Cell) -> Readback:

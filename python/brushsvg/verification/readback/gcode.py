@@ -36,6 +36,10 @@ ALONE = {
     "M3",
     "M5",
 }  # no other word of command beside them
+LONGEST, LONGEST_FOR_GRBL = (
+    252,
+    79,
+)  # letters of a line, by trying LinuxCNC 2.9 and by grbl 1.1's buffer of 80
 ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
 STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
 UNKNOWN_TO_GRBL = {
@@ -62,6 +66,7 @@ class _Reader:
         if cell.language != "linuxcnc":
             self.known -= UNKNOWN_TO_GRBL
         self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
+        self.longest = LONGEST if cell.language == "linuxcnc" else LONGEST_FOR_GRBL
         self.motion = ""
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
@@ -96,6 +101,13 @@ class _Reader:
         return self.out
 
     def _line(self, number: int, line: str) -> None:
+        # grbl drops blanks before it counts
+        size = len(line) if self.longest == LONGEST else len(line.replace(" ", ""))
+        if size > self.longest:
+            raise Error(
+                f"line {number} has {size} letters, the controller reads no more than {self.longest}",
+                code="line-unread",
+            )
         if not _CODE.fullmatch(line):
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
@@ -173,7 +185,7 @@ class _Reader:
 
     def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
-            if not values["F"] > 0:
+            if values["F"] < 0:
                 raise Error(f"line {number}: {line[:40]!r} is no feed", code="line-incomplete")
             self.feed_mm_s = values["F"] / 60
         if not code:
@@ -185,6 +197,8 @@ class _Reader:
         self.motion = code
         places = {axis: values[axis] for axis in "XYZ" if axis in values}
         if not places and "S" not in values:
+            if code in ("G2", "G3"):
+                raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre")
             return
         if self.servo and "S" in values:
             self.value = values["S"]

@@ -1,0 +1,20 @@
+"""Lines from point to point: how long they are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def steps(points: np.ndarray) -> np.ndarray:
+    """Length from each point (n, 2) or (n, 3) to the next one: (n - 1,)."""
+    step = np.diff(points, axis=0)
+    return np.hypot(*step.T) if step.shape[1] == 2 else np.linalg.norm(step, axis=1)
+
+
+def lengths(points: np.ndarray) -> np.ndarray:
+    """Length of the way from the first point to each: (n,), from 0."""
+    return np.concatenate([[0.0], np.cumsum(steps(points))])
+
+
+def length(points: np.ndarray) -> float:
+    return float(steps(points).sum())

@@ -1,0 +1,79 @@
+"""What stands in a JSON file of ours, field by field: each refusal names the path to the key."""
+
+from __future__ import annotations
+
+import json
+import math
+from contextlib import suppress
+
+from .errors import Error
+
+
+def document(data: str | bytes, format_: str, version: int = 1) -> dict:
+    """The object that a file of a format holds. Error where it is of another, or says a key twice."""
+    text = data.decode("utf-8-sig", "replace") if isinstance(data, bytes) else data
+    try:
+        content = json.loads(text, object_pairs_hook=_once)
+    except Error:
+        raise
+    except (ValueError, RecursionError) as problem:
+        raise Error(f"this is not valid JSON: {problem}", code="not-json") from None
+    if not isinstance(content, dict) or content.get("format") != format_:
+        raise Error(f'the file does not say "format": "{format_}"', "format", code="format-unknown")
+    found = content.get("version")
+    if found != version or isinstance(found, bool):
+        raise Error(
+            f"version {found!s:.40} of {format_} is not known; known is {version}",
+            "version",
+            code="version-unknown",
+        )
+    return content
+
+
+def _once(pairs: list[tuple[str, object]]) -> dict:
+    """An object; Error for a key that stands twice, of which one would be lost."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise Error("the key stands twice", twice, code="key-twice")
+    return found
+
+
+def refuse_unknown(content: dict, known, where: str = "", told=None) -> None:
+    """Error for the first key that is not known; told: those that are worth naming, None for all."""
+    for key in content:
+        if key not in known:
+            names = ", ".join(told or known)
+            here, path = (" here", f"{where}.{key}") if where else ("", key)
+            raise Error(f"this is not known{here}; known are {names}", path, code="key-unknown")
+
+
+def objects(values, where: str, or_else: str = "") -> list[dict]:
+    """or_else: what it may be as well, which is not for here."""
+    if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
+        raise Error(f"this must be a list of objects{or_else}", where, code="wrong-type")
+    return values
+
+
+def number(value, where: str, least: float = -math.inf, greatest: float = math.inf) -> float:
+    if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
+        with suppress(OverflowError):  # an integer beyond all floats
+            found = float(value)
+            if not least <= found <= greatest:
+                raise Error(
+                    f"{found:g} is outside the range [{least:g}, {greatest:g}]",
+                    where,
+                    found,
+                    code="out-of-range",
+                )
+            return found
+    raise Error(f"{value!r:.24} is not a finite number", where, code="not-a-number")
+
+
+def numbers(values, where: str, count: int | None = None) -> tuple[float, ...]:
+    """count: None for any."""
+    if not isinstance(values, list) or (count is not None and len(values) != count):
+        wanted = "a list of numbers" if count is None else f"{count} finite numbers"
+        raise Error(f"this must be {wanted}", where, code="wrong-type")
+    return tuple(number(value, f"{where}[{i}]") for i, value in enumerate(values))

@@ -1,0 +1,73 @@
+"""A servo goes in steps: what was read of it, without them. Ways and lifts as they were meant."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..machine.motion import Program
+from .readback import Act
+
+
+def without_steps(a_pass, lines: np.ndarray, rests: np.ndarray):
+    """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone.
+    Where the servo rests at no pose of the last lift, that is the one off the paper, from beside which its last way was
+    held.
+    """
+    goes = np.diff(np.asarray(a_pass.poses_mm)[:, :2], axis=0).any(axis=1)
+    is_off = not rests[1:][np.flatnonzero(np.r_[True, goes])[-1] :].any()
+    poses, is_kept = np.array(a_pass.poses_mm), np.r_[lines[1:] != lines[:-1], True]
+    if not is_kept[0]:
+        # landed on the first way, without the last step: where it starts, the brush just touches
+        is_kept[0], poses[0, 2] = True, 0.0
+    poses = poses[is_kept]
+    poses = poses[np.r_[True, np.diff(poses, axis=0).any(axis=1)]]
+    steps = np.diff(poses, axis=0)
+    still, rising = ~steps[:, :2].any(axis=1), np.sign(steps[:, 2])
+    inner = np.zeros(len(poses), dtype=bool)
+    inner[1:-1] = still[:-1] & still[1:] & (rising[:-1] == rising[1:])
+    if len(still) > 1 and still[-1] and is_off:
+        held = np.flatnonzero(np.r_[True, ~still])[-1]  # where the last way ends
+        inner[held:-1] = held > 0
+    return _core.Pass(a_pass.stroke, poses[~inner], a_pass.speed_mm_s)
+
+
+def as_lifts(acts: list[Act]) -> list[Act]:
+    """A servo's acts: ways in paint that follow each other as the last one, all that it does at one place as one lift:
+    its last value, what is waited in all, its least and its greatest value, the one that it begins with among them.
+    How fast a stroke may be is asked of the way itself."""
+    out: list[Act] = []
+    value, place, in_stroke = 0.0, (), False
+    up = next((act.same[0] for act in acts if act.kind == "lift"), None)
+    for act in acts:
+        last = out[-1] if out else None
+        if act.kind == "way":
+            if (act.place, act.same[0]) == (place, value):
+                continue
+            value, place = act.same[0], act.place
+            if last and last.kind == "way" and up not in (value, last.same[0]):
+                most = () if in_stroke else (max(act.at_most[0], last.at_most[0]),)
+                out[-1] = act._replace(at_most=most)
+                continue
+            act = act._replace(at_most=()) if in_stroke and value != up else act
+        elif act.kind in ("lift", "wait"):
+            before = out.pop().same if last and last.kind == "lift" else (value, 0.0, value, value)
+            value = act.same[0] if act.kind == "lift" else value
+            waited_s = act.same[0] if act.kind == "wait" else 0.0
+            same = (value, before[1] + waited_s, min(before[2], value), max(before[3], value))
+            act = act._replace(kind="lift", same=same)
+        elif act.kind == "text":
+            in_stroke = in_stroke if act.text[:1] != "(" else act.text.startswith("(stroke")
+        out.append(act)
+    return out
+
+
+def seen_from_above_mm(program: Program) -> float:
+    """Length of the tool's way on the paper, its heights left out."""
+    total_mm, here = 0.0, None
+    for move in (move for section in program.sections() for move in section.moves):
+        if move.meaning == "paint":
+            steps = np.diff(np.vstack([here, move.points_mm])[:, :2], axis=0)
+            total_mm += float(np.linalg.norm(steps, axis=1).sum())
+        here = move.points_mm[-1]
+    return total_mm

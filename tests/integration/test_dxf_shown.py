@@ -1,0 +1,87 @@
+"""Nothing of a DXF is misread without a word: 450 small drawings of one feature each, as ezdxf's own drawing add-on
+shows them, held against what we would paint.
+
+Where they differ by more than 3 % of the area, something must have been told of it, and so of what the add-on does
+not show either. Where the add-on itself is simpler than the DXF reference, dxf_features.OWN says in what.
+"""
+
+import platform
+
+import dxf_features
+import dxf_shown
+import pytest
+from dxf_text import drawing, encoded, save_font
+
+from brushsvg.drawing.dxf.library import ezdxf
+
+import ezdxf.addons.drawing.frontend  # isort: skip  after the library
+
+LEAST = 0.03  # of the area; round ends of wide lines take up to 0.02
+FEATURES = {name: draw for table in dxf_features.TABLES.values() for name, draw in table.items()}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def fonts(tmp_path_factory):
+    """Letters cut in half, so that mirrored ones are other ones, in the only folder where fonts are looked for."""
+    folder = tmp_path_factory.mktemp("fonts")
+    save_font(folder / "triangles.ttf", "Triangles", slanted=True)
+    save_font(folder / "other.ttf", "Other", 900, slanted=True)
+    known = ezdxf.fonts.fonts.font_manager
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(ezdxf.fonts.font_manager.FONT_DIRECTORIES, platform.system(), [str(folder)])
+        # one way to set MTEXT: plain text would be set in another one, whose lines stand elsewhere
+        patch.setattr(ezdxf.addons.drawing.frontend, "is_complex_mtext", lambda mtext: True)
+        known.build([str(folder)], support_dirs=False)
+        yield
+        known.clear()
+
+
+def written(draw) -> bytes:
+    document = drawing()
+    document.styles.add("T", font="triangles.ttf")
+    draw(document, document.modelspace())
+    return encoded(document)
+
+
+def off(draw):
+    """How much differs, and what is told."""
+    data = written(draw)
+    ours, told = dxf_shown.painted(data)
+    return dxf_shown.difference(dxf_shown.shown(data), ours), told
+
+
+@pytest.mark.parametrize("table", dxf_features.TABLES)
+def test_what_is_not_painted_as_shown_is_told(table):
+    silent, stale = {}, []
+    for name, draw in dxf_features.TABLES[table].items():
+        share, told = off(draw)
+        if name in dxf_features.OWN:
+            stale += [name] if share <= LEAST else []
+        elif share > LEAST and not told:
+            silent[name] = round(share, 3)
+        elif not told and name in dxf_features.NAMED:
+            silent[name] = "not named"
+    assert (silent, stale) == ({}, [])
+
+
+def test_every_exception_is_a_feature():
+    assert {*dxf_features.OWN, *dxf_features.NAMED} <= FEATURES.keys()
+
+
+TAMPERED = {
+    "nothing": ((10, 10), (70, 30), {}, False),
+    "moved by an eighth of a millimetre": ((10, 10.125), (70, 30.125), {}, True),
+    "longer by 4 mm": ((10, 10), (73.8, 31.3), {}, True),
+    "of another colour": ((10, 10), (70, 30), {"color": 1}, True),
+    "heavier": ((10, 10), (70, 30), {"lineweight": 50}, True),
+    "dashed": ((10, 10), (70, 30), {"linetype": "DASHED"}, True),
+}
+
+
+@pytest.mark.parametrize("change", TAMPERED)
+def test_the_comparison_sees_another_drawing(change):
+    begin, end, attributes, differs = TAMPERED[change]
+    sound = written(lambda d, m: dxf_features.line(m, (10, 10), (70, 30)))
+    other = written(lambda d, m: (dxf_features.line_types(d), dxf_features.line(m, begin, end, **attributes)))
+    ours, _ = dxf_shown.painted(other)
+    assert (dxf_shown.difference(dxf_shown.shown(sound), ours) > LEAST) == differs
