@@ -410,6 +410,27 @@ def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys
         assert run(capsys, "height", out, "--cell", cell)[0] == 0
 
 
+def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
+    (desk / "thin.svg").write_text(
+        drawing(*(LINE.replace('"3"', f'"0.{k}"').replace("line", f"p{k}") for k in range(1, 6)))
+    )
+    words = ("convert", "thin.svg", "x.ngc", "--quiet")
+    assert main(["--messages", "json", *words]) == 0
+    (told,) = map(json.loads, capsys.readouterr().err.splitlines())
+    assert (told["file"], told["where"], told["code"]) == (
+        "thin.svg",
+        "p1 and 4 like it",
+        "depth-not-measured",
+    )
+    assert told["sentence"].endswith(f"; {told['advice']}") and not told["damaged"]
+    assert run(capsys, *words) == (0, "", [f"brushsvg: thin.svg: p1 and 4 like it: {told['sentence']}"])
+    assert main(["--messages", "json", "convert", "no.svg", "x.ngc"]) == 1
+    assert json.loads(capsys.readouterr().err)["code"] == "file-unreadable"
+    (desk / "odd.svg").write_text(drawing(LINE, '<image id="i"/>'))
+    (warned,) = json.loads(run(capsys, "report", "odd.svg", "--json")[1])["warnings"]
+    assert (warned["where"], warned["code"]) == ("i", "element-unread")
+
+
 def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
     (desk / "folder.png").mkdir()
     for words, reason in (

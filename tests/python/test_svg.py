@@ -139,6 +139,12 @@ def test_segments_without_length_vanish_among_others():
     assert np.array_equal(closed[0, 0], closed[-1, 3])
 
 
+def is_told(one, told: str) -> bool:
+    """Whether a notice or refusal has this code and names these data: "code data"."""
+    code, _, data = told.partition(" ")
+    return one.code == code and data in one.sentence
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_arcs_stay_within_the_tolerance_after_the_transform(seed):
     rng = random.Random(seed)
@@ -423,23 +429,23 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
 
 
 @pytest.mark.parametrize(
-    ("page", "sentence"),
+    ("page", "told"),
     [
-        ("", "neither width and height nor a viewBox"),
-        ('width="10mm"', "neither width and height nor a viewBox"),
-        ('viewBox="0 0 10"', "is not four numbers"),
-        ('viewBox="0 0 nan 5"', "is not four numbers"),
-        ('viewBox="0 0 0 5"', "has no area"),
-        ('width="0" height="5"', "the page's width 0 mm is outside the range (0, 1000000] mm"),
-        ('width="5" height="-1mm"', "the page's height -1 mm is outside the range"),
-        ('width="5" height="1e9mm"', "the page's height 1e+09 mm is outside the range"),
-        ('width="5 furlongs" height="5"', "the page's width: '5 furlongs' has a unit that is not read"),
+        ("", "size-unknown"),
+        ('width="10mm"', "size-unknown"),
+        ('viewBox="0 0 10"', "viewbox-invalid four numbers"),
+        ('viewBox="0 0 nan 5"', "viewbox-invalid four numbers"),
+        ('viewBox="0 0 0 5"', "viewbox-invalid no area"),
+        ('width="0" height="5"', "out-of-range width 0 mm is outside the range (0, 1000000] mm"),
+        ('width="5" height="-1mm"', "out-of-range height -1 mm"),
+        ('width="5" height="1e9mm"', "out-of-range height 1e+09 mm"),
+        ('width="5 furlongs" height="5"', "not-a-length width: '5 furlongs'"),
     ],
 )
-def test_pages_that_are_refused(page, sentence):
+def test_pages_that_are_refused(page, told):
     with pytest.raises(Error) as refused:
         read('<line x2="1" stroke="red"/>', page)
-    assert sentence in str(refused.value)
+    assert is_told(refused.value, told)
 
 
 # Style.
@@ -553,47 +559,47 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
 
 
 @pytest.mark.parametrize(
-    ("body", "where", "sentence"),
+    ("body", "where", "told"),
     [
-        ('<text id="t">x</text>', "t", "inkscape --export-text-to-path"),
-        ('<image id="i"/>', "i", "image is not read"),
-        ("<foreignObject/>", "foreignObject 1", "foreignObject is not read"),
-        ("<g><set/><animate/></g>", "svg", "animations are not read: 2 left out"),
-        ('<path id="p" d="M0 0H5" stroke="none"/>', "p", "it has neither stroke nor fill"),
-        ('<path id="p" d="M0 0H5" stroke-opacity="0"/>', "p", "it has neither stroke nor fill"),
-        ('<path id="p" d="M0 0H5" stroke-width="0"/>', "p", "it has neither stroke nor fill"),
-        ('<line id="p" x2="5" stroke="none" fill="red"/>', "p", "it has neither stroke nor fill"),
-        ('<path id="p" d="M5 5"/>', "p", "a moveto without a line"),
-        ('<path id="p" d="M5 5M6 6H7M8 8"/>', "p", "2 movetos without a line"),
-        ('<polyline id="p" points="1,1"/>', "p", "a moveto without a line"),
-        ('<path id="p"/>', "p", "it has no geometry"),
-        ('<circle id="p" r="0"/>', "p", "it has no geometry"),
-        ('<rect id="p" width="5"/>', "p", "it has no geometry"),
-        ('<path id="p" d="M0 0H5" transform="scale(0 1)"/>', "p", "flatten it to nothing"),
-        ('<g marker-end="url(#a)"><path id="p" d="M0 0H5"/></g>', "p", "markers are not read"),
-        ('<path id="p" d="M0 0H5" style="marker:url(#a)"/>', "p", "markers are not read"),
-        ('<path id="p" d="M0 0H5" stroke-opacity=".5"/>', "p", "stroke-opacity is not read"),
-        ('<g id="g" clip-path="url(#a)"><path d="M0 0H5"/></g>', "g", "clip-path is not read"),
-        ('<g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>', "g", "mask is not read"),
-        ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "opacity is not read"),
-        ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "fully transparent"),
+        ('<text id="t">x</text>', "t", "text-unread"),
+        ('<image id="i"/>', "i", "element-unread image"),
+        ("<foreignObject/>", "foreignObject 1", "element-unread foreignObject"),
+        ("<g><set/><animate/></g>", "svg", "animations-unread 2 left out"),
+        ('<path id="p" d="M0 0H5" stroke="none"/>', "p", "neither-stroke-nor-fill"),
+        ('<path id="p" d="M0 0H5" stroke-opacity="0"/>', "p", "neither-stroke-nor-fill"),
+        ('<path id="p" d="M0 0H5" stroke-width="0"/>', "p", "neither-stroke-nor-fill"),
+        ('<line id="p" x2="5" stroke="none" fill="red"/>', "p", "neither-stroke-nor-fill"),
+        ('<path id="p" d="M5 5"/>', "p", "moveto-alone a moveto"),
+        ('<path id="p" d="M5 5M6 6H7M8 8"/>', "p", "moveto-alone 2 movetos"),
+        ('<polyline id="p" points="1,1"/>', "p", "moveto-alone a moveto"),
+        ('<path id="p"/>', "p", "geometry-empty"),
+        ('<circle id="p" r="0"/>', "p", "geometry-empty"),
+        ('<rect id="p" width="5"/>', "p", "geometry-empty"),
+        ('<path id="p" d="M0 0H5" transform="scale(0 1)"/>', "p", "geometry-empty transforms"),
+        ('<g marker-end="url(#a)"><path id="p" d="M0 0H5"/></g>', "p", "markers-unread"),
+        ('<path id="p" d="M0 0H5" style="marker:url(#a)"/>', "p", "markers-unread"),
+        ('<path id="p" d="M0 0H5" stroke-opacity=".5"/>', "p", "opacity-unread stroke-opacity"),
+        ('<g id="g" clip-path="url(#a)"><path d="M0 0H5"/></g>', "g", "css-unread clip-path"),
+        ('<g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>', "g", "css-unread mask"),
+        ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "css-unread opacity"),
+        ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "transparent"),
         (
             GRADIENT + '<path id="p" d="M0 0H5" stroke="url(#g)"/>',
             "p",
-            "#g is not read: it counts as #000000",
+            "paint-unread #g is not read: it counts as #000000",
         ),
         (
             GRADIENT + '<path id="p" d="M0 0H5" stroke="url(\'#g\') red"/>',
             "p",
-            "#g is not read: it counts as #ff0000",
+            "paint-unread #g is not read: it counts as #ff0000",
         ),
     ],
 )
-def test_what_is_not_read_is_named(body, where, sentence):
+def test_what_is_not_read_is_named(body, where, told):
     design = read(FIRST + body)
     named = [notice for notice in design.notices if notice.where == where]
     assert len(named) == 1
-    assert sentence in named[0].sentence
+    assert is_told(named[0], told)
     assert not any(notice.damaged for notice in design.notices)
 
 
@@ -646,27 +652,27 @@ def test_damage_is_the_first_reason_given():
 
 
 @pytest.mark.parametrize(
-    ("data", "sentence"),
+    ("data", "told"),
     [
-        (b"", "the file is empty"),
-        (b" \n", "the file is empty"),
-        (b"M0 0", "this is not XML: syntax error in line 1"),
-        (b"<svg>\n<path></svg>", "this is not XML: mismatched tag in line 2"),
-        (b"<svg>\n<path", "in line 2"),
-        (b"\x89PNG\r\n\x1a\n", "this is not XML"),
+        (b"", "file-empty"),
+        (b" \n", "file-empty"),
+        (b"M0 0", "not-xml line 1"),
+        (b"<svg>\n<path></svg>", "not-xml line 2"),
+        (b"<svg>\n<path", "not-xml line 2"),
+        (b"\x89PNG\r\n\x1a\n", "not-xml"),
         (
             b'<?xml version="1.0" encoding="utf-8"?>\n<svg id="\xe4"/>',
-            "not well-formed (invalid token) in line 2",
+            "not-xml line 2",
         ),
-        (b'<?xml version="1.0" encoding="klingon"?><svg/>', "unknown encoding: klingon"),
-        (b"<html/>", "the root element is <html>, not <svg>"),
-        (b'<svg xmlns="http://example.org/"/>', "the root element is <svg>, not <svg>"),
+        (b'<?xml version="1.0" encoding="klingon"?><svg/>', "not-xml klingon"),
+        (b"<html/>", "not-svg <html>"),
+        (b'<svg xmlns="http://example.org/"/>', "not-svg <svg>"),
     ],
 )
-def test_what_is_not_svg_is_refused(data, sentence):
+def test_what_is_not_svg_is_refused(data, told):
     with pytest.raises(Error) as refused:
         read_svg(data)
-    assert sentence in str(refused.value)
+    assert is_told(refused.value, told)
 
 
 def test_encodings():
@@ -687,23 +693,23 @@ LAUGHS = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
 
 
 @pytest.mark.parametrize(
-    ("subset", "content", "sentence"),
+    ("subset", "content", "told"),
     [
-        ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "line 1: entity 'e1' is built from other entities"),
-        (f'<!ENTITY e "{"x" * 100_000}">', "&e;" * 5000, "beyond the limit of 10000000"),
-        ('<!ENTITY % p "x">', "", "entity 'p' is built from other entities"),
-        ('<!ENTITY e SYSTEM "file:///etc/passwd">', "&e;", "entity 'e' lies in another file"),
-        (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "attribute defaults could grow"),
+        ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "xml-entity line 1: entity 'e1'"),
+        (f'<!ENTITY e "{"x" * 100_000}">', "&e;" * 5000, "xml-entity limit of 10000000"),
+        ('<!ENTITY % p "x">', "", "xml-entity entity 'p'"),
+        ('<!ENTITY e SYSTEM "file:///etc/passwd">', "&e;", "xml-entity entity 'e' lies in another file"),
+        (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity attribute defaults"),
     ],
 )
-def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, sentence):
+def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, told):
     data = f"<!DOCTYPE svg [{subset}]><svg>{content}</svg>".encode()
     tracemalloc.start()
     with pytest.raises(Error) as refused:
         read_svg(data)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert sentence in str(refused.value)
+    assert is_told(refused.value, told)
     assert peak < 5e6
 
 
