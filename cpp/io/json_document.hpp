@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "json_fields.hpp"
 
@@ -57,6 +58,7 @@ class Watcher {
 
     /// False: the value just read is dropped from the document.
     bool see(Json::parse_event_t event, const Json& parsed) {
+        checkpoint();
         using Event = Json::parse_event_t;
         switch (event) {
             case Event::object_start:

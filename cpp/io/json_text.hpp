@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/marks.hpp"
 #include "json_fields.hpp"
@@ -69,6 +70,7 @@ void append_array(std::string& out, std::size_t count, std::size_t indent, Appen
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t gap = out.size() + 1;
         if (i > 0) out += ", ";
+        checkpoint();
         append_item(i);
         if (i > 0 && out.size() - line > 110) {
             out[gap] = '\n';

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/thin_out.hpp"
@@ -105,6 +106,7 @@ class Inverse {
     }
     void step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,
               LagState<double>& state) const {
+        checkpoint();
         advance(law, Move<double>(samples[from].middle, samples[to].middle, samples[from].depth, samples[to].depth),
                 state);
         store(samples[to], sign, state);

@@ -389,6 +389,7 @@ Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
         }
     Coverage out(height, width);
     for (Eigen::Index row = 0; row < height; ++row) {
+        checkpoint(1 + int(width / 50));
         double sum = 0.0;
         for (Eigen::Index x = 0; x < width; ++x) {
             sum += edge(x, row);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "meanwhile.hpp"
 #include "outline.hpp"
 #include "skeleton_pruning.hpp"
 #include "voronoi_axis.hpp"
@@ -84,15 +85,25 @@ MedialAxis collected(const VoronoiAxis& axis, const Outline& outline, const Kept
     return result;
 }
 
-}  // namespace
-
-MedialAxis medial_axis(const Rings& rings, double least_share) {
+MedialAxis axis_of(const Rings& rings, double least_share) {
     const Outline outline(rings);
     if (outline.edges() == 0) return {};
     VoronoiAxis axis(outline);
     KeptBranches branches(axis);
     branches.drop(least_share);
     return collected(axis, outline, branches);
+}
+
+// The diagram asks while it is made, but not while its builder sorts: of a million edges for seconds.
+constexpr Index kManyCorners = 20000;
+
+}  // namespace
+
+MedialAxis medial_axis(const Rings& rings, double least_share) {
+    Index corners = 0;
+    for (const Ring& ring : rings) corners += ring.rows();
+    if (corners < kManyCorners) return axis_of(rings, least_share);
+    return asking_meanwhile([rings, least_share] { return axis_of(rings, least_share); });
 }
 
 }  // namespace brushsvg

@@ -12,6 +12,7 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "meanwhile.hpp"
 #include "nearest.hpp"
 
 namespace brushsvg {
@@ -27,6 +28,9 @@ using Set = bp::polygon_set_data<int>;
 constexpr double kUnitsPerMm = 1e5;
 // slivers that rounding leaves between shapes that only touch: of no area, or narrower than two units
 constexpr double kLeastArea = 1e-6;
+// Boost works in one piece and asks nobody. A thousand corners are its work of a hundredth of a second, but of a second
+// where each edge crosses all others; a thread costs less than the work of a hundred.
+constexpr Eigen::Index kManyCorners = 300;
 // half the width [mm] below which a piece of a hull is not worth its corners: a hundred times what rounding moves them
 constexpr double kThinnest = 2e-3;
 
@@ -103,7 +107,9 @@ void require_finite(const Ring& ring) {
 std::vector<Eigen::Index> hull_order(const Ring& points) {
     std::vector<Eigen::Index> order(points.rows());
     std::iota(order.begin(), order.end(), Eigen::Index(0));
+    unsigned compared = 0;
     std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+        if (++compared % 1000 == 0) checkpoint(20);
         return points(a, 0) < points(b, 0) || (points(a, 0) == points(b, 0) && points(a, 1) < points(b, 1));
     });
     std::vector<Eigen::Index> hull;
@@ -138,9 +144,17 @@ Ring both(const Ring& a, const Ring& b) {
     return points;
 }
 
-}  // namespace
+/// work(rings ...), so that it can be given up whatever Boost is at.
+template <class Work, class... Shapes>
+auto heard(const Work& work, const Shapes&... shapes) {
+    Eigen::Index corners = 0;
+    for (const Rings* rings : {&shapes...})
+        for (const Ring& ring : *rings) corners += ring.rows();
+    if (corners < kManyCorners) return work(shapes...);
+    return asking_meanwhile([=] { return work(shapes...); });
+}
 
-Rings unite(const Rings& rings) {
+Rings united(const Rings& rings) {
     // a tree of small unions: neighbours overlap most, and a sweep over all of them at once meets every crossing twice
     std::vector<Set> level;
     level.reserve(rings.size());
@@ -164,8 +178,6 @@ Rings unite(const Rings& rings) {
     }
     return to_rings(level.front());
 }
-
-namespace {
 
 // Each turn costs a sweep over everything. Letters turn twice; nested contours are cheaper one by one; one ring that
 // winds more than the most is a star or a spiral of a hundred points, no lettering.
@@ -236,9 +248,7 @@ Set in_an_odd_number(const Rings& outlines) {
     return level.empty() ? Set() : level.front();
 }
 
-}  // namespace
-
-Rings fill(const Rings& outlines, FillRule rule) {
+Rings filled_by(const Rings& outlines, FillRule rule) {
     if (rule == FillRule::evenodd) {
         const std::optional<Set> filled = wound_oddly(outlines, kFewTurns);
         return to_rings(filled ? *filled : in_an_odd_number(outlines));
@@ -249,7 +259,7 @@ Rings fill(const Rings& outlines, FillRule rule) {
     return to_rings(filled);
 }
 
-Rings intersect(const Rings& a, const Rings& b) {
+Rings in_common(const Rings& a, const Rings& b) {
     using namespace bp::operators;
     const Set first = to_set(a), second = to_set(b);
     Set both;
@@ -257,13 +267,7 @@ Rings intersect(const Rings& a, const Rings& b) {
     return to_rings(both);
 }
 
-double area(const Rings& rings) {
-    double sum = 0.0;
-    for (const Ring& ring : rings) sum += signed_area(ring);
-    return sum;
-}
-
-double overlap(const Rings& a, const Rings& b) {
+double common_share(const Rings& a, const Rings& b) {
     using namespace bp::operators;
     const Set first = to_set(a), second = to_set(b);
     Set both;
@@ -271,6 +275,24 @@ double overlap(const Rings& a, const Rings& b) {
     const double shared = area_of(both), all = area_of(first) + area_of(second) - shared;
     return all > 0.0 ? shared / all : 1.0;
 }
+
+}  // namespace
+
+Rings unite(const Rings& rings) { return heard(united, rings); }
+
+Rings fill(const Rings& outlines, FillRule rule) {
+    return heard([rule](const Rings& rings) { return filled_by(rings, rule); }, outlines);
+}
+
+Rings intersect(const Rings& a, const Rings& b) { return heard(in_common, a, b); }
+
+double area(const Rings& rings) {
+    double sum = 0.0;
+    for (const Ring& ring : rings) sum += signed_area(ring);
+    return sum;
+}
+
+double overlap(const Rings& a, const Rings& b) { return heard(common_share, a, b); }
 
 Ring convex_hull(const Ring& points) {
     require_finite(points);

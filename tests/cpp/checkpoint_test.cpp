@@ -2,11 +2,16 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <thread>
 
 #include "brushsvg/compensate.hpp"
+#include "brushsvg/medial_axis.hpp"
+#include "brushsvg/region.hpp"
+#include "meanwhile.hpp"
 #include "parallel.hpp"
 #include "round6.hpp"
 
@@ -70,4 +75,52 @@ TEST_CASE("a stroke is given up inside of itself") {
     int asked = 0;
     const CancelWhen first([&] { return ++asked == 1; });
     CHECK_THROWS_AS(compensate(stroke, brush), Cancelled);
+}
+
+TEST_CASE("work without checkpoints is given up from beside, and ends at its next checkpoint") {
+    std::atomic<bool> goes_on{true}, ended{false};
+    const auto here = std::this_thread::get_id();
+    int asked = 0;
+    {
+        const CancelWhen second([&] {
+            CHECK(std::this_thread::get_id() == here);
+            return ++asked == 2;
+        });
+        CHECK_THROWS_AS(asking_meanwhile([&]() -> int {
+                            while (goes_on) std::this_thread::yield();
+                            try {
+                                work_for(100000);
+                            } catch (const Cancelled&) {
+                                ended = true;
+                            }
+                            return 0;
+                        }),
+                        Cancelled);
+    }
+    goes_on = false;
+    while (!ended) std::this_thread::yield();
+    CHECK(asked == 2);
+    CHECK(asking_meanwhile([] { return 7; }) == 7);
+    CHECK_THROWS_AS(asking_meanwhile([]() -> int { throw std::logic_error("no"); }), std::logic_error);
+}
+
+TEST_CASE("unions of large rings, and a large shape's axis, are given up") {
+    Rings rings(2, Ring(40000, 2));
+    for (Eigen::Index i = 0; i < 40000; ++i) {
+        const double turn = 2.0 * M_PI * double(i) / 40000.0, radius = 80.0 + 0.01 * double((i * 7919) % 13);
+        rings[0].row(i) << radius * std::cos(turn), radius * std::sin(turn);
+        rings[1].row(i) << 10.0 + radius * std::cos(turn), radius * std::sin(turn);
+    }
+    const auto is_given_up = [&](auto work) {
+        int asked = 0;
+        const CancelWhen first([&] { return ++asked == 1; });
+        CHECK_THROWS_AS(work(), Cancelled);
+        return asked == 1;
+    };
+    CHECK(is_given_up([&] { unite(rings); }));
+    CHECK(is_given_up([&] { fill(rings, FillRule::nonzero); }));
+    CHECK(is_given_up([&] { fill(rings, FillRule::evenodd); }));
+    CHECK(is_given_up([&] { intersect({rings[0]}, {rings[1]}); }));
+    CHECK(is_given_up([&] { overlap({rings[0]}, {rings[1]}); }));
+    CHECK(is_given_up([&] { medial_axis({rings[0]}, 0.1); }));
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "brushsvg/error.hpp"
+#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -20,6 +21,7 @@ using Eigen::VectorXd;
 // and those of a turn by 90 degrees straddle it: (19) is off by 0.0005 lags at 95 degrees, by 0.004 at 100, by 0.1 at
 // 120.
 constexpr double kGreatestAlpha0 = 95.0 * M_PI / 180.0 + 1e-9;
+constexpr double kLongestMm = 1e6;  // a longer drag is damage
 
 /// k of y = k x through the origin.
 double slope(const VectorXd& x, const VectorXd& y, Lines lines) {
@@ -55,8 +57,9 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     FromAngles out{0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0};
     std::vector<std::size_t> used;
     for (std::size_t i = 0; i < n; ++i) {
-        if (!std::isfinite(series.s_mm[i]) || !std::isfinite(series.alpha[i]))
-            throw Error("reading " + std::to_string(i + 1) + " is not a finite number");
+        const std::string reading = "reading " + std::to_string(i + 1);
+        require_within(series.s_mm[i], {-kLongestMm, kLongestMm}, "the distance of " + reading);
+        require_within(series.alpha[i], {-2.0 * M_PI, 2.0 * M_PI}, "the angle [rad] of " + reading);
         if (series.s_mm[i] > 0.0 && series.alpha[i] > 0.0 && series.alpha[i] < series.alpha0)
             used.push_back(i);
         else
@@ -72,6 +75,8 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
         f[i] = log_cot_half(series.alpha0) - log_cot_half(series.alpha[used[i]]);  // (19)
     }
     out.lag_mm = -slope(f, s, lines);  // (20)
+    // an angle that has hardly moved has a logarithm lost in rounding, and a lag of any size
+    require_within(out.lag_mm, {0.0, kLongestMm}, "the lag that the angles tell", "alpha");
     out.lag_rmse_mm = rmse(s + out.lag_mm * f);
     if (series.beta.empty()) return out;
 
@@ -88,6 +93,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     }
     const double mu = slope(integral, s, lines);  // (22)
     out.tip_gap_mm = (mu - 1.0) * out.lag_mm;     // (23)
+    require_within(out.tip_gap_mm, {-kLongestMm, kLongestMm}, "the tip gap that the angles tell", "beta");
     out.tip_gap_rmse_mm = rmse(s - mu * integral);
     return out;
 }

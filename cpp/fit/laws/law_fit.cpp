@@ -3,14 +3,15 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
 
 #include "bernstein.hpp"
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
+#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -27,6 +28,8 @@ constexpr int kMostReweightings = 500;
 // through its floor less often. Absolute residuals take some thirty times as long each.
 constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
 constexpr double kHeld = 1e6;  // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
+// Greater lengths of a brush, weights and depths are damage, and their powers overflow.
+constexpr double kGreatest = 1e6;
 constexpr double kLeastPositiveMm = 0.01;  // of a law that must stay above 0: a lever of no length has no heading
 
 struct Problem {
@@ -150,10 +153,12 @@ VectorXd residuals(const Problem& problem, const VectorXd& free) {
 /// 1 / sqrt|residual| count by their size, not its square. `left(x)`: the residuals.
 template <class Solve, class Left>
 VectorXd in_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
+    checkpoint(1 + int(rows));
     VectorXd free = solve(VectorXd(VectorXd::Ones(rows)));
     if (norm == Norm::squares) return free;
     double cost = left(free).template lpNorm<1>();
     for (int i = 0; i < kMostReweightings; ++i) {
+        checkpoint(1 + int(rows));
         const VectorXd weight = left(free).cwiseAbs().cwiseMax(kLeastResidualMm).cwiseSqrt().cwiseInverse();
         const VectorXd next = solve(VectorXd(weight / weight.maxCoeff()));
         const double now = left(next).template lpNorm<1>();
@@ -185,15 +190,16 @@ class Ways {
     /// `side`: on which it lies between this depth and the one before.
     void extend(std::vector<Side> way, Side side, int roots) {
         if (found.size() > most_) return;
-        if (way.size() == may_stop_.size()) {
+        if (roots < 1 || way.size() == may_stop_.size()) {
+            way.resize(may_stop_.size(), side);
             found.push_back(std::move(way));
             return;
         }
+        checkpoint();
         const Side other = side == Side::above ? Side::below : Side::above;
         const bool stops = may_stop_[way.size()];
         way.push_back(side);
         extend(way, side, roots);
-        if (roots < 1) return;
         if (stops) {
             way.back() = Side::on;
             extend(way, other, roots - 1);
@@ -213,16 +219,19 @@ class Ways {
 VectorXd solve_floored(const Problem& problem) {
     const LawShape& shape = problem.shape;
     const MatrixXd a = powers(problem.depth, shape);
-    const std::set<double> depths(problem.depth.data(), problem.depth.data() + problem.depth.size());
+    std::vector<double> depths(problem.depth.data(), problem.depth.data() + problem.depth.size());
+    std::sort(depths.begin(), depths.end());
+    depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
     std::vector<bool> may_stop(depths.size(), false);
     std::vector<std::size_t> place;
     for (Index i = 0; i < problem.depth.size(); ++i) {
-        place.push_back(std::size_t(std::distance(depths.begin(), depths.find(problem.depth[i]))));
+        place.push_back(std::size_t(std::lower_bound(depths.begin(), depths.end(), problem.depth[i]) - depths.begin()));
         if (problem.value[i] < shape.floor) may_stop[place.back()] = true;
     }
     const std::size_t most = shape.norm == Norm::squares ? kMostWays : kMostWaysAbsolute;
     std::vector<std::vector<Side>> ways;
     for (int roots = shape.degree; roots >= 0; --roots) {
+        if (roots > 0 && depths.size() > most) continue;  // a root may lie between any two of them
         ways = Ways(may_stop, roots, most).found;
         if (ways.size() <= most) break;
     }
@@ -278,10 +287,21 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
     for (std::size_t i = 0; i < depth.size(); ++i)
         if (!std::isfinite(depth[i]) || !std::isfinite(value[i]))
             throw Error("value " + std::to_string(i + 1) + " or its depth is not a finite number");
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        for (const auto& [what, number] : {std::pair{"value ", value[i]}, std::pair{"the depth of value ", depth[i]}})
+            require_within(number, {-kGreatest, kGreatest}, what + std::to_string(i + 1));
     if (shape.degree < 0 || shape.degree > kMaxLawDegree)
         throw Error("a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
+    if (shape.degree == 0 && shape.through_zero) throw Error("a law of degree 0 through zero has nothing to fit");
+    for (const double end : shape.range_mm)
+        require_within(end, {-kGreatest, kGreatest}, "an end of the depths", "range_mm");
+    if (!(shape.range_mm[0] < shape.range_mm[1])) throw Error("the range of depths must rise", "range_mm");
+    require_within(shape.smoothing, {0.0, kGreatest}, "the smoothing", "smoothing");
+    if (shape.floor != -std::numeric_limits<double>::infinity())
+        require_within(shape.floor, {-kGreatest, kGreatest}, "the floor", "floor");
     if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
         throw Error("a law with a floor cannot be held to a shape as well");
+    if (depth.empty() && shape.smoothing > 0.0) throw Error("there is no value to fit a law to");
     if (shape.smoothing > 0.0) return;  // which decides where the data leave it open
     const std::size_t terms = std::size_t(shape.degree) + (shape.through_zero ? 0 : 1);
     std::set<double> different(depth.begin(), depth.end());

@@ -116,7 +116,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     distance_mm.resize(points.rows());
     std::size_t row = 0;
     for (Index k = 0; k < points.rows(); ++k) {
-        checkpoint(5);
+        checkpoint(footprints.effort());
         const Eigen::Vector2d x = points.row(k).transpose();
         const Beside beside = beside_of(footprints, x, back * painted.outward.row(k).transpose(), row);
         row = beside.row;
@@ -130,7 +130,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
         by_shared->row(k) /= beside.aslant;
         if (by_displacement) by_displacement->row(k) = -normal / beside.aslant;
     }
-    return true;
+    return distance_mm.allFinite();
 }
 
 VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* displacement) const {
@@ -145,6 +145,7 @@ VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* 
     const Eigen::Rotation2Dd back(-shared[layout_.turn()]);
     std::size_t row = 0;
     for (Index k = 0; k < points.rows(); ++k) {
+        checkpoint(footprints.effort());
         const Beside beside =
             beside_of(footprints, points.row(k).transpose(), back * painted.outward.row(k).transpose(), row);
         row = beside.row;

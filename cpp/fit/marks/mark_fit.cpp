@@ -2,15 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "brushsvg/error.hpp"
 #include "identifiability.hpp"
 #include "mark_problem.hpp"
 #include "multistart.hpp"
 #include "noise_covariance.hpp"
+#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {
+
+constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overflow
+// Of one fit: each is met some hundred times, in a microsecond or so.
+constexpr double kMostPlaces = 1e6, kMostPoints = 1e6;
+constexpr double kPlaceMm = 0.15;  // no two places of a prediction lie farther apart along the way
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// `name`: of the option, a normal distribution's sigma.
+void require_sigma(double sigma, const std::string& name) {
+    require_within(sigma, {0.0, kInf}, "the standard deviation", name);
+}
+
+void refuse_options(const MarkOptions& options) {
+    require_within(options.deepest_mm, {1e-3, kDeepestMm}, "the greatest depth", "deepest_mm");
+    require_within(options.spacing_mm, {1e-3, kLargestMm}, "the spacing", "spacing_mm");
+    for (const auto& [prior, least, greatest, name] :
+         {std::tuple{options.widest_per_half, 0.1, 100.0, "widest_per_half"},
+          std::tuple{options.front_per_half, 0.1, 100.0, "front_per_half"},
+          std::tuple{options.height_mm, -kDeepestMm, kDeepestMm, "height_mm"}}) {
+        require_within(prior.value, {least, greatest}, "the value", name);
+        require_sigma(prior.sigma, name);
+    }
+    require_sigma(options.placement_mm, "placement_mm");
+    require_sigma(options.turn_rad, "turn_rad");
+    require_sigma(options.displacement_mm, "displacement_mm");
+    if (options.noise_mm) {
+        require_within(*options.noise_mm, {0.0, kLargestMm}, "the noise", "noise_mm");
+        require_within(options.noise_length_mm, {0.0, kLargestMm}, "the length", "noise_length_mm");
+    }
+    require_within(options.most_iterations, {1, 10000}, "the number of iterations", "most_iterations");
+}
+
+void refuse_laws(const MarkLaws& laws) {
+    for (const auto& [law, name] : {std::pair{&laws.lag, "start.lag"}, std::pair{&laws.tip_gap, "start.tip_gap"},
+                                    std::pair{&laws.half_width, "start.half_width"}})
+        for (const double c : *law) require_within(c, {-kLargestMm, kLargestMm}, "a coefficient", name);
+    require_within(laws.widest_per_half, {0.1, 100.0}, "the ratio", "start.widest_per_half");
+    require_within(laws.front_per_half, {0.1, 100.0}, "the ratio", "start.front_per_half");
+}
 
 void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     if (marks.empty()) throw Error("there is no painted mark");
@@ -18,23 +60,35 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
                                       std::pair{options.half_width_terms, "half_width"}})
         if (terms < 1 || terms > 4)
             throw Error(std::to_string(terms) + " numbers are outside the range [1, 4] for a law", name);
-    if (!(options.deepest_mm > 0.0 && std::isfinite(options.deepest_mm)))
-        throw Error("the greatest depth must be greater than 0", "deepest_mm", options.deepest_mm);
-    if (!(options.spacing_mm > 0.0))
-        throw Error("the spacing must be greater than 0", "spacing_mm", options.spacing_mm);
+    refuse_options(options);
+    double way = 0.0, around = 0.0;
     for (const PaintedMark& mark : marks) {
-        if (mark.poses_mm.rows() < 1 || !mark.poses_mm.allFinite())
-            throw Error("the stroke needs poses, and all of them finite numbers", mark.stroke);
+        if (mark.poses_mm.rows() < 1) throw Error("the stroke needs poses", mark.stroke);
+        for (const double mm : mark.poses_mm.reshaped())
+            require_within(mm, {-kLargestMm, kLargestMm}, "a coordinate of a pose", mark.stroke);
         if (mark.outline_mm.empty())
             throw Error("the mark has no outline: leave out what was not painted", mark.stroke);
-        for (const Ring& ring : mark.outline_mm)
-            if (ring.rows() < 3 || !ring.allFinite())
-                throw Error("an outline needs three points or more, and all of them finite numbers", mark.stroke);
+        double area = 0.0;
+        for (const Ring& ring : mark.outline_mm) {
+            if (ring.rows() < 3) throw Error("an outline needs three points or more", mark.stroke);
+            for (const double mm : ring.reshaped())
+                require_within(mm, {-kLargestMm, kLargestMm}, "a coordinate of an outline", mark.stroke);
+            area += signed_area(ring);
+            around += (ring.row(0) - ring.row(ring.rows() - 1)).norm() +
+                      (ring.bottomRows(ring.rows() - 1) - ring.topRows(ring.rows() - 1)).rowwise().norm().sum();
+        }
+        if (area < 0.0)
+            throw Error("the outlines run round less than nothing: outer ones go counter-clockwise", mark.stroke, area);
         const double deepest = -mark.poses_mm.col(2).minCoeff();
         if (deepest > options.deepest_mm + 1e-9)
             throw Error("a pose is deeper than the range of the laws", mark.stroke, deepest,
                         std::array<double, 2>{0.0, options.deepest_mm});
+        const Index moves = mark.poses_mm.rows() - 1;
+        way += double(moves) +
+               (mark.poses_mm.bottomRows(moves) - mark.poses_mm.topRows(moves)).rowwise().norm().sum() / kPlaceMm;
     }
+    require_within(way, {0.0, kMostPlaces}, "the number of places along the strokes");
+    require_within(around / options.spacing_mm, {0.0, kMostPoints}, "the number of points along the outlines");
 }
 
 /// What is to expect of edges this uncertain, which forget themselves as exp(-s / length).
@@ -92,6 +146,7 @@ MatrixXd covariance_at_touch(const MarkProblem& fit) {
 MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& from,
                   const MarkOptions& options) {
     refuse_what_cannot_be_fitted(marks, options);
+    if (from) refuse_laws(*from);
     MarkProblem fit(marks, options);
     Index points = 0;
     for (Index i = 0; i < fit.model.marks(); ++i) points += fit.model.points(i);
@@ -101,6 +156,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         expect(fit, from, options);
     else
         out.converged = solve(fit, from, marks, options);
+    if (!fit.shared.allFinite()) throw Error("no brush was found that paints these marks");
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
     const MatrixXd whole = to * covariance_at_touch(fit) * to.transpose();

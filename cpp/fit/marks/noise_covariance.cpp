@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brushsvg/checkpoint.hpp"
+#include "meanwhile.hpp"
+
 namespace brushsvg::fit {
 namespace {
 
@@ -66,7 +69,9 @@ MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, co
     // in units of the unknowns' own sizes, or a polynomial's powers would drown each other
     const VectorXd unit = slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
     const MatrixXd scaled = unit.asDiagonal() * slope * unit.asDiagonal();
-    return unit.asDiagonal() * scaled.ldlt().solve(MatrixXd::Identity(all, all)) * unit.asDiagonal();
+    const MatrixXd inverse = asking_meanwhile(  // of a thousand marks: seconds
+        [scaled, all]() -> MatrixXd { return scaled.ldlt().solve(MatrixXd::Identity(all, all)); });
+    return unit.asDiagonal() * inverse * unit.asDiagonal();
 }
 
 /// The part of an inverse over all unknowns that one mark's distances depend on.
@@ -89,6 +94,7 @@ struct Along {
             pairs.resize(std::size_t(farthest), 0.0);
         }
         for (Index lag = 0; lag < farthest; ++lag) {
+            checkpoint(int(n));
             for (Index k = 0; k < n; ++k) {
                 const Index a = begin + k, b = begin + (k + lag) % n;
                 if (!says(a) || !says(b)) continue;
@@ -183,19 +189,21 @@ MatrixXd covariance(const MarkProblem& at) {
         MatrixXd erring = MatrixXd::Zero(by.rows(), by.cols());
         for (std::size_t r = 0; r < at.model.rings(i); ++r) {
             const Index begin = at.model.ring_begin(i, r), n = at.model.ring_begin(i, r + 1) - begin;
-            for (Index k = 0; k < n; ++k)
+            for (Index k = 0; k < n; ++k) {
+                checkpoint(int(farthest));
                 for (Index lag = 0; lag < std::min(farthest, (n + 1) / 2); ++lag) {
                     const double c = weighing.together[std::size_t(lag)];
                     erring.row(begin + k) += c * by.row(begin + (k + lag) % n);
                     if (lag) erring.row(begin + k) += c * by.row(begin + (k + n - lag) % n);
                 }
+            }
         }
         add(spread, by.transpose() * erring, i, g);
     }
     spread /= std::pow(weighing.noise_mm * weighing.repeats, 2);
     spread.diagonal() += at.known();
     const MatrixXd inverse = inverse_slope(at, marks, weighing);
-    return (inverse * spread * inverse).topLeftCorner(g, g);
+    return inverse.topRows(g) * spread * inverse.leftCols(g);
 }
 
 }  // namespace brushsvg::fit

@@ -60,6 +60,8 @@ class Footprints {
     bool follow(const Poses& poses, const std::vector<double>& at, const MarkLaws& laws, const Eigen::MatrixXd* lag_by,
                 double height_mm, double deepest_mm);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
+    /// What looking for a point's nearest instant costs at most, for a checkpoint.
+    int effort() const { return 5 + int(rows_.size() / 100); }
 
     /// Edge of the footprint that comes nearest to x, and which one; the search begins at `row`. Of a point inside
     /// only that it is.

@@ -7,10 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
 #include "parallel.hpp"
 #include "trace.hpp"
+#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -19,6 +21,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overflow
 
 /// The law at the point that is being tried, once for all strokes. Unknowns: coefficients in powers of depth / deepest.
 template <int N>
@@ -106,6 +110,7 @@ class Stroke : public ceres::CostFunction {
         }
         trace(law_.jets, track_.poses_mm, Jet(0.0), track_.pose, is_set_down(track_) ? nullptr : &begun,
               [&](std::size_t k, const Trace<Jet>& at) {
+                  checkpoint();
                   Vec2<Jet> seen = at.state.contact;
                   if (!lever_.empty()) seen += lever_at(lever_, at.depth) * at.state.heading;
                   for (int c = 0; c < 2; ++c) {
@@ -264,17 +269,23 @@ void refuse_what_cannot_be_fitted(const std::vector<Track>& tracks, const std::v
     if (start.empty() || int(start.size()) > kMaxLawDegree + 1)
         throw Error("a law of " + std::to_string(start.size()) + " coefficients is outside the range [1, 9]", "start");
     const auto [lo, hi] = options.range_mm;
-    if (!(lo >= 0.0 && lo < hi && std::isfinite(hi)))
-        throw Error("the range of depths must rise from 0 or more", "range_mm");
-    for (double c : start)
-        if (!std::isfinite(c)) throw Error("a coefficient is not finite", "start");
+    if (!(lo >= 0.0 && lo < hi && hi <= kDeepestMm))
+        throw Error("the range of depths must rise from 0 or more to 1000 mm or less", "range_mm");
+    const std::array<double, 2> any{-kLargestMm, kLargestMm};
+    for (double c : start) require_within(c, any, "a coefficient", "start");
+    if (int(options.lever_mm.size()) > kMaxLawDegree + 1)
+        throw Error("a law of " + std::to_string(options.lever_mm.size()) + " coefficients is outside the range [0, 9]",
+                    "lever_mm");
+    for (double c : options.lever_mm) require_within(c, any, "a coefficient", "lever_mm");
+    require_within(options.most_iterations, {1, 10000}, "the number of iterations", "most_iterations");
     if (tracks.empty()) throw Error("there is no stroke");
     for (std::size_t i = 0; i < tracks.size(); ++i) {
         const Track& track = tracks[i];
         const std::string where = "stroke " + std::to_string(i + 1);
         if (track.poses_mm.rows() < 2) throw Error("a stroke needs two poses or more", where);
-        if (!track.poses_mm.allFinite() || !track.seen_mm.allFinite() || std::isinf(track.heading_rad))
-            throw Error("a number is not finite", where);
+        for (const double mm : track.poses_mm.reshaped()) require_within(mm, any, "a coordinate of a pose", where);
+        for (const double mm : track.seen_mm.reshaped()) require_within(mm, any, "a coordinate that was seen", where);
+        if (!std::isnan(track.heading_rad)) require_within(track.heading_rad, any, "the heading", where);
         const double deepest = -track.poses_mm.col(2).minCoeff();
         if (deepest > hi + 1e-9)
             throw Error("a pose is deeper than the range of the law", where, deepest, options.range_mm);
@@ -284,6 +295,10 @@ void refuse_what_cannot_be_fitted(const std::vector<Track>& tracks, const std::v
         for (double pose : track.pose) {
             if (!(pose >= before && pose <= double(track.poses_mm.rows() - 1)))
                 throw Error("the poses of what was seen must ascend and lie on the stroke", where, pose);
+            const Index from = std::min(Index(pose), track.poses_mm.rows() - 2);
+            const double z0 = track.poses_mm(from, 2), z1 = track.poses_mm(from + 1, 2);
+            if (z0 + (pose - double(from)) * (z1 - z0) > 1e-9)
+                throw Error("something was seen where the brush is in the air", where, pose);
             before = pose;
         }
     }
