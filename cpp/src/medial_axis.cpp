@@ -86,12 +86,14 @@ MedialAxis collected(const VoronoiAxis& axis, const Outline& outline, const Kept
 
 }  // namespace
 
-MedialAxis medial_axis(const Rings& rings, double least_share) {
+MedialAxis medial_axis(const Rings& rings, double least_share) { return medial_axis(rings, least_share, least_share); }
+
+MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb) {
     const Outline outline(rings);
     if (outline.edges() == 0) return {};
     VoronoiAxis axis(outline);
     KeptBranches branches(axis);
-    branches.drop(least_share);
+    branches.drop(least_share, least_limb);
     return collected(axis, outline, branches);
 }
 
