@@ -40,7 +40,7 @@ def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
     ("wanted", "says", "near"),
     [
         (stroke([(30, 40), (30, 40)], 2.0), "too short for the brush: a dab", (30, 40)),
-        (stroke([(30, 40), (60, 40)], 6, wanted=box(15, 30, 75, 50)), "12 mm wide there, wider than", None),
+        (stroke([(30, 40), (60, 40)], 8, wanted=box(22, 32, 68, 48)), "16 mm wide there, wider than", None),
         (stroke([(20, 40), (70, 40)], 0.3), "thinner than the finest line that was measured", None),
         (stroke([(20, 40), (60, 40), (25, 50)], 1.5), "a corner of 164 degrees", (60, 40)),
         (stroke(arc(4.0, 1.0, 60), 3.9, True), "turns tighter than", None),
