@@ -12,6 +12,10 @@ constexpr double kLeastCorner = 0.02;
 // A corner that adds as much to the disc at a line's end is where the line ends, if no other adds half of it: the even
 // corners of a square end add 0.21 each.
 constexpr double kLeastEnd = 0.3, kEndStandsOut = 1.4;
+// What the end of a stem adds, beside or beyond what leaves it there, over what any branch must: its two corners
+// together, 0.43 if they are right-angled, are too much to be left blank, and a line to where they part leaves little
+// of them.
+constexpr double kStemEnd = 0.5;
 
 template <typename T>
 void sort_and_thin(std::vector<T>& values) {
@@ -70,6 +74,7 @@ std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size
         const std::size_t h = mate_[axis_.out[p][0]], junction = axis_.from[h];
         if (axis_.out[junction].size() < 3) continue;
         const double share = axis_.share(h);
+        if (share >= kStemEnd * least_share && corner_[p] >= kLeastCorner) continue;
         if (share < least_share && !is_limb(h, least_share, least_limb)) drops.push_back({junction, share, h});
     }
     sort_and_thin(drops);

@@ -67,3 +67,17 @@ def test_a_flag_on_one_side_is_painted():
 )
 def test_ends_and_rough_edges_of_a_stem_grow_no_hairs(d):
     assert len(found(d)) == 1
+
+
+@pytest.mark.parametrize(
+    ("d", "end"),
+    [
+        ("M22.5 12H29.5L29.2 14Q32 11.5 36 11.5V16Q31 16 28.5 20L26 45H18Z", (23, 13, 28.5, 17)),
+        ("M22 12H30L29.6 14Q33 11 38 12V17Q33 16.5 28.5 22L26 45H18Z", (22.5, 12.5, 29, 16)),
+    ],
+)
+def test_the_end_of_a_stem_is_painted_where_its_ear_leaves_it_near_the_top(d, end):
+    """One line cut the corner from the stem into the ear, and left the stem's end bare."""
+    made = found(d)
+    assert len(made) == 2
+    assert reached(made, *end) > 0.9

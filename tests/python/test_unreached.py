@@ -47,7 +47,7 @@ def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
 
 
 def test_blunt_corners_are_not_named(tmp_path):
-    assert prepared(tmp_path, "M20 5H28V45H20Z").unreached == ()
+    assert prepared(tmp_path, "M20 5H28V25H20Z").unreached == ()
 
 
 def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path):
