@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "bindings.hpp"
 #include "brushsvg/medial_axis.hpp"
 
@@ -10,11 +12,11 @@ void bind_medial_axis(py::module_& m) {
         .def_property_readonly("part", frozen_copy(&AxisBranch::part));
     m.def(
         "medial_axis",
-        [](const Rings& rings, double least_share) {
+        [](const Rings& rings, double least_share, std::optional<double> least_limb) {
             MedialAxis axis;
             {
                 const Unlocked unlocked;
-                axis = medial_axis(rings, least_share);
+                axis = medial_axis(rings, least_share, least_limb.value_or(least_share));
             }
             Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> nodes(Eigen::Index(axis.nodes.size()), 4);
             for (std::size_t i = 0; i < axis.nodes.size(); ++i) {
@@ -23,9 +25,10 @@ void bind_medial_axis(py::module_& m) {
             }
             return std::make_pair(nodes, std::move(axis.branches));
         },
-        py::arg("rings"), py::arg("least_share"),
+        py::arg("rings"), py::arg("least_share"), py::arg("least_limb") = py::none(),
         R"(Medial axis of a shape: nodes (n, 4) with x, y, distance to the outline [mm] and the largest corner dropped there
 [squares of that distance], and branches between them, each with start, end (node numbers), line (k, 3) and part (rings).
 
-rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius.)");
+rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius; it
+stays, too, if what lies beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.)");
 }

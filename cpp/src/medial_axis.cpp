@@ -85,12 +85,12 @@ MedialAxis collected(const VoronoiAxis& axis, const Outline& outline, const Kept
     return result;
 }
 
-MedialAxis axis_of(const Rings& rings, double least_share) {
+MedialAxis axis_of(const Rings& rings, double least_share, double least_limb) {
     const Outline outline(rings);
     if (outline.edges() == 0) return {};
     VoronoiAxis axis(outline);
     KeptBranches branches(axis);
-    branches.drop(least_share);
+    branches.drop(least_share, least_limb);
     return collected(axis, outline, branches);
 }
 
@@ -99,11 +99,13 @@ constexpr Index kManyCorners = 20000;
 
 }  // namespace
 
-MedialAxis medial_axis(const Rings& rings, double least_share) {
+MedialAxis medial_axis(const Rings& rings, double least_share) { return medial_axis(rings, least_share, least_share); }
+
+MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb) {
     Index corners = 0;
     for (const Ring& ring : rings) corners += ring.rows();
-    if (corners < kManyCorners) return axis_of(rings, least_share);
-    return asking_meanwhile([rings, least_share] { return axis_of(rings, least_share); });
+    if (corners < kManyCorners) return axis_of(rings, least_share, least_limb);
+    return asking_meanwhile([rings, least_share, least_limb] { return axis_of(rings, least_share, least_limb); });
 }
 
 }  // namespace brushsvg

@@ -12,6 +12,10 @@ constexpr double kLeastCorner = 0.02;
 // A corner that adds as much to the disc at a line's end is where the line ends, if no other adds half of it: the even
 // corners of a square end add 0.21 each.
 constexpr double kLeastEnd = 0.3, kEndStandsOut = 1.4;
+// What the end of a stem adds, beside or beyond what leaves it there, over what any branch must: its two corners
+// together, 0.43 if they are right-angled, are too much to be left blank, and a line to where they part leaves little
+// of them.
+constexpr double kStemEnd = 0.5;
 
 template <typename T>
 void sort_and_thin(std::vector<T>& values) {
@@ -38,12 +42,12 @@ bool KeptBranches::is_node(std::size_t p) const {
     return n > 2 || n == 1 || closes_[p] || (n == 2 && corner_[p] >= kLeastCorner && !is_end_[p]);
 }
 
-void KeptBranches::drop(double least_share) {
+void KeptBranches::drop(double least_share, double least_limb) {
     std::vector<std::size_t> looked_at(axis_.points.size());
     for (std::size_t p = 0; p < looked_at.size(); ++p) looked_at[p] = p;
     while (!looked_at.empty()) {
         checkpoint(int(looked_at.size()));
-        std::vector<Drop> drops = judged(looked_at, least_share);  // all before any goes
+        std::vector<Drop> drops = judged(looked_at, least_share, least_limb);  // all before any goes
         keep_ends(drops);
         std::vector<std::size_t> junctions;
         for (const Drop& each : drops) {
@@ -62,17 +66,32 @@ void KeptBranches::drop(double least_share) {
     }
 }
 
-std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size_t>& ends, double least_share) const {
+std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size_t>& ends, double least_share,
+                                                     double least_limb) const {
     std::vector<Drop> drops;
     for (std::size_t p : ends) {
         if (axis_.out[p].size() != 1) continue;
         const std::size_t h = mate_[axis_.out[p][0]], junction = axis_.from[h];
         if (axis_.out[junction].size() < 3) continue;
         const double share = axis_.share(h);
-        if (share < least_share) drops.push_back({junction, share, h});
+        if (share >= kStemEnd * least_share && corner_[p] >= kLeastCorner) continue;
+        if (share < least_share && !is_limb(h, least_share, least_limb)) drops.push_back({junction, share, h});
     }
     sort_and_thin(drops);
     return drops;
+}
+
+/// A corner looks the same from all places on its branch; a bar on a thick stem adds little to the stem's disc, but
+/// much to one of its own width.
+bool KeptBranches::is_limb(std::size_t half, double least_share, double least_limb) const {
+    if (axis_.share(half) < least_limb) return false;
+    const double least_area = least_limb * axis_.radius(half) * axis_.radius(half);
+    for (std::size_t h = axis_.next[half]; h != VoronoiAxis::none; h = axis_.next[h]) {
+        const double share = axis_.share(h), area = share * axis_.radius(h) * axis_.radius(h);
+        if (area < least_area) return false;  // it only falls
+        if (share >= least_share) return true;
+    }
+    return false;
 }
 
 void KeptBranches::keep_ends(std::vector<Drop>& drops) {

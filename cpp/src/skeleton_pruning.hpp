@@ -12,8 +12,10 @@ namespace brushsvg {
 class KeptBranches {
  public:
     explicit KeptBranches(VoronoiAxis& axis);
-    /// Drops branches with a free end that add less to the disc they leave, in squares of its radius.
-    void drop(double least_share);
+    /// Drops branches with a free end that add less to the disc they leave, in squares of its radius, unless they are
+    /// limbs: what lies beyond some place of a limb adds least_share to the disc there, and least_limb to the disc it
+    /// leaves.
+    void drop(double least_share, double least_limb);
 
     bool is_node(std::size_t p) const;
     double corner(std::size_t p) const { return corner_[p]; }
@@ -31,7 +33,8 @@ class KeptBranches {
         bool operator==(const Drop& o) const { return half == o.half; }
     };
 
-    std::vector<Drop> judged(const std::vector<std::size_t>& ends, double least_share) const;
+    std::vector<Drop> judged(const std::vector<std::size_t>& ends, double least_share, double least_limb) const;
+    bool is_limb(std::size_t half, double least_share, double least_limb) const;
     /// Where a line would end, its way out to the one corner that stands out stays.
     void keep_ends(std::vector<Drop>& drops);
     void take_out(const Drop& each);

@@ -42,9 +42,10 @@ class Lettering:
             for _, each in self.characters(count, seed)
         ]
 
-    def font(self, kind: str) -> bytes:
+    def font(self, kind: str, weight: int = 400) -> bytes:
         name = FONTS[kind]
-        return (self.modules / "@fontsource" / name / "files" / f"{name}-latin-400-normal.woff").read_bytes()
+        files = self.modules / "@fontsource" / name / "files"
+        return (files / f"{name}-latin-{weight}-normal.woff").read_bytes()
 
 
 def outline(name: str, path_data: str) -> Element:

@@ -175,6 +175,31 @@ def test_fonts_painted(lettering, kind, em_mm):
     assert overlaps["closed"] == max(overlaps.values())
 
 
+LIMBS = "AEFRTVdefghijklmnrtuyz1457"
+
+
+@pytest.mark.parametrize(("kind", "weight", "em_mm"), [("serif", 700, 55.0), ("script", 400, 60.0)])
+def test_no_limb_is_lost(lettering, kind, weight, em_mm):
+    """Connected pieces of a letter that neither paint nor a disc of any stroke reaches, beyond 3 % of it."""
+    import shapely
+
+    from brushsvg.strokes.contour_fill import region, unpainted
+
+    brush, lost = find_brush("round-6"), []
+    for text in LIMBS:
+        design = letter(lettering.font(kind, weight), text, em_mm)
+        made, _, _ = within_reach(strokes(design)[0], brush)
+        marks = _core.simulate(
+            _core.compensate(made, brush, design.sheet_mm, "closed", 0.05, None).plan, brush
+        )
+        _core.trace_outlines(marks, brush)
+        shape = region([ring for element in design.elements for ring in filled(element)])
+        left = unpainted(shape.difference(region(marks.outline_mm)), made).buffer(-0.3).buffer(0.3)
+        lost += [text for piece in shapely.get_parts(left) if piece.area > 0.03 * shape.area]
+    print(f"{kind}: {len(lost)} pieces lost {lost}")
+    assert lost == []
+
+
 def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
     brush = find_brush("round-6")
     designs = [letter(lettering.font("script"), text, 100.0) for text in TEXT]

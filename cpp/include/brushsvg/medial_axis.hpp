@@ -34,4 +34,9 @@ struct MedialAxis {
 /// rings: as `fill` returns them.
 MedialAxis medial_axis(const Rings& rings, double least_share);
 
+/// The same, with limbs kept that are thin beside what they leave: a branch stays when what lies beyond some place on
+/// it adds `least_share` squares of the radius there to the disc there, and at least `least_limb` squares of the radius
+/// where the branch leaves.
+MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb);
+
 }  // namespace brushsvg

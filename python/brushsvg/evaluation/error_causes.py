@@ -13,6 +13,7 @@ STEEP = 0.25  # mm of half width per mm: a footprint is about three times as lon
 SLIGHT = 1e-6
 SEEN = 0.05  # of the one width that a brush has: less is not what one sees first
 GRAVE = 0.25  # of half the width: a middle that is so far off the line is what one sees first
+EXPLAINS = 0.3  # of what is missing at a place: a width out of reach that leaves less is not why
 POINTED = 0.3  # of its greatest width, a tenth of the way there from its tip: a disc has 0.44, a drop 0.1
 
 
@@ -28,18 +29,20 @@ def cause(
     stroke,
     line: np.ndarray,
     brush,
-    place_mm,
-    is_missing: bool,
+    place,
+    size_mm: float,
+    is_bare: bool,
     miss,
     tolerance_mm: float,
     compensation: str = "closed",
 ) -> Cause:
-    """The first of the causes that holds near a place [mm], the gravest first.
+    """The first of the causes that holds near a place, the gravest first.
 
-    stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; is_missing: whether
-    paint is missing there, else there is too much; miss: of the pass.
+    stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; place: of the
+    stroke's verdict, size_mm: side of its square; is_bare: whether it lies where no stroke reaches; miss: of the pass.
     """
-    at = int(np.hypot(line[:, 0] - place_mm[0], line[:, 1] - place_mm[1]).argmin())
+    is_missing = place.is_missing
+    at = int(np.hypot(line[:, 0] - place.at_mm[0], line[:, 1] - place.at_mm[1]).argmin())
     s, half, length = line[at, 2], line[at, 3], line[-1, 2]
     halves = np.array([half for _, half in stroke.half_width])
     off = f"tracking error up to {miss.largest_mm:.2g} mm"
@@ -48,10 +51,13 @@ def cause(
     if brush.width_follows_depth():
         least, greatest = brush.half_width_range_mm()
         finest = max(least, _finest_measured(brush))
-        if half > greatest + SLIGHT:
+        beside_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
+        if is_missing and half > greatest + SLIGHT and beside_mm2 > EXPLAINS * place.area_mm2:
             words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
             return Cause(words, code="wider-than-brush")
-        if half < least - SLIGHT:
+        if is_bare:
+            return Cause("no stroke reaches there", code="unreached")
+        if not is_missing and half < least - SLIGHT:
             words = (
                 f"{2 * half:.3g} mm wide there, thinner than the finest line of the brush, {2 * least:.3g} mm"
             )

@@ -16,6 +16,8 @@ from .uncertainty import Uncertainty
 
 RING_TOLERANCE_MM = 0.01
 SMALL_MM2 = 0.005  # that is no difference worth a word
+_LEAST_SQUARE_MM = 0.5  # in which paint and drawing differ most, at least: see stroke_score
+_BARE = 0.1  # of that square, what no stroke reaches: less does not make it the worst place
 
 
 @dataclass(frozen=True)
@@ -84,10 +86,18 @@ def wanted_rings(strokes) -> list[np.ndarray]:
 
 
 def measure(
-    plan, marks, brush, strokes=None, tolerance_mm: float = 0.05, drawn=None, compensation: str = "closed"
+    plan,
+    marks,
+    brush,
+    strokes=None,
+    tolerance_mm: float = 0.05,
+    drawn=None,
+    compensation: str = "closed",
+    unreached=(),
 ) -> tuple[tuple[Figures, ...], Figures]:
     """Figures for each pass and for all. strokes: one per pass, None if unknown, or None for a pass that is a part of a
-    stroke: then drawn is all that was drawn, the strokes themselves where it is None."""
+    stroke: then drawn is all that was drawn, the strokes themselves where it is None; unreached: pieces of shapes that
+    no stroke reaches."""
     if strokes is None:
         rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
         return rows, _in_all(rows, None)
@@ -98,7 +108,7 @@ def measure(
     rows = tuple(
         _bare_figures(a_pass)
         if stroke is None
-        else _figures(a_pass, stroke, next(found), brush, tolerance_mm, compensation)
+        else _figures(a_pass, stroke, next(found), brush, tolerance_mm, compensation, unreached)
         for a_pass, stroke in zip(plan.passes, strokes, strict=True)
     )
     meant = [stroke for _, stroke in known] if drawn is None else list(drawn)
@@ -106,12 +116,17 @@ def measure(
     return rows, _in_all(rows, overlap)
 
 
-def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: str) -> Figures:
+def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: str, unreached) -> Figures:
     miss = _core.miss_of(a_pass, stroke, brush, tolerance_mm)
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
-        why = cause(stroke, line, brush, place.at_mm, place.is_missing, miss, tolerance_mm, compensation)
+        size_mm = max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
+        is_bare = place.is_missing and any(
+            piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
+            for piece in unreached
+        )
+        why = cause(stroke, line, brush, place, size_mm, is_bare, miss, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
@@ -123,6 +138,14 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
         drawn_mm=float(line[-1, 2]),
         worst=worst,
     )
+
+
+def _lies_in(place_mm, rings, reach_mm: float) -> bool:
+    """Whether a square about a place meets what rings enclose."""
+    x, y = place_mm
+    corners = [(x - reach_mm, y - reach_mm), (x + reach_mm, y - reach_mm)]
+    corners += [(x + reach_mm, y + reach_mm), (x - reach_mm, y + reach_mm)]
+    return _core.area(_core.intersect([np.array(corners)], rings)) > _BARE * (2 * reach_mm) ** 2
 
 
 def groups(marks, brush, strokes) -> tuple[Group, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error
-from .marks_svg import BAND, BOTH, MISSES, MISSING, SPILT, check_picture, known_colour
+from .marks_svg import BAND, BOTH, EDGE, MISSES, MISSING, SPILT, check_picture, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -25,9 +25,11 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None) -> bytes:
+def marks_png(
+    marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None, unreached=()
+) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
-    with a legend."""
+    with a legend; unreached: rings of what no stroke reaches, outlined."""
     check_picture(marks, sheet_mm, colours)
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
@@ -44,6 +46,11 @@ def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], b
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
+    for ring in unreached:
+        at = (np.asarray(ring) * (1, -1) + (0, sheet_mm[1])) * px_per_mm - 0.5
+        fixed = np.round(at * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
+        thick = max(round(EDGE * max(image.shape[:2])), 1)
+        cv2.polylines(image, [fixed], True, _bgr(MISSING), thick, cv2.LINE_AA, SUB_PIXEL_BITS)
     if band is not None:
         _draw_band(image, band, window, px_per_mm)
     return _png(image)

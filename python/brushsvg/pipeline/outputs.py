@@ -33,14 +33,15 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
+    bare = [ring for piece in work.unreached for ring in piece.rings]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"
-        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made, band)
+        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made, band, bare)
         return text.encode()
     from ..pictures import marks_png  # brings OpenCV, which the others do not need
 
-    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band)
+    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
 
 
 def misses_picture(suffix: str, work: Work, marks) -> bytes:
@@ -95,6 +96,7 @@ def reported(
         work.options.tolerance_mm,
         drawn,
         work.options.compensation,
+        work.unreached,
     )
     return report.Report(
         title=work.title,

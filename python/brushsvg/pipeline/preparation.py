@@ -19,6 +19,8 @@ from ..machine.program import Job
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.extraction import strokes as strokes_of
+from ..strokes.unreached import notices as unreached_notices
+from ..strokes.unreached import unreached
 from ..strokes.width_limits import within_reach
 from .json_files import read_plan
 
@@ -63,6 +65,7 @@ class Work:
     refused: tuple[Notice, ...] = ()
     left_out: tuple = ()  # the strokes that were refused, as they were wanted
     drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
+    unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
 
 
 def prepare(
@@ -101,6 +104,9 @@ def prepare(
     plan = _with_speeds(plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
     notices += _other_brushes(strokes, brush)
+    without = {notice.where for notice in refused}
+    bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
+    notices += unreached_notices(bare)
     if options.compensation in ("closed", "refined"):
         notices += _misses(painted, misses, moved, brush, options.tolerance_mm)
     return Work(
@@ -114,6 +120,7 @@ def prepare(
         tuple(refused),
         tuple(left_out),
         drawn,
+        tuple(bare),
     )
 
 

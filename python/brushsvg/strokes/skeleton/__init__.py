@@ -25,6 +25,9 @@ SMOOTHED = 0.03
 # What a branch must add to be painted, in squares of the half width where it leaves. A corner of 90 degrees adds 0.21,
 # of 60 degrees 0.69, of 45 degrees 1.24: those are ends of strokes, not strokes.
 LEAST_SHARE = 0.8
+# The bar of a t is thin beside its stem: it stays if it adds so much to the stem's disc, and to a disc of its own width
+# what any branch must. More loses bars and serifs; with less the teeth of a rough edge become hairs.
+LEAST_LIMB = 0.1
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
 MOST_CUT = 200_000  # points of a shape times its strokes: letters have some thousands
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
@@ -46,7 +49,7 @@ def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
     """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them. Error if it has more
     branches than any lettering."""
     areas = with_holes(rings)
-    axes = [_core.medial_axis(area, LEAST_SHARE) for area in areas]
+    axes = [_core.medial_axis(area, LEAST_SHARE, LEAST_LIMB) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MOST_BRANCHES:
         raise Error(
             f"its shape branches into {count} lines, more than {MOST_BRANCHES}", code="outline-too-complex"

@@ -14,6 +14,9 @@ from ...geometry.polylines import length
 CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
 STRAIGHTEST_RAD = np.radians(60)
+# What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of
+# 90 degrees 0.21. More is the end of a stem, which a line that cuts the corner would leave bare.
+STEM_END = 0.3
 # Nodes of one crossing, and its arms of which pairs are tried: more is an asterisk of hairs, no writing, and would take
 # the square of it.
 MOST_NODES, MOST_ARMS = 64, 64
@@ -48,6 +51,7 @@ class Arm:
 @dataclass
 class Crossing:
     discs: np.ndarray  # (k, 3), of its nodes
+    dropped: float = 0.0  # the largest that a branch dropped there would add, in squares of the radius
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
     corner: tuple[np.ndarray, float] | None = (
@@ -68,7 +72,7 @@ def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]
     for k, members in home.items():
         if k == members[0]:
             number_of |= dict.fromkeys(members, len(crossings))
-            crossings.append(Crossing(nodes[members, :3]))
+            crossings.append(Crossing(nodes[members, :3], float(nodes[members, 3].max())))
     arms = []
     for number, pair in enumerate(ends):
         if number in inner:
@@ -134,7 +138,9 @@ def _share(a: Arm, b: Arm) -> None:
 
 
 def _join(crossing: Crossing) -> None:
-    """Pairs of arms, the straightest first."""
+    """Pairs of arms, the straightest first; none at the end of a stem."""
+    if crossing.is_corner and crossing.dropped > STEM_END:
+        return
     turns = []
     for a, b in combinations(crossing.arms[:MOST_ARMS], 2):
         across = b.line[b.out, :2] - a.line[a.out, :2]

@@ -1,0 +1,216 @@
+"""Whether letters are painted whole: the 62 letters and digits of each font, each painted alone, its mark held against
+its shape.
+
+  lost      connected pieces of the shape that neither paint nor a disc of any stroke's width reaches, of more than 3 %
+            of it and wide enough for the brush: limbs without a stroke
+  bare      the same, of what paint alone does not reach: blunt ends too, where a mark begins pointed
+  glyphs    how many glyphs lose a piece, and in the end which
+  silent    of these, how many without a notice that names the place
+  overlap   common area over joint area of mark and shape, mean over the glyphs, and the least
+  notices   how many, in all
+  thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
+  turning   how much the mark's outline turns more than the shape's, full turns per glyph
+
+Each font is painted so large that the stem of its l is nearly as wide as the brush paints, at most 100 mm to the em.
+FONT is a file, TrueType, OpenType or WOFF; --pictures writes a page of all glyphs per font.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import cv2
+import numpy as np
+import shapely
+
+from brushsvg import find_brush
+from brushsvg.drawing.svg import read_svg
+from brushsvg.drawing.text import text_svg
+from brushsvg.pipeline.prediction import predict
+from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.strokes.contour_fill import region, unpainted
+from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.width_limits import within_reach
+
+GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
+LARGEST_MM = 100.0
+STEM = 0.95  # of the brush's widest mark, how wide an l's stem is
+LOST_SHARE = 0.03
+EDGE_MM = 0.3  # how far a mark's edge may lie beside the shape's and both are one
+THORN_RAD = np.radians(20)
+EVEN_MM = 0.5  # what an outline turns within less is an angle of its polygon
+PX_PER_MM, COLUMNS = 6, 11
+
+
+@dataclass
+class Painted:
+    text: str
+    shape: list[np.ndarray]
+    mark: list[np.ndarray]
+    lost: list[tuple[float, float]]
+    bare: list[tuple[float, float]]
+    named: bool
+    overlap: float
+    notices: int
+    thorns: int
+    turns: float
+
+
+def fitting_mm(font: bytes, brush) -> float:
+    stem = region(filled(_drawn("l", font, LARGEST_MM)))
+    wide = 2 * shapely.maximum_inscribed_circle(stem, 0.01).length
+    return float(min(np.floor(LARGEST_MM * STEM * 2 * brush.half_width_range_mm()[1] / wide), LARGEST_MM))
+
+
+def _drawn(text: str, font: bytes, size_mm: float):
+    document, _ = text_svg(text, font, size_mm=size_mm)
+    return read_svg(document.encode()).elements[0]
+
+
+def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensation: str) -> Painted:
+    brush = find_brush(brush_name)  # processes exchange values, which it is not
+    document, _ = text_svg(text, font, size_mm=size_mm)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "glyph.svg")
+        file.write_text(document, encoding="utf-8")
+        work = prepare(file, Options(brush=brush, compensation=compensation))
+    rings = filled(read_svg(document.encode()).elements[0])
+    mark_rings = predict(work).outline_mm
+    shape, mark = region(rings), region(mark_rings)
+    finest = brush.half_width(brush.lag.calibrated_mm[0])
+    strokes, _, _ = within_reach(list(work.drawn), brush)
+    bare = shape.difference(mark)
+    return Painted(
+        text,
+        rings,
+        mark_rings,
+        _pieces(unpainted(bare, strokes), shape, finest),
+        _pieces(bare, shape, finest),
+        any("no stroke" in notice.sentence for notice in work.notices),
+        shape.intersection(mark).area / shape.union(mark).area,
+        len(work.notices),
+        _thorns(mark_rings, shape),
+        (_turned(mark_rings) - _turned(rings)) / (2 * np.pi),
+    )
+
+
+def _pieces(left, shape, finest: float) -> list[tuple[float, float]]:
+    """Places of the large connected pieces of what is left of a shape."""
+    return [
+        piece.representative_point().coords[0]
+        for piece in shapely.get_parts(left.buffer(-EDGE_MM).buffer(EDGE_MM))
+        if piece.area > LOST_SHARE * shape.area
+        and shapely.maximum_inscribed_circle(piece, 0.01).length >= finest
+    ]
+
+
+def _turns(ring: np.ndarray) -> np.ndarray:
+    """At each vertex, to the left."""
+    edges = np.roll(ring, -1, axis=0) - ring
+    before = np.roll(edges, 1, axis=0)
+    cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
+    return np.arctan2(cross, (before * edges).sum(axis=1))
+
+
+def _simpler(ring: np.ndarray, tolerance_mm: float = 0.05) -> np.ndarray:
+    made = np.array(shapely.LinearRing(ring).simplify(tolerance_mm).coords)[:-1]
+    return made if len(made) >= 3 else ring
+
+
+def _thorns(rings, shape) -> int:
+    count = 0
+    for ring in map(_simpler, rings):
+        corners = ring[_turns(ring) > THORN_RAD]
+        count += int((shapely.distance(shape, shapely.points(corners)) > EDGE_MM).sum())
+    return count
+
+
+def _turned(rings) -> float:
+    """How much outlines turn in all, looked at every half millimetre."""
+    total = 0.0
+    for ring in map(_simpler, rings):
+        line = shapely.LinearRing(ring)
+        at = np.linspace(0, line.length, max(int(line.length / EVEN_MM), 3), endpoint=False)
+        places = shapely.get_coordinates(shapely.line_interpolate_point(line, at))
+        total += float(np.abs(_turns(places)).sum())
+    return total
+
+
+def page(all_painted: list[Painted], cell_mm: float) -> np.ndarray:
+    """Paint blue, shapes outlined, bare places ringed in orange, lost ones in red."""
+    rows = -(-len(all_painted) // COLUMNS)
+    side = int(cell_mm * PX_PER_MM)
+    image = np.full((rows * side, COLUMNS * side, 3), 255, np.uint8)
+    for k, each in enumerate(all_painted):
+        corner = np.array([k % COLUMNS, k // COLUMNS]) * side
+        points = np.vstack(each.shape)
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+
+        def pixels(mm, corner=corner, middle=middle):
+            return np.round((np.asarray(mm) - middle) * (PX_PER_MM, -PX_PER_MM) + corner + side / 2).astype(
+                np.int32
+            )
+
+        cv2.fillPoly(image, [pixels(ring) for ring in each.mark], (150, 120, 90), cv2.LINE_AA)
+        cv2.polylines(image, [pixels(ring) for ring in each.shape], True, (0, 0, 0), 1, cv2.LINE_AA)
+        for places, colour in ((each.bare, (0, 160, 255)), (each.lost, (0, 0, 255))):
+            for place in places:
+                cv2.circle(image, pixels(place).tolist(), side // 12, colour, 2, cv2.LINE_AA)
+    return image
+
+
+def row(name: str, size_mm: float, compensation: str, done: list[Painted]) -> str:
+    losing = [each for each in done if each.lost]
+    overlaps = [each.overlap for each in done]
+    return (
+        f"{name[:23]:<24}{size_mm:>4.0f}  {compensation:<8}{sum(len(each.lost) for each in done):>5}"
+        f"{sum(len(each.bare) for each in done):>6}{len(losing):>8}"
+        f"{sum(not each.named for each in losing):>8}{np.mean(overlaps):>9.4f}{min(overlaps):>7.3f}"
+        f"{sum(each.notices for each in done):>9}{sum(each.thorns for each in done):>8}"
+        f"{np.mean([each.turns for each in done]):>9.2f}  {''.join(each.text for each in losing)}"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("font", type=Path, nargs="+")
+    parser.add_argument("--brush", default="round-6")
+    parser.add_argument("--compensation", nargs="+", default=["closed", "refined"])
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER")
+    options = parser.parse_args()
+    brush = find_brush(options.brush)
+    print(
+        f"{'font':<24}{'em':>4}  {'':<8}{'lost':>5}{'bare':>6}{'glyphs':>8}{'silent':>8}{'overlap':>9}{'least':>7}"
+        f"{'notices':>9}{'thorns':>8}{'turning':>9}  which glyphs"
+    )
+    with ProcessPoolExecutor(options.processes) as pool:
+        for file in options.font:
+            font = file.read_bytes()
+            size_mm = fitting_mm(font, brush)
+            for compensation in options.compensation:
+                work = partial(
+                    painted,
+                    font=font,
+                    size_mm=size_mm,
+                    brush_name=options.brush,
+                    compensation=compensation,
+                )
+                done = list(pool.map(work, GLYPHS))
+                print(row(file.stem, size_mm, compensation, done), flush=True)
+                if options.pictures:
+                    options.pictures.mkdir(parents=True, exist_ok=True)
+                    picture = options.pictures / f"{file.stem}-{compensation}.png"
+                    cv2.imwrite(str(picture), page(done, 1.05 * size_mm))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

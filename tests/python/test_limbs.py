@@ -1,0 +1,83 @@
+"""Limbs that are thin beside what they leave are painted, and corners grow none."""
+
+import numpy as np
+import pytest
+from svg_text import read
+
+from brushsvg import _core
+from brushsvg.strokes.extraction import strokes
+
+
+def found(d: str):
+    return strokes(read(f'<g fill="#123456" stroke="none"><path id="p" d="{d}"/></g>'))[0]
+
+
+def swept(made) -> list:
+    bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
+    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
+
+
+def reached(made, x0: float, y0: float, x1: float, y1: float) -> float:
+    """Share of a box, in the drawing's frame of 50 mm, that discs of the strokes reach."""
+
+    box = [np.array([(x0, 50 - y1), (x1, 50 - y1), (x1, 50 - y0), (x0, 50 - y0)], float)]
+    return _core.area(_core.intersect(box, swept(made))) / _core.area(box)
+
+
+def t_of(stem: float, bar: float, out: float) -> str:
+    """A stem that ends above the bar, which sticks out by so much on both sides."""
+    left, right = 25 - stem / 2, 25 + stem / 2
+    return (
+        f"M{left} 5H{right}V15H{right + out}V{15 + bar}H{right}V45H{left}V{15 + bar}H{left - out}V15H{left}Z"
+    )
+
+
+@pytest.mark.parametrize(
+    ("stem", "bar", "out"), [(8, 2, 2.5), (8, 3, 3.0), (8, 1.2, 3), (12, 2, 4), (6, 2, 2)]
+)
+def test_the_bar_of_a_t_is_painted_however_thick_its_stem(stem, bar, out):
+    made = found(t_of(stem, bar, out))
+    assert len(made) == 2, "a stem and a bar"
+    left, right = 25 - stem / 2, 25 + stem / 2
+    for x0, x1 in ((left - out, left), (right, right + out)):
+        assert reached(made, x0, 15, x1, 15 + bar) > 0.8
+    assert reached(made, left, 25, right, 40) > 0.99
+
+
+def test_the_foot_of_a_serif_letter_is_painted():
+    made = found("M20 5H28V42H31V45H17V42H20Z")
+    assert reached(made, 17, 42, 20, 45) > 0.8
+    assert reached(made, 28, 42, 31, 45) > 0.8
+
+
+def test_a_flag_on_one_side_is_painted():
+    made = found("M20 5H28V45H20V8H16.5V5Z")
+    assert reached(made, 16.5, 5, 20, 8) > 0.8
+
+
+@pytest.mark.parametrize(
+    "d",
+    [
+        "M20 5H28V45H20Z",  # a sans
+        "M20 5L28 7V45L20 43Z",  # cut slantwise, corners of 76 degrees
+        "M20 5.5Q20 5 20.5 5H27.5Q28 5 28 5.5V44.5Q28 45 27.5 45H20.5Q20 45 20 44.5Z",  # rounded
+        "M19 5H29Q28 6 28 9V41Q28 44 29 45H19Q20 44 20 41V9Q20 6 19 5Z",  # flared
+        "M20 5H28V20L28.4 20.3V20.9L28 21.2V45H20V33L19.6 32.7V32L20 31.7Z",  # with teeth
+    ],
+)
+def test_ends_and_rough_edges_of_a_stem_grow_no_hairs(d):
+    assert len(found(d)) == 1
+
+
+@pytest.mark.parametrize(
+    ("d", "end"),
+    [
+        ("M22.5 12H29.5L29.2 14Q32 11.5 36 11.5V16Q31 16 28.5 20L26 45H18Z", (23, 13, 28.5, 17)),
+        ("M22 12H30L29.6 14Q33 11 38 12V17Q33 16.5 28.5 22L26 45H18Z", (22.5, 12.5, 29, 16)),
+    ],
+)
+def test_the_end_of_a_stem_is_painted_where_its_ear_leaves_it_near_the_top(d, end):
+    """One line cut the corner from the stem into the ear, and left the stem's end bare."""
+    made = found(d)
+    assert len(made) == 2
+    assert reached(made, *end) > 0.9

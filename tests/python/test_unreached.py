@@ -1,0 +1,92 @@
+"""What no stroke reaches is named, shown, and the reason that the report gives."""
+
+import numpy as np
+import pytest
+
+from brushsvg import _core, find_brush
+from brushsvg.evaluation import report
+from brushsvg.pipeline import outputs
+from brushsvg.pipeline.prediction import predict
+from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.strokes.unreached import Unreached, notices, unreached
+from brushsvg.strokes.width_limits import within_reach
+
+SVG = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
+    '<path id="p" d="{}"/></svg>'
+)
+T = "M21 5H29V15H33V18H29V45H21V18H17V15H21Z"
+WIDE = "M10 10H50V40H10Z"
+
+
+def prepared(tmp_path, d: str, **options):
+    file = tmp_path / "p.svg"
+    file.write_text(SVG.format(d))
+    return prepare(file, Options(**options))
+
+
+def bar_less(tmp_path):
+    """The strokes of a t, and without its bar."""
+    drawn = list(prepared(tmp_path, T).drawn)
+    stem = max(drawn, key=lambda stroke: max(half for _, half in stroke.half_width))
+    return drawn, stem
+
+
+def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
+    drawn, stem = bar_less(tmp_path)
+    found = unreached(drawn, [stem], find_brush("round-6"))
+    assert len(found) == 2
+    assert {round(piece.at_mm[0] / 4) * 4 for piece in found} == {20, 32}
+    assert all(abs(piece.at_mm[1] - 43.5) < 1.5 for piece in found)
+    assert all(piece.share == pytest.approx(12 / 344, rel=0.3) for piece in found)
+    (notice,) = notices(found)
+    assert notice.where == "p"
+    assert "no stroke reaches" in notice.sentence
+    assert "in 2 pieces, the largest near x" in notice.sentence
+    assert unreached(drawn, drawn, find_brush("round-6")) == []
+
+
+def test_blunt_corners_are_not_named(tmp_path):
+    assert prepared(tmp_path, "M20 5H28V25H20Z").unreached == ()
+
+
+def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path):
+    work = prepared(tmp_path, WIDE)
+    assert sum(piece.share for piece in work.unreached) > 0.3
+    assert any("no stroke reaches" in notice.sentence for notice in work.notices)
+    filled = prepared(tmp_path, WIDE, wide="passes")
+    assert filled.unreached == ()
+
+
+def test_it_is_outlined_in_every_picture(tmp_path):
+    import cv2
+
+    work = prepared(tmp_path, WIDE)
+    marks = predict(work)
+    assert b'class="unreached"' in outputs.picture(".svg", work, marks)
+    picture = outputs.picture(".png", work, marks)
+    image = cv2.imdecode(np.frombuffer(picture, np.uint8), cv2.IMREAD_COLOR)
+    assert (np.abs(image.astype(int) - (0x1F, 0x43, 0xD1)).sum(axis=2) < 60).any()
+    small = prepared(tmp_path, T)
+    assert b"unreached" not in outputs.picture(".svg", small, predict(small))
+
+
+def test_the_report_gives_it_as_the_reason(tmp_path):
+    """8.43 mm wide, wider than 8.4, it said of the bar of a t."""
+    brush = find_brush("round-6")
+    drawn, _ = bar_less(tmp_path)
+    stem = _core.Stroke("p", np.array([[25, 51, 25, 40, 25, 30, 25, 19]], float), False, [(0.0, 4.215)])
+    stem.wanted_mm = _core.unite([ring for stroke in drawn for ring in stroke.wanted_mm])
+    painted, wanted, _ = within_reach([stem], brush)
+    plan = _core.compensate(painted, brush, (60, 60), "closed", 0.05, None).plan
+    marks = _core.simulate(plan, brush)
+
+    def worst(unreached):
+        return report.measure(plan, marks, brush, wanted, unreached=unreached)[0][0].worst
+
+    assert worst(()).is_missing
+    assert "wider than the brush" not in worst(()).reason
+    x, y = worst(()).place_mm
+    square = np.array([(x - 2, y - 2), (x + 2, y - 2), (x + 2, y + 2), (x - 2, y + 2)])
+    assert worst([Unreached("p", (x, y), 0.04, [square])]).reason == "no stroke reaches there"
+    assert worst([Unreached("q", (x, y), 0.04, [square])]).reason != "no stroke reaches there"
