@@ -5,11 +5,14 @@ import json
 
 import numpy as np
 import pytest
+import shapely
 
 from brushsvg import _core, find_brush
 from brushsvg.brush.confidence import law_band
 from brushsvg.calibration.chart.file import read_chart
-from brushsvg.calibration.from_marks import brush_of, expected_brush
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_brush
+from brushsvg.calibration.mark_input import read_painted
 from brushsvg.cli import main
 
 NOISE_MM, DISPLACED_MM, TURN_RAD, SHIFT_MM = 0.1, 0.3, 0.008, np.array([0.8, -0.6])
@@ -73,3 +76,19 @@ def test_as_sure_as_was_said_before(painted):
         assert 0.5 < ratio < 2, (law, before, after)
         off = np.abs([getattr(found, law)(d) - getattr(truth(), law)(d) for d in DEPTHS])
         assert np.mean(off <= 1.5 * after) > 0.6, (law, off, after)
+
+
+def test_edges_that_all_lie_off_are_in_the_intervals():
+    """A picture shows all paint 0.04 mm wider than it is: no mark tells that from a wider brush."""
+    made = chart(find_brush("round-6"), (148.0, 210.0), "few")
+    marks = _core.simulate(made.plan, truth())
+    _core.trace_outlines(marks, truth())
+    rows = []
+    for trace in marks.passes:
+        shape = shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in trace.outline_mm]).buffer(0.04)
+        rows.append({"stroke": trace.stroke, "outline_mm": [np.array(shape.exterior.coords)[:-1].tolist()]})
+    painted = read_painted(json.loads(_core.write_plan(made.plan)), rows, None)
+    blind, told = (calibrate_marks(painted, "own", edge_mm=edge).brush for edge in (0.0, 0.04))
+    off = np.array([told.half_width(d) - truth().half_width(d) for d in DEPTHS])
+    before, after = (law_band(brush, "half_width", DEPTHS)[0] for brush in (blind, told))
+    assert (off > before).any() and (np.abs(off) < after).all(), (off, before, after)

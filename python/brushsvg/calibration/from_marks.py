@@ -31,6 +31,7 @@ class MarkCalibration:
     """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
+    edge_mm: by which all edges may lie off together, in the brush's intervals (sigma).
     """
 
     brush: _core.Brush
@@ -39,6 +40,7 @@ class MarkCalibration:
     expected: _core.MarkOptions
     scale: SheetScale | None = None
     round_tail_gain: float = 0.0
+    edge_mm: float = 0.0
 
 
 def calibrate_marks(
@@ -47,8 +49,12 @@ def calibrate_marks(
     depth_range_mm: tuple[float, float] | None = None,
     max_speed_mm_s: float = 25.0,
     options: _core.MarkOptions | None = None,
+    edge_mm: float = 0.0,
 ) -> MarkCalibration:
     """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
+
+    edge_mm: standard deviation of what all edges lie off outward together: how a picture was blurred, where paint was
+    told from paper. No mark tells it from a wider brush, so the intervals hold it.
 
     Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
     displacement and height; depths, numbers per law and the tail are set here.
@@ -76,7 +82,11 @@ def calibrate_marks(
     scale = _scale(fit, painted)
     refuse_scale(scale)
     _refuse_unlike(fit, painted)
-    brush = brush_of(fit.laws, name, (least, deepest), np.array(fit.covariance))
+    covariance = np.array(fit.covariance)
+    if edge_mm > 0:
+        moved = _moved_by_edges(fit, painted.marks, options, edge_mm)
+        covariance += np.outer(moved, moved)
+    brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
     count = f"{len(painted.marks)} painted marks"
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
@@ -90,7 +100,38 @@ def calibrate_marks(
         setattr(brush, law, known)
     _refuse_unsure(brush, fit)
     _core.check(brush)
-    return MarkCalibration(brush, fit, painted, options, scale, gain)
+    return MarkCalibration(brush, fit, painted, options, scale, gain, edge_mm)
+
+
+def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
+    """By how much all that is fitted changes where every edge lies edge_mm farther out, in the covariance's order."""
+    wider = [
+        _core.PaintedMark(
+            mark.stroke, np.array(mark.poses_mm), [_farther_out(ring, edge_mm) for ring in mark.outline_mm]
+        )
+        for mark in marks
+    ]
+    usual = options.widest_per_half
+    options.round_tail = fit.laws.round_tail
+    if options.round_tail:
+        options.widest_per_half = _core.Prior(*ROUND_TAIL)
+    other = _core.fit_marks(wider, fit.laws, options)
+    options.round_tail, options.widest_per_half = False, usual
+    return _all_fitted(other) - _all_fitted(fit)
+
+
+def _all_fitted(fit) -> np.ndarray:
+    laws = fit.laws
+    shape = [laws.widest_per_half, laws.front_per_half]
+    sheet = [fit.height_mm, *fit.shift_mm, fit.turn_rad]
+    return np.concatenate([laws.lag, laws.tip_gap[1:], laws.half_width[1:], shape, sheet])
+
+
+def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
+    """Paint lies on the left of a ring."""
+    along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
+    return ring + by_mm * np.column_stack([along[:, 1], -along[:, 0]])
 
 
 def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, float]:

@@ -162,6 +162,11 @@ def _stays(made, lying: float, moved: float) -> list[str]:
         f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
         "taken away (mean of intersection over union)",
     ]
+    if made.edge_mm > 0:
+        lines.append(
+            f"all edges may lie {made.edge_mm:.2f} mm off together (standard deviation), as a picture has them: the "
+            "intervals of the laws hold that"
+        )
     if fit.left_aside > 0.01:
         bound = f"residual above {OUTLYING:g} standard deviations"
         lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")

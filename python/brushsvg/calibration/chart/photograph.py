@@ -18,6 +18,9 @@ from .page import bar_rings, label_box
 
 ANOTHER_SIZE = (0.9, 1.1)  # of the page, which --bar corrects; beyond, strokes run into labels and markers
 MARGIN = 1 / 5  # of a marker's side around it: blur
+# Standard deviation of where all edges of a picture lie off together: blue paint lies 0.1 px outward, yellow, of which
+# JPEG keeps one colour for four pixels, 0.2 to 0.3
+EDGE_PX = 0.2
 ALIKE_MM = 0.15  # photographs of one flat sheet; a robot paints a second one less alike
 
 
@@ -112,6 +115,11 @@ def _size(chart: Chart, bar_mm: float | None) -> float:
             code="page-scale",
         )
     return size
+
+
+def edge_mm(read: Read) -> float:
+    """By how much all edges may lie off together, as a standard deviation."""
+    return EDGE_PX / read.view.px_per_mm
 
 
 def marks_of(read: Read) -> list[dict]:

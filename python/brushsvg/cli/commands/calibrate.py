@@ -64,11 +64,11 @@ def _from_photo(read, name: str):
     import json
 
     from ..._core import write_plan
-    from ...calibration.chart.photograph import marks_of
+    from ...calibration.chart.photograph import edge_mm, marks_of
     from ...calibration.from_marks import calibrate_marks
     from ...calibration.mark_input import read_painted
     from ...calibration.mark_report import report, report_picture
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    return calibrate_marks(painted, name), report, report_picture
+    return calibrate_marks(painted, name, edge_mm=edge_mm(read)), report, report_picture
