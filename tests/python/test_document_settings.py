@@ -5,7 +5,8 @@ import gzip
 import pytest
 
 from brushsvg import read_plan
-from brushsvg.cli import main
+from brushsvg.cli import commands, main
+from brushsvg.cli.arguments import parse
 from brushsvg.machine.cell_file import cell_names
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"
@@ -80,6 +81,15 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
     assert main(["convert", "d.svg", "x.ngc", "--brush", "round-6"]) == 0
     assert f"asks for brush {file}, all is painted with round-6" in capsys.readouterr().err
     assert main(["report", "d.svg", "--all-brushes"]) == 0
+
+
+def test_what_was_typed_is_never_written_over(desk, capsys):
+    (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))
+    for words in ("convert d.svg d.ngc", "report d.svg", "check d.ngc d.svg"):
+        args = parse(words.split())
+        before = dict(vars(args))
+        getattr(commands, args.run)(args)
+        assert vars(args) == before
 
 
 def test_a_chart_is_for_the_brush_and_machine_of_a_drawing(desk, capsys):
