@@ -12,7 +12,7 @@ import shapely
 from photograph import BLUE, Camera, replace
 
 from brushsvg import _core, find_brush
-from brushsvg.calibration.chart.file import write_chart
+from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import marks_of, read_chart_photos
 from brushsvg.cli import main
@@ -283,6 +283,20 @@ def test_paper_that_is_not_flat_is_refused():
         Error, match=r"the markers lie 0.\d+ mm \(rms\) from where flat paper .* press the page flat"
     ):
         read(photograph.exposed(sheet(), bulging))
+
+
+def test_a_chart_of_before_with_four_markers_is_read():
+    content = json.loads(write_chart(a5()))
+    content = {key: value for key, value in content.items() if key not in ("id", "bar", "labels")}
+    content["markers"] = [row | {"id": k} for k, row in enumerate(content["markers"][:4])]
+    before = read_chart(json.dumps(content | {"dictionary": "DICT_4X4_50"}).encode())
+    shown = photograph.page(before)
+    for rings in painted_marks().values():
+        shown.paint(rings, BLUE)
+    found = read_chart_photos(before, [("", photograph.photograph(shown, SMALL))])
+    assert found.view.seen == (0, 1, 2, 3) and not found.marks.missing
+    for stroke, rings in painted_marks().items():
+        assert off_mm(found.marks.outlines_mm[stroke], rings)[1] < 0.12, stroke
 
 
 def test_a_page_without_paint_is_refused():

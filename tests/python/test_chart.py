@@ -3,6 +3,7 @@
 import itertools
 import json
 import re
+import sys
 
 import cv2
 import numpy as np
@@ -199,6 +200,15 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
             assert np.hypot(*(points - corner).T).min() < 0.01, (marker.id, corner)
     bar = made.bar
     assert np.hypot(*(points - bar.at_mm - [bar.length_mm, 1.1]).T).min() < 0.01
+
+
+def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    plan, page = str(tmp_path / "plan.json"), tmp_path / "page"
+    assert main(["chart", plan, "--sheet", "a5", "--page", f"{page}.pdf"]) == 1
+    assert "pages as PDF need matplotlib: install with" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+    assert main(["chart", plan, "--sheet", "a5", "--page", f"{page}.svg"]) == 0
 
 
 def test_a_file_of_before_is_read():

@@ -18,36 +18,49 @@ def read_picture(read, made=None) -> bytes:
     in red, with each stroke's overlap and displacement."""
     flat = read.flat
     picture = np.ascontiguousarray(flat.pixels)
-    fine = flat.px_per_mm
     for rings in read.marks.outlines_mm.values():
         _draw(picture, flat, rings, FOUND)
-    tops = {stroke.id: (stroke.box_mm[0], stroke.box_mm[3]) for stroke in read.chart.strokes}
+    boxes = {stroke.id: stroke.box_mm for stroke in read.chart.strokes}
     for stroke, words in _compared(picture, read, made).items():
-        at = flat.to_px([tops[stroke]])[0]
-        size = LETTER_MM * fine / 22  # letters of this font are 22 px tall
-        place = (int(max(at[0], 0)), int(max(at[1] - 0.3 * fine, LETTER_MM * fine)))
-        thick = max(1, round(0.12 * fine))
-        cv2.putText(picture, words, place, cv2.FONT_HERSHEY_SIMPLEX, size, TEXT, thick, cv2.LINE_AA)
+        _write(picture, flat, boxes[stroke], words)
     done, data = cv2.imencode(".png", picture)
     assert done
     return data.tobytes()
 
 
-def _compared(picture, read, made) -> dict[str, str]:
-    """Predictions drawn where their marks lie; what is to be said of each stroke."""
+def _compared(picture, read, made) -> dict[str, list[str]]:
+    """Predictions drawn where their marks lie; what is to be said of each stroke, the longest first."""
     if made is None:
-        return {stroke: stroke for stroke in read.marks.outlines_mm}
+        return {stroke: [stroke] for stroke in read.marks.outlines_mm}
     words = {}
     marks = made.painted.marks
-    for mark, miss, rings in zip(
-        marks, made.fit.marks, predicted_marks(made, list(range(len(marks)))), strict=True
-    ):
+    predicted = predicted_marks(made, list(range(len(marks))))
+    for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
         lying = on_sheet(made, [ring + np.array(miss.displacement_mm) for ring in rings])
         _draw(picture, read.flat, lying, PREDICTED)
         overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], lying)
         aside = np.hypot(*miss.displacement_mm)
-        words[mark.stroke] = f"{mark.stroke}: {overlap:.3f}, {aside:.2f} mm aside"
+        words[mark.stroke] = [
+            f"{mark.stroke}: {overlap:.3f}, {aside:.2f} mm aside",
+            f"{overlap:.3f}, {aside:.2f} mm",
+            f"{overlap:.2f} {aside:.1f}",
+        ]
     return words
+
+
+def _write(picture, flat, box_mm, words: list[str]) -> None:
+    """Above a box, the first that fits its width, within the picture."""
+    size = LETTER_MM * flat.px_per_mm / 22  # letters of this font are 22 px tall
+    thick = max(1, round(0.12 * flat.px_per_mm))
+    widths = [cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, size, thick)[0][0] for text in words]
+    room = (box_mm[2] - box_mm[0] + 1.0) * flat.px_per_mm
+    text, width = next(
+        (each for each in zip(words, widths, strict=True) if each[1] <= room), (words[-1], widths[-1])
+    )
+    x, y = flat.to_px([(box_mm[0], box_mm[3])])[0]
+    x = min(max(x, 0.0), picture.shape[1] - width)
+    y = max(y - 0.3 * flat.px_per_mm, LETTER_MM * flat.px_per_mm)
+    cv2.putText(picture, text, (int(x), int(y)), cv2.FONT_HERSHEY_SIMPLEX, size, TEXT, thick, cv2.LINE_AA)
 
 
 def _draw(picture, flat, rings, colour) -> None:

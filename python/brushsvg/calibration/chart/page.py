@@ -11,6 +11,7 @@ import numpy as np
 
 from ... import _core
 from ...brush.plot import new_figure
+from ...errors import lacking
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
 TEXT_MM = 2.3
@@ -41,13 +42,15 @@ def chart_page(chart: Chart) -> str:
 
 def chart_pdf(chart: Chart) -> bytes:
     """The same page as a PDF of its size. Error where matplotlib is missing."""
+    try:
+        import matplotlib
+        from matplotlib.patches import PathPatch
+        from matplotlib.path import Path
+    except ImportError:
+        raise lacking("pages as PDF need", "matplotlib") from None
     width, height = chart.plan.sheet_mm
     figure = new_figure((width / INCH_MM, height / INCH_MM))
     figure.set_layout_engine("none")
-    import matplotlib
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
     axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
     axes.set_axis_off()
     shapes = [marker_rings(marker, chart.dictionary) for marker in chart.markers]
