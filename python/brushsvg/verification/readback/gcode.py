@@ -198,7 +198,9 @@ class _Reader:
         places = {axis: values[axis] for axis in "XYZ" if axis in values}
         if not places and "S" not in values:
             if code in ("G2", "G3"):
-                raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre")
+                raise Error(
+                    f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete"
+                )
             return
         if self.servo and "S" in values:
             self.value = values["S"]
