@@ -17,8 +17,8 @@ from .cell import Cell, Station
 class PlanInLoads:
     """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
 
-    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. A plan.json
-    does not tell that a pass is a part: plans are kept as they were planned, and cut for the machine.
+    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. A
+    plan.json does not tell that a pass is a part: plans are kept as they were planned, and cut for the machine.
     """
 
     sheet_mm: tuple[float, float]
