@@ -98,7 +98,7 @@ def locked_layer(etree, name: str, label: str):
 
 
 def _is_missed(path, marks) -> bool:
-    """A refined mark leaves its line on purpose, where its outline lies better so: that is no miss."""
+    """Whether the tracking error is above the tolerance. A refined mark leaves its line on purpose."""
     return path.get("data-missed") == "yes" and not marks.get("data-made", "").endswith(", refined")
 
 
@@ -107,9 +107,9 @@ def _label(paths, missed: int, marks, warnings: int) -> str:
     parts = [f"{count} stroke{'s' * (count != 1)}"]
     misses_mm = [float(path.get("data-miss-mm")) for path in paths if path.get("data-miss-mm")]
     if misses_mm:
-        parts.append(f"at most {max(misses_mm):.2f} mm off the line")
+        parts.append(f"tracking error at most {max(misses_mm):.2f} mm")
     if missed:
-        parts.append(f"{missed} missed")
+        parts.append(f"{missed} above the tolerance")
     if warnings:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}")
     return f"Brush preview: {marks.get('data-made')}: " + ", ".join(parts)

@@ -102,7 +102,8 @@ def test_its_layer_is_locked_named_and_replaced(plugin, tmp_path):
     layer = preview(once.read_text())
     assert layer.get(f"{SODIPODI}insensitive") == "true"
     label = (
-        r"Brush preview: round-6, closed: 4 strokes, at most \d+\.\d\d mm off the line, 1 missed, 2 warnings"
+        r"Brush preview: round-6, closed: 4 strokes, tracking error at most \d+\.\d\d mm, "
+        r"1 above the tolerance, 2 warnings"
     )
     assert re.fullmatch(label, layer.get(f"{INKSCAPE}label"))
     assert [("#d4351c" in path.get("style")) for path in layer.iter(f"{SVG}path")] == [
@@ -165,7 +166,7 @@ def test_refined_marks_leave_their_lines_on_purpose(plugin, tmp_path):
     assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--compensation", "refined"))
     layer = preview(shown.read_text())
     assert "round-6, refined: 4 strokes, at most" in layer.get(f"{INKSCAPE}label")
-    assert "missed" not in layer.get(f"{INKSCAPE}label")
+    assert "tolerance" not in layer.get(f"{INKSCAPE}label")
     assert not [path for path in layer.iter(f"{SVG}path") if "#d4351c" in path.get("style")]
 
 

@@ -109,7 +109,10 @@ FULL = replace(
 @pytest.mark.parametrize(
     ("station", "words"),
     [
-        (Station("ink", (1.0, 2.0), depth_mm=25.0), "it dips to -25 mm, below lowest_mm -20"),
+        (
+            Station("ink", (1.0, 2.0), depth_mm=25.0),
+            "the tip goes to -25 mm in the paint, below lowest_mm -20",
+        ),
         (
             Station("ink", (1.0, 2.0), surface_mm=5.0, depth_mm=2.0),
             "rim_mm 0 is outside the range [5, 18] mm",

@@ -132,7 +132,7 @@ class Station:
     )
     by_hand: bool = _key("the program stops here until a person has dipped the brush", "yes", default=False)
     surface_mm: float = _number("height of the paint's surface", -1e3, 1e3, default=0.0)
-    depth_mm: float = _number("how deep the tip dips below the surface", 0, 100, default=0.0)
+    depth_mm: float = _number("how deep the tip goes below the paint's surface", 0, 100, default=0.0)
     rim_mm: float = _number("height of the vessel's rim", -1e3, 1e3, default=0.0)
     hold_s: float = _number("wait in the paint", 0, 600, default=0.0)
     drip_s: float = _number("wait above it", 0, 600, default=0.0)

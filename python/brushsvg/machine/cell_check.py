@@ -204,7 +204,9 @@ def _check_paint(cell: Cell) -> None:
                 )
         if station.by_hand and (station.depth_mm or station.wipe_mm):
             raise Error(
-                "a person dips here: depth_mm and wipe_mm have no meaning", where=where, code="cell-station"
+                "with by_hand a person loads the brush: depth_mm and wipe_mm must go",
+                where=where,
+                code="cell-station",
             )
         if (
             not station.by_hand
@@ -254,7 +256,7 @@ def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
     bottom = station.surface_mm - station.depth_mm
     if bottom < cell.heights.lowest_mm:
         raise Error(
-            f"it dips to {bottom:g} mm, below lowest_mm {cell.heights.lowest_mm:g}",
+            f"the tip goes to {bottom:g} mm in the paint, below lowest_mm {cell.heights.lowest_mm:g}",
             where=where,
             code="cell-station",
         )
@@ -284,7 +286,7 @@ USUAL = (  # (key, least, greatest, what is unusual beyond them)
     ("paper.flatness_mm", 0.0, 2.0, "half a millimetre already changes the width of a thin line"),
     ("workspace.margin_mm", 5.0, 500.0, "the tool leads the brush by its lag, and goes no further for paint"),
     ("servo.step_mm", 0.0, 0.5, "the depth is off by half of it"),
-    ("reload.every_mm", 20.0, 1e5, "paint of one dip lasts for less or more"),
+    ("reload.every_mm", 20.0, 1e5, "few paint loads last for less or more"),
 )
 
 
