@@ -12,8 +12,8 @@ import numpy as np
 CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
 STRAIGHTEST_RAD = np.radians(60)
-# What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of 90
-# degrees 0.21. More is the end of a stem, which a line that cuts the corner would leave bare.
+# What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of
+# 90 degrees 0.21. More is the end of a stem, which a line that cuts the corner would leave bare.
 STEM_END = 0.3
 # Nodes of one crossing, and its arms of which pairs are tried: more is an asterisk of hairs, no writing, and would take
 # the square of it.
