@@ -14,6 +14,8 @@ from ..errors import Error
 
 FORMAT = "brushsvg/measurements"
 LONGEST_MM = 1000.0
+SPEEDS_MM_S = (0.01, 10000.0)
+WHOLE_TURN_DEG = 360.0
 SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
 # Kind -> the numbers of one row, beside depth_mm. Those in _READINGS can stand in a table as value_mm.
 KINDS = {
@@ -180,9 +182,12 @@ def _read_json(text: str) -> Measurements:
     except (ValueError, RecursionError) as problem:
         raise Error(f"this is not valid JSON: {problem}") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise Error(f'the file does not say "format": "{FORMAT}"', "format")
-    if content.get("version") != 1:
-        raise Error(f"version {content.get('version')} of {FORMAT} is not known; known is 1", "version")
+        says = content.get("format") if isinstance(content, dict) else None
+        other = f", but {says!r:.40}" if isinstance(says, str) else ""
+        raise Error(f'the file does not say "format": "{FORMAT}"{other}', "format")
+    version = content.get("version")
+    if version != 1 or isinstance(version, bool):
+        raise Error(f"version {version!r:.24} of {FORMAT} is not known; known is 1", "version")
     if unknown := [key for key in content if key not in (*_ABOUT, *_PAINTED)]:
         raise Error(f"this is not known; known are {', '.join(KINDS)}, marks", unknown[0])
     rows = {}
@@ -205,6 +210,11 @@ def _read_json(text: str) -> Measurements:
                 f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm", "depth_range_mm"
             )
     speed = _number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    if not SPEEDS_MM_S[0] <= speed <= SPEEDS_MM_S[1]:
+        slowest, fastest = SPEEDS_MM_S
+        raise Error(
+            f"{speed:g} mm/s is outside the range [{slowest:g}, {fastest:g}] mm/s", "max_speed_mm_s", speed
+        )
     if "marks" not in content:
         if lost := [key for key in _PAINTED if key in content]:
             raise Error("this says something of marks, and there are none", lost[0])
@@ -254,10 +264,19 @@ def _row(kind: str, row: dict, where: str) -> Row:
     if not 0 < depth <= LONGEST_MM:
         raise Error(f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm", where, depth)
     for name, value in numbers.items():
-        if name.endswith("_mm") and not isinstance(value, tuple) and abs(value) > LONGEST_MM:
-            raise Error(
-                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true", f"{where}.{name}"
-            )
+        most, unit = (LONGEST_MM, "mm") if name.endswith("_mm") else (WHOLE_TURN_DEG, "degrees")
+        for i, each in enumerate(value if isinstance(value, tuple) else (value,)):
+            if abs(each) > most:
+                at = f"{where}.{name}[{i}]" if isinstance(value, tuple) else f"{where}.{name}"
+                raise Error(
+                    f"{each:g} {unit} is more than the {most:g} {unit} that are taken for true", at, each
+                )
+            if name == "s_mm" and each < 0:
+                raise Error(
+                    f"{each:g} mm is outside the range [0, {most:g}] mm: s counts from the first reading on",
+                    at,
+                    each,
+                )
     return Row(kind, where, depth, numbers)
 
 

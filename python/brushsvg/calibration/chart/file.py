@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-import math
+
+import numpy as np
 
 from ... import _core
 from ...errors import Error
 from .layout import Chart, Marker, Stroke
 
 FORMAT, VERSION = "brushsvg/chart", 1
-DICTIONARY = "DICT_4X4_50"  # of ArUco, as OpenCV names it
+DICTIONARY, MARKERS_KNOWN = "DICT_4X4_50", 50  # of ArUco, as OpenCV names it
+LARGEST_MM, DEEPEST_MM = 1e6, 1000.0
 
 
 def write_chart(chart: Chart) -> str:
@@ -44,17 +46,28 @@ def read_chart(data: bytes) -> Chart:
         raise Error(f"this is not valid JSON: {problem}") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise Error(f'the file does not say "format": "{FORMAT}"', "format")
-    if content.get("version") != VERSION:
-        raise Error(
-            f"version {content.get('version')} of {FORMAT} is not known; known is {VERSION}", "version"
-        )
+    version = content.get("version")
+    if version != VERSION or isinstance(version, bool):
+        raise Error(f"version {version!r:.24} of {FORMAT} is not known; known is {VERSION}", "version")
     if content.get("dictionary") != DICTIONARY:
         raise Error(f"the markers must be of {DICTIONARY}", "dictionary")
     if not isinstance(content.get("plan"), dict):
         raise Error("the chart has no plan", "plan")
-    plan = _core.read_plan(json.dumps(content["plan"]))
-    markers = tuple(_marker(row, f"markers[{i}]") for i, row in enumerate(_rows(content, "markers")))
-    strokes = tuple(_stroke(row, f"strokes[{i}]") for i, row in enumerate(_rows(content, "strokes")))
+    try:
+        plan = _core.read_plan(json.dumps(content["plan"]))
+    except Error as refusal:
+        raise Error(str(refusal), f"plan.{refusal.where}", refusal.value) from None
+    sheet_mm = _numbers(content.get("sheet_mm"), 2, "sheet_mm", LARGEST_MM)
+    if not np.allclose(sheet_mm, plan.sheet_mm, atol=1e-3):
+        raise Error(f"{sheet_mm[0]:g} x {sheet_mm[1]:g} mm are not the sheet of the plan", "sheet_mm")
+    markers = tuple(
+        _marker(row, f"markers[{i}]", sheet_mm) for i, row in enumerate(_rows(content, "markers"))
+    )
+    strokes = tuple(
+        _stroke(row, f"strokes[{i}]", sheet_mm) for i, row in enumerate(_rows(content, "strokes"))
+    )
+    if len({each.id for each in markers}) < len(markers):
+        raise Error("two markers have one id", "markers")
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
         raise Error("the strokes are not those of the plan, in its order", "strokes")
     return Chart(plan, strokes, markers, ())
@@ -67,22 +80,31 @@ def _rows(content: dict, key: str) -> list[dict]:
     return rows
 
 
-def _marker(row: dict, where: str) -> Marker:
-    corners = row.get("corners_mm")
-    if not isinstance(row.get("id"), int) or not isinstance(corners, list) or len(corners) != 4:
+def _marker(row: dict, where: str, sheet_mm: tuple[float, ...]) -> Marker:
+    number, corners = row.get("id"), row.get("corners_mm")
+    if type(number) is not int or not isinstance(corners, list) or len(corners) != 4:
         raise Error("a marker needs an id and four corners_mm", where)
-    return Marker(row["id"], tuple(_numbers(corner, 2, f"{where}.corners_mm") for corner in corners))
+    if not 0 <= number < MARKERS_KNOWN:
+        raise Error(
+            f"{number!r:.24} is outside the range [0, {MARKERS_KNOWN - 1}] of {DICTIONARY}", f"{where}.id"
+        )
+    return Marker(number, tuple(_numbers(each, 2, f"{where}.corners_mm", max(sheet_mm)) for each in corners))
 
 
-def _stroke(row: dict, where: str) -> Stroke:
+def _stroke(row: dict, where: str, sheet_mm: tuple[float, ...]) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
         raise Error("a stroke needs an id and a kind, in words", where)
-    (depth,) = _numbers([row.get("depth_mm")], 1, f"{where}.depth_mm")
-    return Stroke(row["id"], row["kind"], depth, _numbers(row.get("box_mm"), 4, f"{where}.box_mm"))
+    (depth,) = _numbers([row.get("depth_mm")], 1, f"{where}.depth_mm", DEEPEST_MM)
+    box = _numbers(row.get("box_mm"), 4, f"{where}.box_mm", max(sheet_mm))
+    return Stroke(row["id"], row["kind"], depth, box)
 
 
-def _numbers(values, count: int, where: str) -> tuple[float, ...]:
-    sound = isinstance(values, list) and len(values) == count
-    if not sound or not all(isinstance(v, int | float) and math.isfinite(v) for v in values):
-        raise Error(f"this must be {count} finite number{'s' * (count > 1)}", where)
-    return tuple(float(v) for v in values)
+def _numbers(values, count: int, where: str, most: float) -> tuple[float, ...]:
+    """So many numbers from 0 to `most`."""
+    what = f"{count} finite numbers" if count > 1 else "1 finite number"
+    if not isinstance(values, list) or len(values) != count:
+        raise Error(f"this must be {what}", where)
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= most:
+            raise Error(f"{value!r:.24} is outside the range [0, {most:g}] mm: this must be {what}", where)
+    return tuple(float(value) for value in values)
