@@ -19,7 +19,9 @@ def document(data: str | bytes, format_: str, version: int = 1) -> dict:
     except (ValueError, RecursionError) as problem:
         raise Error(f"this is not valid JSON: {problem}", code="not-json") from None
     if not isinstance(content, dict) or content.get("format") != format_:
-        raise Error(f'the file does not say "format": "{format_}"', "format", code="format-unknown")
+        says = content.get("format") if isinstance(content, dict) else None
+        other = f", but {says!r:.40}" if isinstance(says, str) else ""
+        raise Error(f'the file does not say "format": "{format_}"{other}', "format", code="format-unknown")
     found = content.get("version")
     if found != version or isinstance(found, bool):
         raise Error(

@@ -16,6 +16,7 @@ from ..geometry import polylines
 FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
 WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
 LEAST_MM2 = 0.1
+LARGEST_MM = 1e6
 STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that a displacement would not
 PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
@@ -123,13 +124,21 @@ def _listed(marks, read) -> list[tuple[str, list]]:
 def _ring(points, where: str) -> np.ndarray:
     try:
         ring = np.array(points)
-        ring = ring.astype(float) if ring.dtype.kind in "iuf" else np.zeros(0)
+        has_truths = isinstance(points, list) and any(isinstance(v, bool) for point in points for v in point)
+        ring = ring.astype(float) if ring.dtype.kind in "iuf" and not has_truths else np.zeros(0)
     except (TypeError, ValueError):
         ring = np.zeros(0)
     if ring.ndim != 2 or ring.shape[0] < 3 or ring.shape[1] != 2:
         raise Error("a ring is a list of three or more points [x, y]", where, code="wrong-type")
     if not np.isfinite(ring).all():
         raise Error("a coordinate is not a finite number", where, code="not-a-number")
+    if (farthest := float(np.abs(ring).max())) > LARGEST_MM:
+        raise Error(
+            f"a coordinate of {farthest:.4g} mm is outside the range [-{LARGEST_MM:g}, {LARGEST_MM:g}] mm",
+            where,
+            farthest,
+            code="out-of-range",
+        )
     return ring
 
 

@@ -12,6 +12,8 @@ from ..errors import Error
 
 FORMAT = "brushsvg/measurements"
 LONGEST_MM = 1000.0
+SPEEDS_MM_S = (0.01, 10000.0)
+WHOLE_TURN_DEG = 360.0
 SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
 # Kind -> the numbers of one row, beside depth_mm. Those in _READINGS can stand in a table as value_mm.
 KINDS = {
@@ -202,6 +204,14 @@ def _read_json(text: str) -> Measurements:
                 code="depth-out-of-range",
             )
     speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
+    if not SPEEDS_MM_S[0] <= speed <= SPEEDS_MM_S[1]:
+        slowest, fastest = SPEEDS_MM_S
+        raise Error(
+            f"{speed:g} mm/s is outside the range [{slowest:g}, {fastest:g}] mm/s",
+            "max_speed_mm_s",
+            speed,
+            code="out-of-range",
+        )
     if "marks" not in content:
         if lost := [key for key in _PAINTED if key in content]:
             raise Error(
@@ -248,10 +258,15 @@ def _row(kind: str, row: dict, where: str) -> Row:
             code="depth-out-of-range",
         )
     for name, value in numbers.items():
-        if name.endswith("_mm") and not isinstance(value, tuple) and abs(value) > LONGEST_MM:
-            raise Error(
-                f"{value:g} mm is more than the {LONGEST_MM:g} mm that are taken for true",
-                f"{where}.{name}",
-                code="out-of-range",
-            )
+        most, unit = (LONGEST_MM, "mm") if name.endswith("_mm") else (WHOLE_TURN_DEG, "degrees")
+        for i, each in enumerate(value if isinstance(value, tuple) else (value,)):
+            at = f"{where}.{name}[{i}]" if isinstance(value, tuple) else f"{where}.{name}"
+            if abs(each) > most:
+                sentence = f"{each:g} {unit} is more than the {most:g} {unit} that are taken for true"
+                raise Error(sentence, at, each, code="out-of-range")
+            if name == "s_mm" and each < 0:
+                sentence = (
+                    f"{each:g} mm is outside the range [0, {most:g}] mm: s counts from the first reading on"
+                )
+                raise Error(sentence, at, each, code="out-of-range")
     return Row(kind, where, depth, numbers)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
+
 from ... import _core, json_fields
 from ...errors import Error
 from .layout import DICTIONARY, Bar, Chart, Label, Marker, Stroke, chart_id
 
 FORMAT, VERSION = "brushsvg/chart", 1
-DICTIONARIES = ("DICT_4X4_50", DICTIONARY)  # the first: of charts without an id
+# of ArUco, as OpenCV names them, and how many markers each has; the first: of charts without an id
+DICTIONARIES = {"DICT_4X4_50": 50, DICTIONARY: 1000}
+LARGEST_MM, DEEPEST_MM = 1e6, 1000.0
 
 
 def write_chart(chart: Chart) -> str:
@@ -44,57 +48,79 @@ def write_chart(chart: Chart) -> str:
 def read_chart(data: bytes) -> Chart:
     """Error names the key. Charts of before have no id, no bar and no labels."""
     content = json_fields.document(data, FORMAT, VERSION)
-    if content.get("dictionary") not in DICTIONARIES:
+    dictionary = content.get("dictionary")
+    if not isinstance(dictionary, str) or dictionary not in DICTIONARIES:
         raise Error(f"the markers must be of {' or '.join(DICTIONARIES)}", "dictionary", code="chart-markers")
     if not isinstance(content.get("plan"), dict):
         raise Error("the chart has no plan", "plan", code="key-missing")
-    plan = _core.read_plan(json.dumps(content["plan"]))
-    rows = json_fields.objects
-    markers = [_marker(row, f"markers[{i}]") for i, row in enumerate(rows(content.get("markers"), "markers"))]
-    strokes = [_stroke(row, f"strokes[{i}]") for i, row in enumerate(rows(content.get("strokes"), "strokes"))]
+    try:
+        plan = _core.read_plan(json.dumps(content["plan"]))
+    except Error as refusal:
+        raise Error(str(refusal), f"plan.{refusal.where}", refusal.value, code=refusal.code) from None
+    sheet_mm = _places(content.get("sheet_mm"), "sheet_mm", 2, LARGEST_MM)
+    if not np.allclose(sheet_mm, plan.sheet_mm, atol=1e-3):
+        sentence = f"{sheet_mm[0]:g} x {sheet_mm[1]:g} mm are not the sheet of the plan"
+        raise Error(sentence, "sheet_mm", code="chart-strokes")
+    rows, most_mm = json_fields.objects, max(sheet_mm)
+    markers = [
+        _marker(row, f"markers[{i}]", most_mm, DICTIONARIES[dictionary])
+        for i, row in enumerate(rows(content.get("markers"), "markers"))
+    ]
+    strokes = [
+        _stroke(row, f"strokes[{i}]", most_mm)
+        for i, row in enumerate(rows(content.get("strokes"), "strokes"))
+    ]
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
         raise Error("the strokes are not those of the plan, in its order", "strokes", code="chart-strokes")
     if len({each.id for each in markers}) < len(markers):
         raise Error("two markers have the same id", "markers", code="chart-markers")
-    labels = [_label(row, f"labels[{i}]") for i, row in enumerate(rows(content.get("labels", []), "labels"))]
+    labels = [
+        _label(row, f"labels[{i}]", most_mm)
+        for i, row in enumerate(rows(content.get("labels", []), "labels"))
+    ]
     mark = content.get("id", "")
     if mark and mark != chart_id(plan):
         sentence = f"the plan is not that of chart {str(mark)[:20]}: it was changed since"
         raise Error(sentence, "plan", code="chart-strokes")
-    bar = _bar(content["bar"]) if content.get("bar") else None
-    return Chart(plan, tuple(strokes), tuple(markers), tuple(labels), mark, bar, content["dictionary"])
+    bar = _bar(content["bar"], most_mm) if content.get("bar") else None
+    return Chart(plan, tuple(strokes), tuple(markers), tuple(labels), mark, bar, dictionary)
 
 
-def _marker(row: dict, where: str) -> Marker:
+def _marker(row: dict, where: str, most_mm: float, known: int) -> Marker:
     number, corners = row.get("id"), row.get("corners_mm")
-    is_numbered = isinstance(number, int) and not isinstance(number, bool)
-    if not is_numbered or not isinstance(corners, list) or len(corners) != 4:
+    if type(number) is not int or not isinstance(corners, list) or len(corners) != 4:
         raise Error("a marker needs an id and four corners_mm", where, code="wrong-type")
+    if not 0 <= number < known:
+        sentence = f"{number!r:.24} is outside the range [0, {known - 1}]"
+        raise Error(sentence, f"{where}.id", code="out-of-range")
     at = f"{where}.corners_mm"
-    return Marker(number, tuple(json_fields.numbers(each, f"{at}[{i}]", 2) for i, each in enumerate(corners)))
+    return Marker(number, tuple(_places(each, f"{at}[{i}]", 2, most_mm) for i, each in enumerate(corners)))
 
 
-def _bar(row) -> Bar:
+def _bar(row, most_mm: float) -> Bar:
     if not isinstance(row, dict):
         raise Error("this must be an object", "bar", code="wrong-type")
-    length_mm = json_fields.number(row.get("length_mm"), "bar.length_mm")
+    length_mm = json_fields.number(row.get("length_mm"), "bar.length_mm", greatest=most_mm)
     if not length_mm > 0:
         sentence = f"the bar is {length_mm:g} mm long, it must be longer than 0"
         raise Error(sentence, "bar.length_mm", length_mm, code="out-of-range")
-    return Bar(json_fields.numbers(row.get("at_mm"), "bar.at_mm", 2), length_mm)
+    return Bar(_places(row.get("at_mm"), "bar.at_mm", 2, most_mm), length_mm)
 
 
-def _label(row: dict, where: str) -> Label:
+def _label(row: dict, where: str, most_mm: float) -> Label:
     if not isinstance(row.get("text"), str):
         raise Error("a label needs a text", where, code="wrong-type")
-    at_mm = json_fields.numbers(row.get("at_mm"), f"{where}.at_mm", 2)
-    return Label(row["text"], at_mm, json_fields.number(row.get("width_mm"), f"{where}.width_mm"))
+    at_mm = _places(row.get("at_mm"), f"{where}.at_mm", 2, most_mm)
+    return Label(row["text"], at_mm, json_fields.number(row.get("width_mm"), f"{where}.width_mm", 0, most_mm))
 
 
-def _stroke(row: dict, where: str) -> Stroke:
+def _stroke(row: dict, where: str, most_mm: float) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
         raise Error("a stroke needs an id and a kind, in words", where, code="wrong-type")
-    depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm")
-    return Stroke(
-        row["id"], row["kind"], depth_mm, json_fields.numbers(row.get("box_mm"), f"{where}.box_mm", 4)
-    )
+    depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm", 0, DEEPEST_MM)
+    return Stroke(row["id"], row["kind"], depth_mm, _places(row.get("box_mm"), f"{where}.box_mm", 4, most_mm))
+
+
+def _places(values, where: str, count: int, most_mm: float) -> tuple[float, ...]:
+    found = json_fields.numbers(values, where, count)
+    return tuple(json_fields.number(each, where, 0, most_mm) for each in found)
