@@ -312,16 +312,3 @@ def test_a_station_on_the_sheet_or_far_from_it_is_refused():
             sentence for where, sentence in forbidden(plan_of((9, "", "")), BRUSH, cell) if where == "ink"
         ]
         assert len(told) == 1 and words in told[0]
-
-
-def test_before_each_part_of_a_plan_in_loads_that_was_read_back_paint_is_fetched():
-    """plan.json keeps no number of a part: lengths tell again that paint is due."""
-    brush = find_brush("round-6")
-    line = _core.Pass("s", np.array([(20, 50, 0), (40, 50, -3), (380, 50, -3), (372, 50, 0)], float), 20.0)
-    whole = _core.Plan("round-6", "", (400.0, 100.0), [line])
-    cell = cell_with(Reload("length", 100.0, 5.0), ANY)
-    parts = in_loads(whole, brush, cell)
-    assert len(parts.passes) > 3
-    again = _core.read_plan(_core.write_plan(parts))
-    assert [each.stroke for each in again.passes] == [each.stroke for each in parts.passes]
-    assert names(visits(again, cell)) == names(visits(parts, cell)) == [["any"]] * len(parts.passes)
