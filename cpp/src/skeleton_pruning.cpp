@@ -1,6 +1,7 @@
 #include "skeleton_pruning.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "brushsvg/checkpoint.hpp"
 
@@ -74,8 +75,8 @@ std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size
         const std::size_t h = mate_[axis_.out[p][0]], junction = axis_.from[h];
         if (axis_.out[junction].size() < 3) continue;
         const double share = axis_.share(h);
-        if (share >= kStemEnd * least_share && corner_[p] >= kLeastCorner) continue;
-        if (share < least_share && !is_limb(h, least_share, least_limb)) drops.push_back({junction, share, h});
+        if (share < least_share && !is_limb(h, least_share, least_limb))
+            drops.push_back({junction, share, h, share >= kStemEnd * least_share && corner_[p] >= kLeastCorner});
     }
     sort_and_thin(drops);
     return drops;
@@ -100,6 +101,12 @@ void KeptBranches::keep_ends(std::vector<Drop>& drops) {
         std::size_t j = i;
         while (j < drops.size() && drops[j].junction == drops[i].junction) ++j;
         const std::size_t p = drops[i].junction;
+        if (axis_.out[p].size() > j - i + 1) {
+            std::copy_if(drops.begin() + std::ptrdiff_t(i), drops.begin() + std::ptrdiff_t(j), std::back_inserter(kept),
+                         [](const Drop& each) { return !each.is_stem; });
+            i = j;
+            continue;
+        }
         const double most = drops[j - 1].share, next = j - i > 1 ? drops[j - 2].share : 0.0;
         const bool stands_out = axis_.out[p].size() == j - i + 1 && most > kLeastEnd && most > kEndStandsOut * next;
         if (stands_out) is_end_[p] = true;

@@ -27,6 +27,7 @@ class KeptBranches {
         std::size_t junction;
         double share;
         std::size_t half;  // edge that leaves the junction
+        bool is_stem;      // enough for the end of a stem, where others go on
         bool operator<(const Drop& o) const {
             return std::tie(junction, share, half) < std::tie(o.junction, o.share, o.half);
         }

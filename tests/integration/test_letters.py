@@ -61,13 +61,13 @@ def found(characters):
 def test_an_outline_of_one_stroke_is_one_stroke(found):
     single = np.mean([len(made) == 1 for made, _, _ in found])
     print(f"{len(found)} outlines, one stroke each: {single:.4f}")
-    assert single >= 0.95  # 0.974
+    assert single >= 0.95  # 0.967
 
 
 def test_a_disc_swept_along_it_paints_the_outline(found):
     overlaps = [_core.overlap(swept(made), shape) for made, shape, _ in found if len(made) == 1]
     print(f"overlap: mean {np.mean(overlaps):.4f}, 5th percentile {np.percentile(overlaps, 5):.3f}")
-    assert np.mean(overlaps) >= 0.96  # 0.965
+    assert np.mean(overlaps) >= 0.96  # 0.969
 
 
 def test_it_runs_the_way_one_writes(found):
@@ -175,7 +175,7 @@ def test_fonts_painted(lettering, kind, em_mm):
     assert overlaps["closed"] == max(overlaps.values())
 
 
-LIMBS = "AEFRTVdefghijklmnrtuyz1457"
+LIMBS = "AEFRTVdefghijklmnrtuyz147"
 
 
 @pytest.mark.parametrize(("kind", "weight", "em_mm"), [("serif", 700, 55.0), ("script", 400, 60.0)])

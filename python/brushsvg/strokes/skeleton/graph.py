@@ -13,6 +13,8 @@ import numpy as np
 from .bridges import bridge, find_corners, stub
 from .junctions import Arm, Crossing, crossings_of
 
+BARE = 0.2  # of the places along a branch inside of a crossing: with less the lines that cross there paint it
+
 
 @dataclass
 class Piece:
@@ -61,6 +63,7 @@ def skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -> Skel
         if arm.branch not in used:
             pieces.append(_ring(arm, used, crossings))
     _give_away(crossings, pieces, lines)
+    _paint_inside(crossings, pieces, lines)
     return Skeleton(pieces, crossings, nodes[degree == 0, :3], [branch.part for branch in branches])
 
 
@@ -78,6 +81,29 @@ def _give_away(crossings: list[Crossing], pieces: list[Piece], lines: list[np.nd
             found = Piece(lines[longest], (None, None), [])
             pieces.append(found)
         found.branches.extend(crossing.inner)
+
+
+def _paint_inside(crossings: list[Crossing], pieces: list[Piece], lines: list[np.ndarray]) -> None:
+    """Branches inside of crossings whose middle no line paints become lines: the stem of a k between its arms and its
+    foot."""
+    at_crossing: dict[int | None, list[Piece]] = {}
+    for piece in pieces:
+        for number in {*piece.ends, *piece.through}:
+            at_crossing.setdefault(number, []).append(piece)
+    for number, crossing in enumerate(crossings):
+        near = at_crossing.get(number, ())
+        if not near:
+            continue
+        for branch in crossing.inner:
+            middle = lines[branch][:, :2]
+            bare = np.ones(len(middle), bool)
+            for piece in near:
+                off = np.hypot(*(middle[:, None] - piece.line[None, :, :2]).transpose(2, 0, 1))
+                bare &= (off > piece.line[:, 2]).all(axis=1)
+            if bare.mean() > BARE:
+                for piece in near:
+                    piece.branches = [each for each in piece.branches if each != branch]
+                pieces.append(Piece(lines[branch], (None, None), [branch]))
 
 
 def _follow(arm: Arm, used: set[int], crossings, from_free_end: bool = False) -> Piece:
