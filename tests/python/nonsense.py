@@ -264,11 +264,123 @@ ARGUMENTS = {
 }
 
 
+def laws_asked():
+    for span in [(0, 10), (10, 0), (3, 3), (NAN, 9), (0, INF), (-INF, 1e300)]:
+        yield _core.LawShape(span, 1)
+    for degree in (0, -1, 9, 2**31 - 1):
+        yield _core.LawShape((0, 10), degree, through_zero=True)
+    for value in NUMBERS[:-1]:
+        yield _core.LawShape((0, 10), 1, floor=value)
+        yield _core.LawShape((0, 10), 1, smoothing=value, norm=_core.Norm.absolute)
+
+
+def readings():
+    sound = np.arange(1.0, 7.0)
+    yield sound
+    yield sound[::-1]
+    yield sound[:1]
+    yield np.repeat(sound, 2)
+    for value in NUMBERS[:-1]:
+        yield np.where(sound == 3, value, sound)
+        yield np.full(6, value)
+
+
+def painted_marks():
+    poses = np.array([[0, 0, 0], [12, 0, -3], [30, 0, -3], [30, 25, -3.0]])
+    square = np.array([[-9, -3], [33, -3], [33, 25], [-9, 25.0]])
+    sound = _core.PaintedMark("a", poses, [square])
+    yield [sound]
+    yield [sound, sound]
+    yield [_core.PaintedMark("", poses[:1], [square])]
+    yield [_core.PaintedMark("a", poses[:0], [square])]
+    for rings in ([], [square[:2]], [square[::-1]], [square * 0]):
+        yield [_core.PaintedMark("a", poses, rings)]
+    for value in (
+        1e300,
+        5.5e9,
+        NAN,
+        INF,
+        -INF,
+    ):  # small ones make marks that no brush paints, tried for minutes
+        yield [_core.PaintedMark("a", np.where(poses == 30, value, poses), [square])]
+        yield [_core.PaintedMark("a", poses, [np.where(square == 33, value, square)])]
+
+
+def starts():
+    yield None
+    yield _core.MarkLaws([], [], [])
+    for value in NUMBERS[:-1]:
+        yield _core.MarkLaws([value], [0, value], [0, value])
+        yield _core.MarkLaws([4], [0, 1], [0, 0.4], widest_per_half=value)
+
+
+def mark_options(**changes):
+    made = _core.MarkOptions()
+    made.most_iterations, made.spacing_mm = 2, 4.0
+    for name, value in changes.items():
+        setattr(made, name, value)
+    return made
+
+
+def all_mark_options():
+    yield mark_options()
+    yield mark_options(lag_terms=0)
+    yield mark_options(tip_gap_terms=2**31 - 1)
+    names = (
+        "deepest_mm",
+        "spacing_mm",
+        "placement_mm",
+        "turn_rad",
+        "displacement_mm",
+        "noise_mm",
+        "noise_length_mm",
+    )
+    for value in NUMBERS[:-1]:
+        for name in names:
+            yield mark_options(**{name: value})
+        for name in ("widest_per_half", "front_per_half", "height_mm"):
+            yield mark_options(**{name: _core.Prior(value, 1.0)})
+            yield mark_options(**{name: _core.Prior(1.0, value)})
+
+
+def all_tracks():
+    poses, seen = np.array([[0, 0, 0], [15, 0, -3], [30, 5, -3.0]]), np.array([[8, 0], [15, 1], [23, 3.0]])
+    yield [_core.Track(poses, [1, 1.5, 2], seen)]
+    yield []
+    yield [_core.Track(poses[:1], [0], seen[:1])]
+    yield [_core.Track(poses, [2, 1.5, 1], seen)]
+    yield [_core.Track(poses, [1], seen)]
+    yield [_core.Track(poses, [0, 1, 2], seen)] * 2
+    yield [_core.Track(poses * [1, 1, -1], [0, 1, 2], seen)]
+    for value in NUMBERS[:-1]:
+        yield [_core.Track(np.where(poses == 15, value, poses), [1, 1.5, 2], seen)]
+        yield [_core.Track(np.where(poses == -3, value, poses), [1, 1.5, 2], seen)]
+        yield [_core.Track(poses, [1, value, 2], seen)]
+        yield [_core.Track(poses, [1, 1.5, 2], np.where(seen == 15, value, seen), value)]
+
+
+# the same of the fits, which calibration calls
+FITS = {
+    "fit_law": [readings, readings, laws_asked],
+    "from_angles": [
+        [1.5, *NUMBERS],
+        lambda: [[1, 3, 6], *([1, 3, each] for each in NUMBERS), [6, 3, 1], [0, 0, 0], []],
+        lambda: [[1.2, 0.9, 0.5], *([1.2, 0.9, each] for each in NUMBERS), [0.5, 0.9, 1.2], []],
+        lambda: [[2.3, 2.0, 1.6], *([2.3, 2.0, each] for each in NUMBERS), []],
+    ],
+    "fit_marks": [painted_marks, starts, all_mark_options],
+    "fit_tracks": [
+        all_tracks,
+        lambda: [[5.0], [], [1.0] * 10, [-1.0], *([each] for each in NUMBERS)],
+        [(0, 10), (10, 0), (0, 0), (NAN, 9), (0, INF), (0, 1e300)],
+    ],
+}
+
+
 def calls(name):
     """Arguments of each call: sound ones with one of them nonsense, or of a wrong type, or all the same nonsense."""
-    choices = [
-        list(choice() if callable(choice) else choice) + WRONG_TYPES for choice in ARGUMENTS.get(name, [])
-    ]
+    given = (ARGUMENTS | FITS).get(name, [])
+    choices = [list(choice() if callable(choice) else choice) + WRONG_TYPES for choice in given]
     sound = [choice[0] for choice in choices]
     yield sound
     for index, choice in enumerate(choices):
@@ -308,7 +420,7 @@ def outcome(call, words) -> str | None:
 
 def main(names):
     for name in names:
-        public = getattr(brushsvg, name)
+        public = getattr(_core if name in FITS else brushsvg, name)
         if not callable(public):
             continue
         for count, arguments in enumerate(calls(name)):

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from nonsense import ARGUMENTS
+from nonsense import ARGUMENTS, FITS
 
 import brushsvg
 
@@ -21,7 +21,7 @@ def test_no_public_name_is_forgotten():
 @pytest.mark.slow
 def test_nonsense_ends_in_a_result_or_a_sentence(batch):
     done = subprocess.run(
-        [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS)[batch::BATCHES]],
+        [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS | FITS)[batch::BATCHES]],
         capture_output=True,
         text=True,
         errors="replace",
