@@ -113,7 +113,9 @@ def test_displacements_come_back():
 def test_more_displacement_than_expected_is_said():
     _, strokes, painted = sheet(3, displacement=2.5)
     told = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
-    assert re.search(r'displacement_mm is 2\.\d in x.* where 1 was expected.*\{"displacement_mm": 3\}', told)
+    assert re.search(
+        r'displacement_mm is 2\.\d in x.* standard deviation of 1, .*\{"displacement_mm": 3\}', told
+    )
     _, _, usual = calibrated(3)
     assert "expected" not in report(usual)
 
