@@ -25,7 +25,11 @@ def folded(notices: Iterable[Notice]) -> list[Notice]:
             result.append(replace(alike[0], where=f"{', '.join(names)} and {last}"))
         else:
             first = alike[0]
-            result.append(replace(first, where=f"{first.where} and {len(alike) - 1} like it"))
+            more = f"and {len(alike) - 1} like it"
+            if first.where:
+                result.append(replace(first, where=f"{first.where} {more}"))
+            else:
+                result.append(replace(first, sentence=f"{first.sentence}, {more}"))
     return result
 
 

@@ -48,3 +48,8 @@ def test_a_kind_is_a_code_whatever_is_said():
     assert len(folded_notices(other_property)) == len(other_property)
     without_codes = [Notice(f"p{k}", f"{k} mm") for k in range(5)]
     assert folded_notices(without_codes) == without_codes, "only what has a code is of a kind"
+
+
+def test_many_that_concern_no_element_are_counted_in_the_sentence():
+    told = [("", f"marker {k} cannot be seen", "marker") for k in range(5)]
+    assert folded(told) == [("", "marker 0 cannot be seen, and 4 like it")]

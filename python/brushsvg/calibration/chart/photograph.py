@@ -164,8 +164,8 @@ def remarks(read: Read) -> list[Notice]:
         sentence = f"no paint is found of {each} {', '.join(missing)}, left out"
         out.append(Notice("", sentence, code="mark-missing"))
     for one, other in read.marks.joined:
-        sentence = f"the marks of {one} and {other} touch: they are cut apart half way between their places"
-        out.append(Notice("", sentence, code="marks-touch"))
+        sentence = f"its mark touches that of {other}: they are cut apart half way between their places"
+        out.append(Notice(one, sentence, code="marks-touch"))
     unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
     if unseen:
         sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen"
