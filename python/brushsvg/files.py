@@ -77,11 +77,13 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
     cleared by the next one that writes there.
     """
     path: str | os.PathLike = ""
-    targets = {path: os.path.realpath(path) for path in files}  # a link stays a link
+    targets: dict[str | os.PathLike, str] = {}
     beside: dict[str | os.PathLike, str] = {}
     through = []
     held = ExitStack()
     try:
+        for path in files:
+            targets[path] = os.path.realpath(path)  # a link stays a link
         for path, target in targets.items():
             mode = _mode(target)
             if mode is not None and not stat.S_ISREG(mode):
@@ -105,7 +107,7 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
         for path in list(beside):
             os.replace(beside[path], targets[path])
             del beside[path]
-    except OSError as problem:
+    except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         raise Error(
             f"the file cannot be written: {reason(problem)}", file=os.fspath(path), code="file-unwritable"
         ) from None

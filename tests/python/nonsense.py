@@ -18,7 +18,7 @@ from brushsvg import _core
 from brushsvg.drawing.design import Design
 
 NAN, INF = float("nan"), float("inf")
-NUMBERS = [0, -1, 1e-300, 1e300, 5.5e9, NAN, INF, -INF, 10**30]
+NUMBERS = [0, -1, 1e-300, 1e300, 5.5e9, NAN, INF, -INF, 10**30, 10**400]
 WRONG_TYPES = [None, "x", b"x", [], {}, (), object(), True, [None], [[1]], np.zeros(0), np.full((2, 8), NAN)]
 LINE = [[10, 10, 20, 10, 30, 10, 40, 20.0]]
 
@@ -100,6 +100,7 @@ def plans():
     yield plan(a_pass(arcs=[brushsvg.Arc(-1, 5, (0, 0), 1)]))
     yield plan(a_pass(arcs=[brushsvg.Arc(1, 2, (35, 20), 1)] * 3))
     yield plan(a_pass(settings="{", extra="[]"), extra="{")
+    yield plan(a_pass(speed_mm_s=1e-320))
     for value in (NAN, INF, -INF, 1e300, 1e6, -1e6):
         yield plan(a_pass([(0, 0, 0), (value, 0, -2)]))
         yield plan(a_pass([(0, 0, 0), (9, 0, value)]))

@@ -323,3 +323,11 @@ def test_rotation_vectors_turn_as_the_matrix_does():
         axis = random.normal(size=3)
         turned = cv2.Rodrigues(axis / np.linalg.norm(axis) * angle)[0]
         assert cv2.Rodrigues(rotation_vector(turned))[0] == pytest.approx(turned, abs=1e-12)
+
+
+def test_too_many_boxes_to_keep_out_of_are_told_by_their_number():
+    box = [[0, 0, 0], [1, 1, 1]]
+    text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {[box] * 1001}")
+    with pytest.raises(Error, match=r"workspace\.keep_out_mm has 1001 rows, more than 1000") as refusal:
+        parse_cell(text)
+    assert refusal.value.code == "out-of-range"

@@ -996,3 +996,16 @@ def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, 
     (desk / program).write_text(edited(rf"(?m)^(G[23] X\S+ Y\S+ Z){depth} ", rf"\g<1>{off} ")(text))
     status, _, err = call(capsys, "check", program, "two.svg")
     assert (status, err) == (0, []), err
+
+
+def test_the_time_told_is_that_of_the_feeds_in_the_program(desk, capsys):
+    def time_s():
+        status, told, _ = call(capsys, "check", "x.ngc", "two.svg", "--json")
+        assert status == 0
+        return json.loads(told)["time_s"]
+
+    call(capsys, "convert", "two.svg", "x.ngc")
+    usual_s = time_s()
+    text = (desk / "x.ngc").read_text()
+    (desk / "x.ngc").write_text(text.replace("F1200.0", "F60.0"))
+    assert time_s() > 3 * usual_s

@@ -241,7 +241,7 @@ def edited_plan(desk, **changes):
     [
         (
             {"speed_mm_s": 30},
-            "x.json: line: speed 30.0 mm/s is outside the range (0, 25.0] mm/s of brush round-6",
+            "x.json: line: speed 30 mm/s is outside the range [0.000001, 25.0] mm/s of brush round-6",
         ),
         (
             {"poses_mm": [[30, 30, 0], [200, 30, 0]]},
@@ -263,11 +263,11 @@ def test_whoever_only_looks_is_warned(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
     status, _, err = run(capsys, "predict", "x.json", "out.svg")
     assert status == 0
-    assert any("speed 30.0" in line for line in err)
+    assert any("speed 30 mm/s" in line for line in err)
     assert any("beyond the upper edge of the sheet" in line for line in err)
     status, out, _ = run(capsys, "report", "x.json")
     assert status == 0
-    assert "line: speed 30.0" in out
+    assert "line: speed 30 mm/s" in out
 
 
 BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke-width="2"/>'

@@ -113,7 +113,7 @@ def test_settings_steer_the_plan(desk, capsys):
     assert any("asks for brush rigid, all is painted with round-6" in line for line in err)
     (desk / "d.svg").write_text(text.replace('speed="7"', 'speed="26"'))
     assert main(["convert", "d.svg", "out.ngc"]) == 1
-    assert "speed 26.0 mm/s is outside the range (0, 25.0]" in capsys.readouterr().err
+    assert "speed 26 mm/s is outside the range [0.000001, 25.0]" in capsys.readouterr().err
 
 
 def test_dxf_needs_its_units(desk, capsys):

@@ -82,7 +82,9 @@ def test_a_program_is_in_the_language_of_its_cell(drawing):
 def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
     work = preparation.prepare(drawing)
     work.plan.passes[1].speed_mm_s = 25.5
-    with pytest.raises(Error, match=r"speed 25\.5 mm/s .* \(0, 25\.0\] mm/s of brush round-6") as refusal:
+    with pytest.raises(
+        Error, match=r"speed 25\.5 mm/s .* \[0\.000001, 25\.0\] mm/s of brush round-6"
+    ) as refusal:
         writer.encode(".ngc", work.plan, work.brush, "two")
     assert refusal.value.where == "bold"
 

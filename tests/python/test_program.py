@@ -108,7 +108,7 @@ def test_limits_are_named_with_stroke_and_number(poses, words):
 
 def test_speed_limits_and_nothing_to_paint():
     too_fast = forbidden(plan_of(STROKE, speed=51.0), brush_of(80.0), find_cell())
-    speed = "speed 51.0 mm/s is outside the range (0, {}] mm/s of {}".format
+    speed = "speed 51 mm/s is outside the range [0.000001, {}] mm/s of {}".format
     assert too_fast == [Notice("s1", speed("50.0", "cell linuxcnc-3axis"), code="speed-out-of-range")]
     too_fast = forbidden(plan_of(STROKE, speed=51.0), BRUSH, find_cell())
     assert too_fast == [Notice("s1", speed("25.0", "brush hog"), code="speed-out-of-range")]

@@ -154,7 +154,7 @@ def test_write_program_by_extension(tmp_path):
     ("plan", "name", "words"),
     [
         (plan_of(SOUND, sheet=(30.0, 30.0)), "a.ngc", "beyond the right edge of the sheet"),
-        (plan_of(SOUND, speed=26.0), "a.ngc", "speed 26.0 mm/s"),
+        (plan_of(SOUND, speed=26.0), "a.ngc", "speed 26 mm/s"),
         (plan_of([(10, 15, 0), (15, 15, 2)]), "a.json", "z|above"),
         (plan_of(SOUND), "a.txt", "extension"),
     ],

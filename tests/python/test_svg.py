@@ -348,6 +348,12 @@ def test_transforms(text, point):
     assert (a + 2 * c + e, b + 2 * d + f) == pytest.approx(point, abs=1e-12)
 
 
+@pytest.mark.parametrize("text", ["translate(1 2),,rotate(3)", "translate(1 2),", ",translate(1 2)"])
+def test_transforms_that_browsers_ignore_are_damaged(text):
+    with pytest.raises(Error, match="transform is damaged at character"):
+        parse_transform(text)
+
+
 def test_nested_transforms_apply_from_the_inside_out():
     line = '<a transform="scale(2)"><path d="M1 1H2" transform="rotate(90)"/></a>'
     line = f'<g transform="translate(10 0)">{line}</g>'

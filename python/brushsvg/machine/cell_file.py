@@ -10,7 +10,7 @@ import tomllib
 from dataclasses import fields
 from pathlib import Path
 
-from ..errors import Error
+from ..errors import Error, need
 from ..files import find_file, names_in, read_bytes
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
 from .cell_check import check
@@ -84,12 +84,16 @@ def parse_cell(text: str) -> Cell:
 
 def write_cell(cell: Cell) -> str:
     """The cell as TOML that parse_cell reads back, each key with a word on its meaning."""
+    need(cell, Cell, "a cell")
     lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_lines(cell)]
     for name, table in tables_of(cell).items():
         lines += ["", *_comment(type(table).__doc__), f"[{name}]", *_lines(table)]
     for station in cell.stations:
         lines += ["", *_comment(Station.__doc__), "[[stations]]", *_lines(station)]
     return "\n".join([*lines, ""])
+
+
+MOST_ROWS = 1000  # of one key: no table of a servo and no shop is longer
 
 
 def _read(table, values, where: str) -> dict:
@@ -153,7 +157,10 @@ def _number(entry: Entry, value, where: str):
 
 def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
     count = shape[0]
-    if not isinstance(value, list) or (count is not None and len(value) != count) or len(value) > 1000:
+    if isinstance(value, list) and len(value) > MOST_ROWS:
+        sentence = f"{where} has {len(value)} rows, more than {MOST_ROWS}"
+        raise Error(sentence, where=where, code="out-of-range")
+    if not isinstance(value, list) or (count is not None and len(value) != count):
         wanted = "a list" if count is None else f"{count} {'numbers' if len(shape) == 1 else 'rows'}"
         raise Error(f"{where} must be {wanted}, not {str(value)[:40]}", where=where, code="wrong-type")
     if len(shape) == 1:

@@ -13,6 +13,7 @@ from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
 
 ROUNDING_MM = 1e-6
+SLOWEST_MM_S = 1e-6  # slower, times cannot be told
 
 
 def touching_mm_s(brush, cell: Cell) -> float:
@@ -42,8 +43,10 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[Notice]:
             if cell.servo:
                 found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
-        if not 0 < speed <= limit:
-            sentence = f"speed {speed:.1f} mm/s is outside the range (0, {limit:.1f}] mm/s of {whose}"
+        if not SLOWEST_MM_S <= speed <= limit:
+            sentence = (
+                f"speed {speed:.4g} mm/s is outside the range [{SLOWEST_MM_S:f}, {limit:.1f}] mm/s of {whose}"
+            )
             found.append(Notice("", sentence, code="speed-out-of-range"))
         problems += [replace(each, where=a_pass.stroke) for each in found]
     for station in cell.stations:

@@ -82,6 +82,8 @@ def _complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
 
 def _need_height(page_height_mm) -> None:
     need(page_height_mm, (int, float, np.number, type(None)), "a page's height in mm, or None")
+    if page_height_mm is not None and not abs(page_height_mm) <= 1e6:
+        raise Error("the page's height is outside the range [-1e6, 1e6] mm", code="out-of-range")
 
 
 def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:

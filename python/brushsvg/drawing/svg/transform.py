@@ -51,7 +51,7 @@ FUNCTIONS = {
     "skewX": ((1,), lambda angle: (1.0, 0.0, _tan(angle), 1.0, 0.0, 0.0)),
     "skewY": ((1,), lambda angle: (1.0, _tan(angle), 0.0, 1.0, 0.0, 0.0)),
 }
-_SEPARATOR = re.compile(r"[\s,]*+")
+_SEPARATOR = re.compile(r"\s*+,?\s*+(?!$)|\s*+$")
 _CALL = re.compile(r"([a-zA-Z]++)\s*+\(([^()]*+)\)")
 
 
@@ -60,7 +60,7 @@ def parse_transform(text: str) -> Matrix:
     matrix = IDENTITY
     if text.strip() == "none":
         return matrix
-    position = _SEPARATOR.match(text).end()
+    position = len(text) - len(text.lstrip())
     while position < len(text):
         call = _CALL.match(text, position)
         counts, make = FUNCTIONS.get(call[1], ((), None)) if call else ((), None)
@@ -71,7 +71,8 @@ def parse_transform(text: str) -> Matrix:
                 code="transform-unread",
             )
         matrix = multiply(matrix, make(*values))
-        position = _SEPARATOR.match(text, call.end()).end()
+        separator = _SEPARATOR.match(text, call.end())
+        position = separator.end() if separator else call.end()
     return matrix
 
 
