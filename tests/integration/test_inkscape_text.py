@@ -69,7 +69,7 @@ def test_without_inkscape_the_sentence_says_how_to_make_paths(plugin, drawing):
     finally:
         del plugin.env["INKSCAPE_COMMAND"]
     assert done.returncode == 0 and b'id="path1-strokes"' in done.stdout
-    assert b"word: text is not read; turn it into paths first, with Path > Object to Path" in done.stderr
+    assert b"word: text is not read; turn it into paths with Path > Object to Path" in done.stderr
 
 
 def test_inkscape_is_not_started_for_the_texts_of_our_own_layers(plugin, tmp_path):
