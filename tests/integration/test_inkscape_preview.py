@@ -165,7 +165,7 @@ def test_refined_marks_leave_their_lines_on_purpose(plugin, tmp_path):
         plugin.set()
     assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--compensation", "refined"))
     layer = preview(shown.read_text())
-    assert "round-6, refined: 4 strokes, at most" in layer.get(f"{INKSCAPE}label")
+    assert "round-6, refined: 4 strokes, tracking error at most" in layer.get(f"{INKSCAPE}label")
     assert "tolerance" not in layer.get(f"{INKSCAPE}label")
     assert not [path for path in layer.iter(f"{SVG}path") if "#d4351c" in path.get("style")]
 

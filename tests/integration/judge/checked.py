@@ -33,16 +33,15 @@ def quick_check():
     What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
     """
     known: dict[tuple, preparation.Work] = {}
-    cells: dict[str, object] = {}
+    cells: dict[tuple, object] = {}
     asked: dict[tuple, object] = {}
-    names = "prepare", "find_cell", "tell", "outputs", "report"
+    names = "prepare", "exact_cell", "tell", "outputs", "report"
     whole = {name: getattr(command, name) for name in names}
 
-    def prepare(args, cell, brush=None, **more):
-        words = {name: value for name, value in vars(args).items() if name not in ("program", "json")}
-        key = (repr(sorted(words.items())), cell.name, brush.name)
+    def prepare(chosen, cell, brush):
+        key = (repr(chosen), cell.name, brush.name)
         if key not in known:
-            known[key] = whole["prepare"](args, cell, brush, **more)
+            known[key] = whole["prepare"](chosen, cell, brush)
         work, plan = known[key], known[key].plan
         work = copy.copy(work)  # a plan may be put in another order
         object.__setattr__(
@@ -50,10 +49,10 @@ def quick_check():
         )
         return work
 
-    def find_cell(name):
-        if name not in cells:
-            cells[name] = whole["find_cell"](name)
-        return cells[name]
+    def exact_cell(name, tolerance_mm):
+        if (name, tolerance_mm) not in cells:
+            cells[name, tolerance_mm] = whole["exact_cell"](name, tolerance_mm)
+        return cells[name, tolerance_mm]
 
     def refusals(*words) -> list[str]:
         if words not in asked:
@@ -66,7 +65,7 @@ def quick_check():
             return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
         return []
 
-    command.prepare, command.find_cell, command.tell = prepare, find_cell, lambda text: None
+    command.prepare, command.exact_cell, command.tell = prepare, exact_cell, lambda text: None
     command.outputs = types.SimpleNamespace(notes=outputs.notes, reported=lambda *_, **__: None)
     command.report = types.SimpleNamespace(as_text=lambda *_: "")
     try:
