@@ -30,8 +30,12 @@ def painted(fill, stroke, more="", before=""):
     return read(f'<path id="first" d="M0 0H1"/>{before}{BOTH.format(fill, stroke, more)}')
 
 
+JOINED = "both are painted in the colour of the stroke"
+
+
 def told(design):
-    return [sentence.removeprefix("p: ") for sentence in sentences(design)]
+    """But for the two colours, which most of these shapes have."""
+    return [sentence.removeprefix("p: ") for sentence in sentences(design) if JOINED not in sentence]
 
 
 @pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
@@ -124,3 +128,11 @@ def test_white_is_told():
         (sentence,) = told(painted(fill, stroke))
         assert sentence.startswith("it is white, and painted like any colour")
     assert told(painted("#fefefe", "none")) == []
+
+
+def test_a_fill_of_another_colour_than_the_stroke_is_told():
+    (sentence,) = sentences(painted("#f00", "#000"))
+    assert sentence == f"p: its fill is #ff0000 and its stroke #000000: {JOINED}"
+    assert sentences(painted("#f00", "red")) == sentences(painted("none", "#f00")) == []
+    assert sentences(painted("#f00", "none")) == []
+    assert sentences(read('<path d="M0 0H5V5Z" stroke="red"/>')) == [], "the default fill, which nobody chose"

@@ -91,6 +91,11 @@ class Painted:
                 "it is white, and painted like any colour: what it hides in the drawing is painted, too"
             )
             self.notes.add(node, context, sentence, code="white-paint")
+        if properties["fill"] and "none" not in (fill, stroke) and fill != stroke:
+            sentence = (
+                f"its fill is {fill} and its stroke {stroke}: both are painted in the colour of the stroke"
+            )
+            self.notes.add(node, context, sentence, code="colours-joined")
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
         self.elements.append(
