@@ -177,7 +177,7 @@ PLANS = {
     ),
     "too fast": (
         lambda plan: plan["passes"][0].update(speed_mm_s=30),
-        r"line: speed 30\.0 mm/s is outside the range \(0, 25\.0\] mm/s of brush round-6",
+        r"line: speed 30 mm/s is outside the range \[0\.000001, 25\.0\] mm/s of brush round-6",
     ),
 }
 
