@@ -873,6 +873,37 @@ def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
+@pytest.mark.parametrize(
+    ("old", "new", "count"),
+    [
+        (r"(?m)^G4 P0\.017$", "G4 P0.17", 0),
+        (r"(?m)^G4 P0\.150$", "G4 P0.450", 0),
+        (r"(?m)^(M3 S624\n)G4 P0\.017$", r"\1G4 P0.9", 1),
+        (r"(?m)^(M3 S624)$", r"\1\nG4 P0.5", 1),
+        (r"(?m)^(G1 .* S542)$", r"\1\nG4 P0.5", 1),
+        (r"(?m)^(F1200\.0)\n(G1 .* S59\d)$", r"\1\nG4 P0.4\n\2", 1),
+        (r"(?m)^(G4 P0.150)\n\n\(end", r"\1\nG4 P0.3\n\n(end", 1),
+        (r"(?m)^M3 S800\n(G4)", r"\1", 0),
+    ],
+)
+def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawing, old, new, count):
+    """A lift is held against another as a whole; what is named is no line that brushsvg would write there, too."""
+    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    before = (desk / "two.nc").read_text()
+    after = edited(old, new, count)(before)
+    (desk / "two.nc").write_text(after)
+    first = next(
+        number
+        for number, (x, y) in enumerate(zip(before.splitlines(), after.splitlines(), strict=False), 1)
+        if x != y
+    )
+    status, _, err = call(capsys, "check", "two.nc", *drawing)
+    told = [re.search(r"line (\d+): '(.*?)': for .* would write '(.*)'", line) for line in err]
+    assert status == 1 and [int(found[1]) for found in told if found] == [first], err
+    assert all(found[2] != found[3] for found in told if found)
+
+
+@pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_a_servos_jump_within_a_lift_is_told(desk, capsys, drawing):
     """Steps that are waited for are slow only as long as they are steps."""
     words = ("two.svg", "two.nc", "--cell", "grbl-servo", "--compensation", "none")

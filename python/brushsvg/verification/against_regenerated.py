@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,8 +98,54 @@ def differing_line(
         elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b):
             k += 1
         else:
+            if a and b and a.kind == b.kind == "lift":
+                a, b = _first_unlike(_of_lift(read.acts, ours, i), _of_lift(again.acts, theirs, k), like)
+            elif a and b and a.kind == b.kind == "way" and like.is_stopped(ours[i + 1 :], theirs[k + 1 :]):
+                a = _of_lift(read.acts, ours, i + 1)[0]
             return _differs(text.splitlines(), theirs_text.splitlines(), a, b, like)
     return None
+
+
+def _of_lift(acts: list[Act], lifts: list[Act], number: int) -> list[Act]:
+    """What a servo's lift was put together of, and what follows it."""
+    before = max((act.line for act in lifts[:number]), default=0)
+    lines = [act.line for act in acts]
+    return acts[bisect_right(lines, before) : bisect_right(lines, lifts[number].line) + 1]
+
+
+def _first_unlike(found: list[Act], wanted: list[Act], like: _Alike) -> tuple[Act, Act]:
+    """What makes one lift another one: the value that it ends with, or that is beyond all of the other's, else what is
+    waited at the value where that is furthest off. Rounding may have made the values one more or less."""
+    ours, theirs = ([act for act in acts if act.kind == "lift"] for acts in (found, wanted))
+    if bool(ours) != bool(theirs):
+        return found[0], wanted[0]
+    for pick in (lambda acts, **_: acts[-1], min, max) if ours else ():
+        a, b = (pick(acts, key=lambda act: act.same[0]) for acts in (ours, theirs))
+        if abs(a.same[0] - b.same[0]) > like.step_values:
+            return a, b
+    ours_at, theirs_at = _by_value(found), _by_value(wanted)
+
+    def off_s(value: float) -> float:
+        waits = [
+            [act.same[0] for act in at.get(value, ()) if act.kind == "wait"] for at in (ours_at, theirs_at)
+        ]
+        return abs(sum(waits[0]) - sum(waits[1]))
+
+    value = max([*ours_at, *theirs_at], key=off_s)
+    pairs = zip(ours_at.get(value, found[-1:]), theirs_at.get(value, wanted[-1:]), strict=False)
+    unlike = ((a, b) for a, b in pairs if (a.kind, a.same) != (b.kind, b.same))
+    return next(unlike, (found[-1], wanted[-1]))
+
+
+def _by_value(acts: list[Act]) -> dict[float, list[Act]]:
+    """What follows each value of a lift, up to the next one and with it; none before its first."""
+    at: dict[float, list[Act]] = {}
+    value = None
+    for act in acts:
+        at.setdefault(value, []).append(act)
+        if act.kind == "lift":
+            value = act.same[0]
+    return at
 
 
 def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, like: _Alike) -> str:
@@ -190,6 +237,10 @@ class _Alike:
         return len(a.at_most) == len(b.at_most) and all(
             found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)
         )
+
+    def is_stopped(self, ours: list[Act], theirs: list[Act]) -> bool:
+        """Whether a lift follows where another one does, or none."""
+        return bool(ours) and ours[0].kind == "lift" and not (theirs and self.is_same(ours[0], theirs[0]))
 
     def is_idle(self, act: Act, here: tuple) -> bool:
         """Goes to where the tool is, or nowhere that a brush shows: the tool counts as where it was."""
