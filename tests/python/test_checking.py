@@ -424,7 +424,7 @@ UNWRITTEN = {
         (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1*77"),
         (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1 P1"),
         (r"(?m)^(G1 X\S+ Y\S+ Z\S+)$", r"\1 S1000"),
-        (r"(?m)^(G1 X)(\S+)", r"\g<1>+\2"),
+        (r"(?m)^G0 Z", "G+0 Z"),
         (r"(?m)^G0 Z10\.\d+", "G0 Z1e1"),
         (r"(?m)^(\(stroke 2)", r"(MSG, all is well)\n\1"),
         (r"(?m)^(\(stroke 2)", r"(PROBEOPEN all)\n\1"),
@@ -449,7 +449,10 @@ UNWRITTEN = {
         (r"\A", "%\n"),
         (r"\Z", "%\n"),
         (r"\Z", "(all is well)\n"),
-        (r"\Z", "M2\n"),
+        (r"\Z", "M2\nG0 Z5\n"),
+        (r"(?m)^G64 P\S+", "G64 P0"),  # as much as the machine likes
+        (r"(?m)^(G1 .*)$", r"\1" + " " * 240),
+        (r"\Z", " " * 253),
     ],
     "grbl-3axis": [
         (r"(?m)^(F1200)", r"G64 P5\n\1"),
@@ -459,6 +462,7 @@ UNWRITTEN = {
         (r"(?m)^(\(stroke 2)", f"({'a' * 69})\n" + r"\1"),
         (r"(?m)^(\(stroke 2)", r"M3 S5\n\1"),
         (r"(?m)^(\(stroke 2)", r"$H\n\1"),
+        (r"\Z", "M3\n"),
     ],
     "ur5e": [
         (r"\n", "\r\n"),
@@ -512,6 +516,9 @@ HARMLESS = {
         (r"(?m)^(\(time: .*\n)(\(length: .*\n)", r"\2\1\1"),
         (r"(?m)^(\(stroke 2)", r"(all is well)\n\n\n\1"),
         (r"(?m)^(G1 X\S+ Y\S+ )Z1\.0+\n(F480.*\n)", r"\2"),
+        (r"(?m)^(G1 X)(.* Y)(.* )", r"\1+\2+\3"),
+        (r"(?m)^(G1 X\S+) (Y\S+) (\S+)$", r"\1  \2   \3  "),
+        (r"\Z", "M2\n\nM30\n"),
     ],
     "grbl-servo": [
         (r"(?m)^(M3 S\d+\n)(G4)", r"\1(a remark)\n\2"),
@@ -547,6 +554,14 @@ def test_what_a_machine_does_in_the_same_way_is_no_change(desk, capsys, name, dr
         (desk / program).write_bytes(edited(old, new)(text).encode())
         status, _, err = call(capsys, "check", program, *drawing)
         assert (status, err) == (0, []), (old, new, err)
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_blanks_at_the_end_of_lines_are_no_change(desk, capsys, name):
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    (desk / program).write_text(edited("(?m)$", "  ", 0)((desk / program).read_text()))
+    assert call(capsys, "check", program, "two.svg")[::2] == (0, [])
 
 
 STATIONS = [
@@ -709,6 +724,8 @@ CHANGED = {
             "the brush touches the paper 2 times, not once",
         ),
         (edited(r"(?m)^G64.*\n", ""), "G64 is missing before the first move"),
+        (edited(r"G64 P\S+", "G64"), "corners are cut as far as the machine likes"),
+        (edited(r"G64 P\S+", "G64 P0.0"), "corners are cut as far as the machine likes"),
         (
             edited(r"G64 P\S+", "G64 P5.0000"),
             "corners are cut by up to 5 mm, brushsvg would write 'G64 P0.0100'",

@@ -164,7 +164,8 @@ def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, l
         return f"line {a.line}: {line.strip()[:60]!r} {speeds} {b.at_most[0]:.1f} mm/s"
     if b and a.kind == b.kind == "move" and not a.text and a.place == b.place and a.same != b.same:
         corners = next((line for line in theirs if line.startswith("G6")), "nothing")
-        return f"line {a.line}: corners are cut by up to {a.same[0]:g} mm, brushsvg would write {corners!r}"
+        most = f"by up to {a.same[0]:g} mm" if math.isfinite(a.same[0]) else "as far as the machine likes"
+        return f"line {a.line}: corners are cut {most}, brushsvg would write {corners!r}"
     at = next((n for n, (x, y) in enumerate(zip(line, expected, strict=False)) if x != y), len(line))
     found, wanted = _near(line, at), _near(expected, at)
     instead = f"brushsvg would write {wanted!r}" if b else "nothing should follow"
