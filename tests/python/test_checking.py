@@ -868,14 +868,14 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_told(
 
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
-    """Alone, too: a time may only be shorter by what lowered feeds have added since."""
+    """Alone, too: a time may only be shorter where feeds were lowered since."""
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     seconds, length = (int(re.search(rf"{word}(\d+)", text)[1]) for word in ("time: about ", "length: "))
     for drawing in ((), ("two.svg",)):
         for old, new in (
-            (f"about {seconds} s", f"about {seconds - (3 if drawing else 5)} s"),
+            (f"about {seconds} s", f"about {seconds - 2} s"),
             (f"about {seconds} s", f"about {seconds + 5} s"),
             (f"length: {length} mm", f"length: {length * 9 // 10} mm"),
             (f"length: {length} mm", f"length: {length + 4} mm"),

@@ -288,7 +288,7 @@ class _Alike:
         if (about := _ABOUT.fullmatch(found)) and (found[:6] == wanted[:6]):
             value, unit = _about(about)
             least, most = self.length_mm if about[4] else self.time_s
-            return least - 2 * unit <= value <= most + 2 * unit
+            return least - unit <= value <= most + 2 * unit
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
         tilts = 3 if wanted.startswith(("set_tcp", "return", "paper")) else 0
@@ -311,7 +311,8 @@ _ABOUT = re.compile(
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
-    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for two units of the last digit.
+    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for one unit of the last digit
+    less and two more: circles that were written as lines took rests.
 
     A servo's heights in steps make a way longer than it was meant, but not shorter than it is seen from above; and each
     stroke may have lost a step and a value at both ends.
