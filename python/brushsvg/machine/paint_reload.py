@@ -17,8 +17,9 @@ from .cell import Cell, Station
 class PlanInLoads:
     """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
 
-    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. A
-    plan.json does not tell that a pass is a part: plans are kept as they were planned, and cut for the machine.
+    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. Of a part
+    the key load says which of its stroke it is, in a plan.json, too: as a rule plans are kept as they were planned, and
+    cut for the machine.
     """
 
     sheet_mm: tuple[float, float]
@@ -39,15 +40,24 @@ class PlanInLoads:
 def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
     """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
-    Whole are all strokes of cells that do not count the length, and those whose setting reload is false.
+    Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
+    already stays as it is. Error for a part that does not follow the one before it.
     """
-    loads = list(plan.passes)
+    loads, last = list(plan.passes), None
+    for a_pass in loads:
+        if (number := _load(a_pass)) > 1 and (last is None or _load(last) != number - 1):
+            sentence = f"load {number} of a stroke stands where no load {number - 1} of it comes before"
+            raise Error(sentence, a_pass.stroke, code="load-out-of-order")
+        last = a_pass
     if cell.reload and cell.reload.when == "length":
         every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
         loads = []
         for a_pass in plan.passes:
-            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
-            loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False or _load(a_pass)
+            parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+            for number, part in enumerate(parts, 1) if len(parts) > 1 else ():
+                part.extra = json.dumps({**json.loads(part.extra), "load": number})
+            loads += parts
     return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
 
 
@@ -116,7 +126,15 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
 
 def is_later_part(a_pass) -> bool:
     """Whether a load goes on with the stroke that the load before it paints."""
-    return a_pass.origin.load > 1
+    return _load(a_pass) > 1
+
+
+def _load(a_pass) -> int:
+    """Which load of its stroke a pass is, from 1; 0 for a stroke that is whole."""
+    load = json.loads(a_pass.extra).get("load", 0)
+    if type(load) is not int:
+        raise Error(f"load must be a whole number, not {load!r:.40}", a_pass.stroke, code="wrong-type")
+    return load
 
 
 def _asked(a_pass) -> bool | None:
