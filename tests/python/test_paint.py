@@ -78,11 +78,17 @@ def test_another_colour_is_washed_for():
 def test_a_resumed_job_begins_with_paint():
     plan = plan_of(*[(40, "#000000", "")] * 4)
     assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
-        ["black"],
+        [],
         [],
         ["black"],
         [],
     ]
+
+
+def test_what_is_not_painted_again_asks_for_no_paint():
+    plan = plan_of((40, "#00ff00", ""), (40, "#000000", ""))
+    cell = cell_with(Reload("stroke"), BLACK)
+    assert names(visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
 
 
 def test_a_colour_that_nobody_serves_is_refused():

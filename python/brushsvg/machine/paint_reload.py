@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,10 @@ class PlanInLoads:
         for a_pass in self.loads:
             names.append(names[-1] if is_later_part(a_pass) else a_pass.stroke)
         return names
+
+    def left(self, first_stroke: int) -> PlanInLoads:
+        """The loads from that one on, counted from 1."""
+        return PlanInLoads(self.sheet_mm, self.loads[first_stroke - 1 :])
 
     def as_plan(self):
         """For who simulates what is run."""
@@ -80,7 +85,7 @@ def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
 
 
 def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
-    """For each load the stations to visit before it; () for a cell without paint.
+    """For each load the stations to visit before it, none before loads that are not run; () for a cell without paint.
 
     Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
     cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
@@ -88,8 +93,11 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
     """
     if not cell.reload:
         return ()
-    found, last, used_mm = [], None, 0.0
-    for number, a_pass in enumerate(loads.loads, 1):
+    painted, due = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
+    found, last, used_mm = [()] * len(painted), None, 0.0
+    with suppress(Error):  # what no station serves is not on the brush
+        last = painted[-1] if painted and _station_for(painted[-1], cell) else None
+    for number, a_pass in enumerate(due, len(painted) + 1):
         station = _station_for(a_pass, cell)
         length_mm = painted_mm(a_pass)
         changed = last is not None and _station_for(last, cell) != station
