@@ -166,7 +166,7 @@ def _visits(read: Readback, cell: Cell) -> tuple:
 
 def _title(text: str) -> str:
     """As much of a title as stands in a program of any language."""
-    return spelled(text)[: len("paint: ") + NAMED]
+    return spelled(text)[: len("paint: ") + NAMED].rstrip(" ")
 
 
 @dataclass(frozen=True)

@@ -31,13 +31,11 @@ _OTHER = re.compile(  # the frame around the moves
 def read_urscript(text: str) -> Readback:
     """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
     out = Readback(in_paper_frame=True)
-    lines = [
-        (number, line.lstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
-    ]
+    lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     for number, line in lines:
         if line.startswith("# "):
             before = len(out.acts)
-            out.comment(number, line[2:])
+            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
             if 0 < before < len(out.acts) and out.acts[before - 1].text.startswith("here ="):
                 out.acts.insert(
                     before - 1, out.acts.pop()
