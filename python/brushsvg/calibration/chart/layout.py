@@ -158,7 +158,7 @@ def chart(
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
         units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
         # the first choice settles where markers stand at the sides; strokes matter more than these two
-        for tried in (beside,) if best is not None else (*_besides(sheet_mm, side), None):
+        for tried in (beside,) if best is not None else (*_marker_gaps(sheet_mm, side), None):
             placed, used = _packed(units, room[0], side, room[1], tried)
             if used <= room[1]:
                 beside = tried
@@ -183,7 +183,7 @@ def _side(sheet_mm: tuple[float, float]) -> float:
     return min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
 
 
-def _besides(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
+def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
     """From where to where, down from the sheet's inner edge, markers may stand near the middle of its left and right
     side."""
     if sheet_mm[1] >= BETWEEN * side:
