@@ -23,7 +23,7 @@ OUTLYING = 4.7  # standard deviations beyond which a point is masked
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
-UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
+UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def calibrate_marks(
             half_interval_95=found.half_interval_95,
         )
         setattr(brush, law, known)
-    _refuse_unsure(brush, fit)
+    _refuse_undetermined(brush, fit)
     _core.check(brush)
     return MarkCalibration(brush, fit, painted, options, scale, gain, edge_mm)
 
@@ -252,10 +252,10 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     if covariance is not None:
         whole = _over_brush(laws, covariance)
         brush.covariance = whole.tolist()
-        sure = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
-            setattr(brush, law, _core.Profile(coefficients, half_interval_95=sure[place]))
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place]))
     return brush
 
 
@@ -300,15 +300,15 @@ def _refuse_unlike(fit, painted: Painted) -> None:
         )
 
 
-def _refuse_unsure(brush: _core.Brush, fit) -> None:
+def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
     for law in ("lag", "half_width"):  # the others are not what a plan is led by
         half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
-        unsure = (half > UNSURE * values) & (half > UNSURE_MM)
-        if unsure.mean() > UNSURE_PART:
-            worst = int(np.argmax(np.where(unsure, half / np.maximum(values, 1e-9), 0.0)))
+        undetermined = (half > UNDETERMINED * values) & (half > UNDETERMINED_MM)
+        if undetermined.mean() > UNDETERMINED_PART:
+            worst = int(np.argmax(np.where(undetermined, half / np.maximum(values, 1e-9), 0.0)))
             todo = (
                 fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
             )

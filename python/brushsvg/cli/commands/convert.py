@@ -9,7 +9,7 @@ from ...machine import preflight, writer
 from ...machine.paint_reload import in_loads, too_long
 from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
-from ...text_summary import folded
+from ...text_summary import summarized
 from ..console import RefusedError, about, stage, warn
 from .options import settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
@@ -38,7 +38,7 @@ def convert_file(args) -> None:
         marks = prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
         loads = in_loads(work.plan, brush, cell)
         walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job)
-        problems = folded([*walk.problems, *damaged])
+        problems = summarized([*walk.problems, *damaged])
         if damaged:
             problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
         if problems:
