@@ -78,17 +78,17 @@ def case(text: str, font: bytes, size_mm: float, brush_name: str, compensation: 
         work = prepare(file, Options(brush=brush, compensation=compensation))
     rings = [ring for element in read_svg(document.encode()).elements for ring in filled(element)]
     mark = predict(work).outline_mm
-    points = np.vstack([*rings, *mark])
-    window = np.array([points.min(axis=0), points.max(axis=0)])
     px_per_mm = EM_PX / size_mm
-    return Case(text, _picture(rings, window, px_per_mm), _picture(mark, window, px_per_mm))
+    return Case(text, _picture(rings, px_per_mm), _picture(mark, px_per_mm))
 
 
-def _picture(rings: list[np.ndarray], window: np.ndarray, px_per_mm: float) -> np.ndarray:
-    """Black on white."""
-    width, height = np.ceil((window[1] - window[0]) * px_per_mm).astype(int) + 2 * MARGIN_PX
+def _picture(rings: list[np.ndarray], px_per_mm: float) -> np.ndarray:
+    """Black on white, whatever else it is held against."""
+    points = np.vstack(rings)
+    low, high = points.min(axis=0), points.max(axis=0)
+    width, height = np.ceil((high - low) * px_per_mm).astype(int) + 2 * MARGIN_PX
     image = np.full((height * FINE, width * FINE), 255, np.uint8)
-    upper_left = np.array([window[0, 0], window[1, 1]])
+    upper_left = np.array([low[0], high[1]])
     pixels = [
         np.round((((ring - upper_left) * (1, -1)) * px_per_mm + MARGIN_PX) * FINE).astype(np.int32)
         for ring in rings
@@ -185,9 +185,9 @@ def main() -> None:
 def _keep(file: Path, spoilt: list[tuple[Case, str]]) -> None:
     if not spoilt:
         return
-    pairs = [np.vstack([each.drawn, each.painted]) for each, _ in spoilt]
-    width = max(pair.shape[1] for pair in pairs)
-    rows = [np.pad(pair, ((0, 0), (0, width - pair.shape[1])), constant_values=255) for pair in pairs]
+    both = [picture for each, _ in spoilt for picture in (each.drawn, each.painted)]
+    width = max(picture.shape[1] for picture in both)
+    rows = [np.pad(one, ((0, 0), (0, width - one.shape[1])), constant_values=255) for one in both]
     file.parent.mkdir(parents=True, exist_ok=True)
     cv2.imwrite(str(file), np.vstack(rows))
 
