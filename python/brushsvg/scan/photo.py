@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 
 from ..errors import Error
-from .png import SIGNATURE, sound_png
 
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 HEIC = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1", b"avif")  # brands of such files
@@ -26,10 +25,6 @@ def read_photo(data: bytes) -> np.ndarray:
             "Settings, Camera, Formats, Most Compatible)",
             code="photo-format",
         )
-    if data.startswith(SIGNATURE):
-        data = sound_png(data)
-        if data is None:
-            raise Error("the PNG file is damaged, or not whole", code="photo-format")
     try:
         pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
     except cv2.error:  # larger than OpenCV reads, or broken

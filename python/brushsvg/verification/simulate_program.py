@@ -208,7 +208,8 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
             continue
         middle = moved(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
         centres[number] = (*middle.tolist(), step.centre[2])
-        between = list(step.via) or chords(last, ends[number], centres[number])
+        named = moved(back, np.reshape(step.via, (-1, 3)))
+        between = named if len(named) else chords(last, ends[number], centres[number])
         points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
         owner += [known[done:at], np.full(len(between), number)]
         done = at
