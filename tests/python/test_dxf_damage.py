@@ -12,7 +12,7 @@ from brushsvg.drawing.design import Design
 from brushsvg.drawing.dxf import entity_walk, read_dxf, splines
 from brushsvg.errors import Error
 from brushsvg.strokes.extraction import strokes
-from brushsvg.text_summary import folded
+from brushsvg.text_summary import summarized
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
 
@@ -400,7 +400,7 @@ def test_what_was_repaired_is_told_where_it_is_painted(more, words):
     """The audit takes away what it cannot understand: another width, a solid line in place of dashes."""
     lines = [LOOK.format(y=y) + more for y in range(5)]
     notices = read_dxf(text_dxf(LOOK.format(y=9), *lines), OPTIONS).notices
-    told = [notice for notice in folded(notices) if notice.code == "dxf-repaired"]
+    told = [notice for notice in summarized(notices) if notice.code == "dxf-repaired"]
     assert [words in notice.sentence for notice in told] == [True], notices
     assert told[0].where.startswith("LINE(#") and told[0].where.endswith("and 4 like it")
 
