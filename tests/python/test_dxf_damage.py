@@ -12,6 +12,7 @@ from brushsvg.drawing.design import Design
 from brushsvg.drawing.dxf import entity_walk, read_dxf, splines
 from brushsvg.errors import Error
 from brushsvg.strokes.extraction import strokes
+from brushsvg.text_summary import summarized
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
 
@@ -380,3 +381,30 @@ def test_drawings_in_map_coordinates_are_moved_to_the_sheet_and_what_is_astray_i
     assert "its geometry is not finite or beyond" in refusal(text_dxf(line(5e12, 0)))
     with pytest.raises(Error, match="its geometry is not finite or beyond 1e6 mm"):
         read_dxf(text_dxf("0 LINE 8 0 10 5e9 20 0 11 5.01e9 21 0"), anywhere)
+
+
+LOOK = "0 LINE 8 0 10 0 20 {y} 11 50 21 {y} "
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ("6 NOWHERE", "undefined linetype nowhere"),
+        ("62 999", "invalid color index"),
+        ("62 -999", "invalid color index"),
+        ("370 33", "invalid lineweight"),
+        ("210 0 220 0 230 0", "extrusion vector"),
+    ],
+)
+def test_what_was_repaired_is_told_where_it_is_painted(more, words):
+    """The audit takes away what it cannot understand: another width, a solid line in place of dashes."""
+    lines = [LOOK.format(y=y) + more for y in range(5)]
+    notices = read_dxf(text_dxf(LOOK.format(y=9), *lines), OPTIONS).notices
+    told = [notice for notice in summarized(notices) if notice.code == "dxf-repaired"]
+    assert [words in notice.sentence for notice in told] == [True], notices
+    assert told[0].where.startswith("LINE(#") and told[0].where.endswith("and 4 like it")
+
+
+def test_repairs_that_nobody_sees_are_not_told():
+    lines = [LOOK.format(y=y) + "330 FFFF" for y in range(3)]
+    assert read_dxf(text_dxf(*lines), OPTIONS).notices == ()
