@@ -164,7 +164,7 @@ def _sorted_out(painted, wanted, step):
         try:
             step(pair[:1])
         except Error as error:
-            refused.append(replace(error.notice(pair[0].id), code=error.code or "stroke-refused"))
+            refused.append(error.notice(pair[0].id))
             left_out.append(pair[1])
         else:
             sound.append(pair)
@@ -172,14 +172,9 @@ def _sorted_out(painted, wanted, step):
 
 
 def _widths(warnings, may_advise: bool) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored."""
+    """What compensation warns of, with what helps against depths that were not measured."""
     advice = "--width MM gives all strokes one width" if may_advise else ""
-    return [
-        Notice(where, said, code="depth-not-measured", advice=advice)
-        if where
-        else Notice(where, said, code="widths-ignored")
-        for where, said in warnings
-    ]
+    return [replace(each, advice=advice) if each.code == "depth-not-measured" else each for each in warnings]
 
 
 def _with_speeds(plan, strokes):

@@ -63,5 +63,6 @@ def _parser() -> argparse.ArgumentParser:
     brushes.add_scan(commands)
     brushes.add_calibrate(commands)
     brushes.add_brush(commands)
+    drawings.add_compare(commands)
     machines.add_install_plugin(commands)
     return parser

@@ -70,7 +70,8 @@ def check_file(args) -> None:
         again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
         least_s = None
         if again and speeds is None:  # feeds may have been lowered since its time was told
-            fastest = [again.touching_mm_s] * len(ran.plan.passes)
+            usual_mm_s = min(preparation.Options.speed_mm_s, again.touching_mm_s)
+            fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in ran.plan.passes]
             least_s = duration_s(
                 against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
             )
