@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, need
 
 BAND = "#e0862b"  # where an edge lies with 95 %
-EDGE = 0.002  # of the sheet, how wide the line round what no stroke reaches is
+EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
 
 
 def marks_svg(
@@ -22,12 +22,12 @@ def marks_svg(
     misses=(),
     made: str = "",
     band=None,
-    unreached=(),
+    blank=(),
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
     marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
-    legend; unreached: rings of what no stroke reaches, outlined.
+    legend; blank: rings of what of shapes stays blank, outlined.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -43,11 +43,11 @@ def marks_svg(
             lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
-    if unreached:
-        data = "".join(_path_data(ring, height) for ring in unreached)
+    if blank:
+        data = "".join(_path_data(ring, height) for ring in blank)
         wide = round(EDGE * max(width, height), 3)
         lines.append(
-            f'<path class="unreached" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
+            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
         )
     if band is not None:
         lines += _band(band, width, height)

@@ -33,7 +33,7 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
-    bare = [ring for piece in work.unreached for ring in piece.rings]
+    bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"

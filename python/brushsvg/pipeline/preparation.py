@@ -19,8 +19,8 @@ from ..machine.program import Job
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.extraction import strokes as strokes_of
-from ..strokes.unreached import notices as unreached_notices
-from ..strokes.unreached import unreached
+from ..strokes.unreached import missed, unreached
+from ..strokes.unreached import notices as blank_notices
 from ..strokes.width_limits import within_reach
 from .json_files import read_plan
 
@@ -66,6 +66,7 @@ class Work:
     left_out: tuple = ()  # the strokes that were refused, as they were wanted
     drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
+    missed: tuple = ()  # pieces that strokes reach and the mark does not
 
 
 def prepare(
@@ -106,8 +107,11 @@ def prepare(
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
-    notices += unreached_notices(bare)
+    notices += blank_notices(bare)
+    blank = []
     if options.compensation in ("closed", "refined"):
+        blank = missed(drawn, painted, _core.simulate(plan, brush).passes, bare, brush)
+        notices += blank_notices(blank, is_reached=True)
         notices += _misses(painted, misses, moved, brush, options.tolerance_mm)
     return Work(
         design.title,
@@ -121,6 +125,7 @@ def prepare(
         tuple(left_out),
         drawn,
         tuple(bare),
+        tuple(blank),
     )
 
 
