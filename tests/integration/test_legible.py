@@ -15,6 +15,7 @@ from legible import GLYPHS, readings, words
 SEED = 20261
 WORDS, GLYPHS_EACH = 9, 10  # of each font
 LESS = 0.02
+LESS_WORDS = 2  # of one font: one word tells nothing; 3 where an a was painted as an o
 TRUETYPE = Path("/usr/share/fonts/truetype/dejavu")
 OPENTYPE = Path("/usr/share/fonts/opentype")
 FONTS = (
@@ -43,9 +44,11 @@ def test_what_is_painted_is_read_as_what_was_drawn(fonts):
         for font in fonts:
             for texts, size in ((words(), WORDS), (list(GLYPHS), GLYPHS_EACH)):
                 done = readings(choice.choice(texts, size, replace=False).tolist(), font, pool)
-                totals += done.right()
+                drawn, painted = done.right()
+                totals += drawn, painted
+                assert painted >= drawn - LESS_WORDS or texts[0] in GLYPHS, f"{done.spoilt()}"
                 count += size
-                print(done.right(), [(each.text, said) for each, said in done.spoilt()])
+                print(drawn, painted, [(each.text, said) for each, said in done.spoilt()])
     drawn, painted = totals
     print(f"of {count}, {drawn} read as drawn, {painted} as painted")
     assert drawn > 0.8 * count, "it reads what is drawn"

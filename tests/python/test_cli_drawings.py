@@ -152,11 +152,12 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     (desk / "bar.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{bar}</svg>'
     )
-    passes, err = plan(desk, capsys, drawing="bar.svg")
+    passes, err = plan(desk, capsys, "--wide", "clamp", drawing="bar.svg")
     assert [each["stroke"] for each in passes] == ["bar", "wide"]
     assert "painted at the nearest" in err[0]
-    passes, err = plan(desk, capsys, "--wide", "passes", drawing="bar.svg")
-    assert [each["stroke"] for each in passes] == ["bar", "wide", *(f"wide~{k}" for k in range(2, 6))]
+    for flags in ((), ("--wide", "passes")):
+        passes, err = plan(desk, capsys, *flags, drawing="bar.svg")
+        assert [each["stroke"] for each in passes] == ["bar", "wide", *(f"wide~{k}" for k in range(2, 6))]
     assert "wide: width 12 mm" in refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
 
 

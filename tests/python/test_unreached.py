@@ -53,7 +53,7 @@ def test_blunt_corners_are_not_named(tmp_path):
 
 
 def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path):
-    work = prepared(tmp_path, WIDE)
+    work = prepared(tmp_path, WIDE, wide="clamp")
     assert sum(piece.share for piece in work.unreached) > 0.3
     assert any("no stroke reaches" in notice.sentence for notice in work.notices)
     filled = prepared(tmp_path, WIDE, wide="passes")
@@ -83,7 +83,7 @@ def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_s
 def test_it_is_outlined_in_every_picture(tmp_path):
     import cv2
 
-    work = prepared(tmp_path, WIDE)
+    work = prepared(tmp_path, WIDE, wide="clamp")
     marks = predict(work)
     assert b'class="blank"' in outputs.picture(".svg", work, marks)
     picture = outputs.picture(".png", work, marks)

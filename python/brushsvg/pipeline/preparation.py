@@ -39,7 +39,7 @@ class Options:
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
-    wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
+    wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
 
