@@ -7,6 +7,8 @@ import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from .. import _core, drawing
 from ..brush.library import find_brush
 from ..drawing import layout
@@ -103,7 +105,8 @@ def prepare(
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, misses, moved = better.passes, better.misses, better.moved
     plan = _with_speeds(plan, strokes)
-    notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
+    told = _widths(painted, brush, done.warnings, options.layout.width_mm is None)
+    notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
@@ -176,15 +179,42 @@ def _sorted_out(painted, wanted, step):
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
-def _widths(warnings, may_advise: bool) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored."""
+def _widths(painted, brush, warnings, may_advise: bool) -> list[Notice]:
+    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
+    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them."""
     advice = "--width MM gives all strokes one width" if may_advise else ""
-    return [
+    laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
+    ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
+    measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
+    thin = {stroke.id: stroke for stroke in painted if measured and _thins_out(stroke, brush, *measured)}
+    told = [
         Notice(where, said, code="depth-not-measured", advice=advice)
         if where
         else Notice(where, said, code="widths-ignored")
         for where, said in warnings
+        if where not in thin
     ]
+    ends = [thin[where] for where, _ in warnings if where in thin]
+    if ends:
+        least = min(half for stroke in ends for _, half in stroke.half_width)
+        count = "1 stroke begins or ends" if len(ends) == 1 else f"{len(ends)} strokes begin or end"
+        sentence = (
+            f"{count} at less depth, from {brush.depth_for_half_width(least, ''):.2g} mm on, than the "
+            f"{measured[0]:g} mm from which on brush {brush.name} was measured"
+        )
+        told.append(Notice("", sentence, code="ends-not-measured"))
+    return told
+
+
+def _thins_out(stroke, brush, least_mm: float, greatest_mm: float) -> bool:
+    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide."""
+    half = max(half for _, half in stroke.half_width)
+    if stroke.closed or brush.depth_for_half_width(half, stroke.id) > greatest_mm:
+        return False
+    length_mm = _core.flatten(stroke, 0.1)[-1, 2]
+    end = min(2 * half / max(length_mm, 1e-9), 0.5)
+    inside = np.interp(np.linspace(end, 1 - end, 101), *np.array(stroke.half_width).T)
+    return bool((inside >= brush.half_width(least_mm)).all())
 
 
 def _with_speeds(plan, strokes):
