@@ -220,6 +220,18 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
     assert float(missed[0][1]) < 0.05 < float(missed[1][1])
 
 
+@pytest.mark.parametrize(("d", "is_marked"), [("M20 60C80 75 20 75 80 60", False), ("M30 60H60L40 62", True)])
+def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
+    """0.095 mm in place of 0.05 was red, of a brush whose lag is known to 0.58 mm."""
+    (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
+    assert main(["predict", "d.svg", "x.svg"]) == 0
+    assert "b: tracking error " in capsys.readouterr().err
+    text = (desk / "x.svg").read_text()
+    ((miss, marked),) = re.findall(r'data-stroke="b" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
+    assert float(miss) > 0.05
+    assert bool(marked) == is_marked
+
+
 def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     text = DRAWING.replace('id="b"', 'id="b" stroke-width="30"')
     bad = "".join(f'<path id="c{k}" stroke-width="{20 + k}" d="M30 {70 + k} H90"/>' for k in range(5))

@@ -23,11 +23,13 @@ def marks_svg(
     made: str = "",
     band=None,
     blank=(),
+    seen_mm: float = 0.0,
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
     marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
-    legend; blank: rings of what of shapes stays blank, outlined.
+    legend; blank: rings of what of shapes stays blank, outlined; seen_mm: no stroke is marked for smaller misses,
+    whatever the tolerance.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -40,7 +42,9 @@ def marks_svg(
     for trace, colour, miss in zip(marks.passes, colours, misses, strict=True):
         if trace.outline_mm:
             stroke = _quoted(trace.stroke)
-            lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
+            lines.append(
+                f'<path data-stroke={stroke}{_missed(miss, seen_mm)} fill="{known_colour(colour)}" d="'
+            )
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
     if blank:
@@ -124,10 +128,11 @@ def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _missed(miss) -> str:
+def _missed(miss, seen_mm: float) -> str:
     if miss is None:
         return ""
-    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * (not miss.within_tolerance)
+    is_missed = not miss.within_tolerance and miss.largest_mm > seen_mm
+    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * is_missed
 
 
 def known_colour(colour: str) -> str:
