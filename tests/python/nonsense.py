@@ -256,7 +256,7 @@ ARGUMENTS = {
     "within_reach": [
         lambda: ([each] for each in some_strokes()),
         brushes,
-        ["clamp", "passes", "refuse", "varnish"],
+        ["auto", "clamp", "passes", "refuse", "varnish"],
     ],
     "write_cell": [cells],
     "write_marks": [marks],
