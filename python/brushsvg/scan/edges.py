@@ -20,6 +20,8 @@ FAINTEST = 0.12  # share of the light that paint takes away at least
 CERTAIN = 6.0  # times the paper's noise
 SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by itself
 SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
+MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a shadow or a thing on the page
+MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
 RIM_MM = 2.0  # along the sheet's edges, where the table and shadows show
@@ -170,6 +172,16 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
     home[shares[:, 1:].max(axis=1) == 0] = 0
     second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
     cut = (second > SPLIT * areas) & (second > SPLIT_MM2 * fine**2)
+    for each in np.flatnonzero(kept & cut):
+        large = np.flatnonzero(shares[each, 1:] > np.maximum(0.5 * SPLIT * areas[each], SPLIT_MM2 * fine**2))
+        if len(large) > MOST_JOINED:
+            names = ", ".join(rooms[k].stroke for k in large)
+            raise Error(
+                f"something dark covers the room of {len(large)} strokes in one piece ({names}): a shadow with a hard "
+                "edge, a thing on the page, or paint that was smeared; take it away, and photograph in even light",
+                value=len(large),
+                code="photo-covered",
+            )
     outlines, missing, joined = {}, [], []
     for number, room in enumerate(rooms, 1):
         own = kept & np.where(cut, shares[:, number] > LEAST_MM2 * fine**2, home == number)
@@ -183,6 +195,13 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
             pair = tuple(sorted((room.stroke, rooms[other[0] - 1].stroke)))
             if pair not in joined:
                 joined.append(pair)
+    if len(missing) > MOST_MISSING * len(rooms):
+        raise Error(
+            f"no paint is found of {len(missing)} of the {len(rooms)} strokes, the range is "
+            f"[0, {int(MOST_MISSING * len(rooms))}]: is this chart painted, at its place and the right way round?",
+            value=len(missing),
+            code="mark-missing",
+        )
     return Marks(outlines, missing, joined, paint)
 
 
