@@ -25,6 +25,7 @@ MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but n
 # bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six it leaves 0.10 and
 # moves them by 0.4. Half of it is remarked on.
 MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
+COVERED = 2.0  # times the limit that one marker is off, and the others within: something lies on its edge
 TOO_WHITE = 0.5  # share of the brightest parts that are as white as can be
 # Where no marker is found, edges over more of the picture's longer side are the reason: a module is lost in them
 SMEARED = 1 / 250
@@ -91,7 +92,7 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     for number, rough in found.items():
         corners[number], blur = _exact(light, rough, modules)
         blurs.append(blur)
-    view = _fitted(corners, printed, pixels.shape)
+    view = _without_a_covered_one(_fitted(corners, printed, pixels.shape), corners, printed, pixels.shape)
     blur_mm = float(np.median(blurs)) / view.px_per_mm
     view = replace(view, blur_mm=blur_mm, white=white_share(light))
     _refuse_unmeasurable(view, printed)
@@ -163,8 +164,8 @@ def _refuse_blind(light: np.ndarray, count: int) -> None:
     few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
     if (white := white_share(light)) > TOO_WHITE:
         raise Error(
-            f"{few}, and {100 * white:.0f} % of the brightest parts are as white as can be: the picture is overexposed, "
-            "take it with less light, without glare, or with the exposure turned down",
+            f"{few}, and {100 * white:.0f} % of the brightest parts are as white as can be: the picture is "
+            "overexposed; take it with less light, without glare, or with the exposure turned down",
             value=white,
             code="photo-overexposed",
         )
@@ -292,6 +293,16 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape) -> View:
         seen=ids,
         unsure_mm=unsure,
     )
+
+
+def _without_a_covered_one(view: View, corners: dict, printed: Printed, shape) -> View:
+    """Something that covers the edge of one marker moves its corners; paper that bulges moves all."""
+    number, own = view.worst
+    limit = view.most_residual_mm
+    if view.residual_mm <= limit or own < COVERED * limit or len(corners) <= FEWEST:
+        return view
+    others = _fitted({k: c for k, c in corners.items() if k != number}, printed, shape)
+    return others if others.residual_mm < others.most_residual_mm / COVERED else view
 
 
 def _unsure_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:

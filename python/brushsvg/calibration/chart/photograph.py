@@ -60,7 +60,7 @@ def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: flo
             _refuse_compressed(data)
             view = find_view(pixels, shown)
             _refuse_cropped(pixels, view, rooms)
-            _refuse_unsure(view)
+            _refuse_unsure(view, pixels, corners)
             fine = reads[0].flat.px_per_mm if reads else None
             flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
             reads.append(Read(chart, flat, view, find_marks(flat, rooms, printed, labels)))
@@ -111,15 +111,20 @@ def _refuse_cropped(pixels: np.ndarray, view: View, rooms: list[Room]) -> None:
         )
 
 
-def _refuse_unsure(view: View) -> None:
-    if view.unsure_mm > MOST_UNSURE_MM:
-        raise Error(
-            f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
-            f"open by {view.unsure_mm:.2f} mm, {MOST_UNSURE_MM:g} is the most: photograph the whole page, with nothing "
-            "over its markers",
-            value=view.unsure_mm,
-            code="photo-markers-missing",
-        )
+def _refuse_unsure(view: View, pixels: np.ndarray, corners_mm: dict[int, np.ndarray]) -> None:
+    if view.unsure_mm <= MOST_UNSURE_MM:
+        return
+    unseen = np.vstack([corners for number, corners in corners_mm.items() if number not in view.seen])
+    px = view.to_px(unseen)
+    beyond = bool((px < 0).any() or (px > np.array(pixels.shape[1::-1]) - 1).any())
+    raise Error(
+        f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
+        f"open by {view.unsure_mm:.2f} mm, {MOST_UNSURE_MM:g} is the most, "
+        + ("and others lie beyond the picture" if beyond else "and others are covered")
+        + ": photograph the whole page, with nothing over its markers",
+        value=view.unsure_mm,
+        code="photo-cropped" if beyond else "photo-markers-missing",
+    )
 
 
 def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
