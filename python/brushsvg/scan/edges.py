@@ -22,10 +22,8 @@ SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by 
 SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
 MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a shadow or a thing on the page
 MOST_TOUCHING = 0.25  # share of the strokes: more, and it is not one painting of this chart
-TURNED, IN_ROOM = (
-    0.1,
-    0.7,
-)  # shares of the paint: so much better turned, so much in the room of strokes at least
+TURNED = 0.1  # of the paint: so much more lies in the room of strokes were the page turned
+IN_ROOM = 0.7  # of the paint at least: the rest strays
 MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
