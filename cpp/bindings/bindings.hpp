@@ -21,6 +21,7 @@ void bind_profile(py::module_& m);
 void bind_student_t(py::module_& m);
 void bind_footprint(py::module_& m);
 void bind_brush(py::module_& m);
+void bind_settings(py::module_& m);
 void bind_stroke(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_marks(py::module_& m);

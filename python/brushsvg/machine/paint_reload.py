@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,7 +45,7 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
         every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
         loads = []
         for a_pass in plan.passes:
-            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
+            whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False
             loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
 
@@ -65,7 +64,7 @@ def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
             code="load-too-long",
         )
         for a_pass in loads.loads
-        if (length_mm := painted_mm(a_pass)) > last_mm and _asked(a_pass) is not False
+        if (length_mm := painted_mm(a_pass)) > last_mm and a_pass.settings.reload is not False
     ]
 
 
@@ -104,7 +103,7 @@ def painted_mm(a_pass) -> float:
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
     if is_later_part(a_pass):
         return True
-    asked = _asked(a_pass)
+    asked = a_pass.settings.reload
     if asked is not None:
         return asked
     if cell.reload.when == "stroke":
@@ -117,10 +116,6 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
 def is_later_part(a_pass) -> bool:
     """Whether a load goes on with the stroke that the load before it paints."""
     return a_pass.origin.load > 1
-
-
-def _asked(a_pass) -> bool | None:
-    return json.loads(a_pass.settings).get("reload")
 
 
 def _station_for(a_pass, cell: Cell) -> Station:
