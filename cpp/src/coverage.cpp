@@ -13,6 +13,8 @@
 namespace brushsvg {
 namespace {
 
+constexpr double kLeastArea = 1e-6;  // mm^2: what rounding leaves of a piece may turn over
+
 void require_finite(const Rings& rings) {
     for (const Ring& ring : rings)
         if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm))
@@ -94,6 +96,8 @@ Coverage coverage_of_pieces(const Rings& convex, const Window& window, double px
     Rasterizer raster(window, px_per_mm);
     for (const Ring& piece : convex) {
         if (piece.rows() == 0) continue;
+        if (const double mm2 = signed_area(piece); mm2 < -kLeastArea)
+            throw Error("outline-clockwise", "a piece runs clockwise: convex pieces go counter-clockwise", "", mm2);
         raster.convex_pair(piece, piece);
     }
     return raster.coverage();
