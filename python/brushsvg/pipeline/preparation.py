@@ -51,14 +51,14 @@ class Options:
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
-    misses: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
+    tracking_errors: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
     """
 
     title: str
     brush: object
     plan: object
     strokes: list | None
-    misses: tuple
+    tracking_errors: tuple
     options: Options
     notices: tuple[Notice, ...]
     refused: tuple[Notice, ...] = ()
@@ -96,10 +96,10 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
-    plan, misses, moved = done.plan, done.misses, [False] * len(painted)
+    plan, tracking_errors, moved = done.plan, done.misses, [False] * len(painted)
     if options.compensation == "refined":
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
-        plan.passes, misses, moved = better.passes, better.misses, better.moved
+        plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _with_speeds(plan, strokes)
     notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
     notices += _other_brushes(strokes, brush)
@@ -107,13 +107,13 @@ def prepare(
     bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
     notices += unreached_notices(bare)
     if options.compensation in ("closed", "refined"):
-        notices += _misses(painted, misses, moved, brush, options.tolerance_mm)
+        notices += _tracking_notices(painted, tracking_errors, moved, brush, options.tolerance_mm)
     return Work(
         design.title,
         brush,
         plan,
         strokes,
-        tuple(misses),
+        tuple(tracking_errors),
         options,
         tuple(notices),
         tuple(refused),
@@ -198,10 +198,10 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
+def _tracking_notices(painted, tracking_errors, moved, brush, tolerance_mm: float) -> list[Notice]:
     """Tracking errors above their bound: moved, as refinement does on purpose, where it is beside the stroke."""
     found = []
-    for stroke, miss, is_moved in zip(painted, misses, moved, strict=True):
+    for stroke, miss, is_moved in zip(painted, tracking_errors, moved, strict=True):
         half_mm = brush.half_width(brush.paint_depth_mm)
         if brush.width_follows_depth():
             half_mm = max(half for _, half in stroke.half_width)
@@ -259,5 +259,5 @@ def nearest_first(work: Work) -> Work:
     was = work.plan
     plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
     strokes = None if work.strokes is None else [work.strokes[k] for k in order]
-    misses = tuple(work.misses[k] for k in order) if work.misses else ()
-    return replace(work, plan=plan, strokes=strokes, misses=misses)
+    tracking_errors = tuple(work.tracking_errors[k] for k in order) if work.tracking_errors else ()
+    return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)
