@@ -14,7 +14,7 @@ using Way = std::function<brushsvg::CompensatedPass(const brushsvg::Stroke&)>;
 
 /// One stroke's way to its plan.
 Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::CompensateOptions options,
-           const std::array<double, 2>& sheet_mm) {
+           [[maybe_unused]] const std::array<double, 2>& sheet_mm) {
     using brushsvg::Compensation;
     const auto closed_form = [&brush](const brushsvg::CompensateOptions& o) -> Way {
         return [&brush, o](const brushsvg::Stroke& stroke) { return compensate(stroke, brush, o); };

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, m) {
     bind_student_t(m);
     bind_footprint(m);
     bind_brush(m);
+    bind_settings(m);
     bind_stroke(m);
     bind_plan(m);
     bind_marks(m);

@@ -51,6 +51,14 @@ inline double number(const Field& field) {
     return field.value.get<double>();
 }
 
+inline int whole(const Field& field) {
+    const double value = number(field);
+    if (value != std::floor(value) || std::abs(value) > 1e9)
+        throw Error("wrong-type", field.name() + " must be a whole number, not " + in_words(field.value), field.path,
+                    value);
+    return static_cast<int>(value);
+}
+
 inline double positive(const Field& field) {
     const double value = number(field);
     if (!(value > 0.0)) {

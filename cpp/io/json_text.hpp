@@ -55,12 +55,16 @@ inline void append_rounded(std::string& out, double value, const char* what) {
     out.append(digits.data() + (is_minus_zero ? 1 : 0), end);
 }
 
-inline void append_string(std::string& out, const std::string& text, const std::string& path) {
+inline void append_json(std::string& out, const Json& value, const std::string& path) {
     try {
-        out += Json(text).dump();
+        out += value.dump();
     } catch (const Json::exception&) {
         throw Error("not-text", "the text is not valid UTF-8", path);
     }
+}
+
+inline void append_string(std::string& out, const std::string& text, const std::string& path) {
+    append_json(out, Json(text), path);
 }
 
 /// "[item, item,\n      item]": as many to a line as fit into 110 columns.

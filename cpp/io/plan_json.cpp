@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -78,6 +79,35 @@ Arc read_arc(const Field& field) {
             static_cast<int>(row[4])};
 }
 
+void read_into(std::optional<std::string>& value, const Field& field) { value = text(field); }
+void read_into(std::optional<int>& value, const Field& field) { value = whole(field); }
+void read_into(std::optional<bool>& value, const Field& field) { value = truth(field); }
+void read_into(std::optional<double>& value, const Field& field) { value = number(field); }
+
+Settings read_settings(Field field) {
+    Fields fields(std::move(field));
+    Settings settings;
+    each_setting(settings, [&](const char* key, auto& value) {
+        if (const auto found = fields.find(key)) read_into(value, *found);
+    });
+    settings.extra = fields.extra();
+    return settings;
+}
+
+/// Unknown keys follow the known ones.
+void append_settings(std::string& out, const Settings& settings, const std::string& path) {
+    Json said = Json::object();
+    std::set<std::string> own_keys;
+    each_setting(settings, [&](const char* key, const auto& value) {
+        own_keys.insert(key);
+        if (value) said[key] = *value;
+    });
+    for (const auto& [key, value] : said.items())
+        if (value.is_number()) refuse_not_finite(value.get<double>(), path + "." + key);
+    said.update(parse_object(settings.extra, path + ".extra", own_keys));
+    append_json(out, said, path);
+}
+
 Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
     const std::string path = field.path;
     Fields fields(std::move(field));
@@ -89,7 +119,7 @@ Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
     if (const auto speed = fields.find("speed_mm_s")) pass.speed_mm_s = number(*speed);
     if (const auto layer = fields.find("layer")) pass.layer = text(*layer);
     if (const auto colour = fields.find("colour")) pass.colour = text(*colour);
-    if (auto settings = fields.find("settings")) pass.settings = Fields(std::move(*settings)).extra();
+    if (auto settings = fields.find("settings")) pass.settings = read_settings(std::move(*settings));
     pass.extra = fields.extra();
     require_sound(pass, path, 0.0);
     return pass;
@@ -105,7 +135,8 @@ void append_pass(std::string& out, const Pass& pass, const std::string& path) {
     append_string(out, pass.layer, path + ".layer");
     out += ", \"colour\": ";
     append_string(out, pass.colour, path + ".colour");
-    out += ", \"settings\": " + parse_object(pass.settings, path + ".settings").dump();
+    out += ", \"settings\": ";
+    append_settings(out, pass.settings, path + ".settings");
     if (!pass.arcs.empty()) {
         out += ",\n     \"arcs\": ";
         append_array(out, pass.arcs.size(), 7, [&](std::size_t k) {

@@ -81,8 +81,17 @@ Rings to_rings(const Set& set) {
     return rings;
 }
 
+/// Clockwise rings alone are holes in nothing: a shape read with y down, say, would vanish without a word.
+void require_outer_rings(const Rings& rings) {
+    const double sum = area(rings);
+    if (sum < -kLeastArea)
+        throw Error("outline-clockwise", "the rings run clockwise: outer ones go counter-clockwise, holes clockwise",
+                    "", sum);
+}
+
 /// Rings that are already disjoint, holes included.
 Set to_set(const Rings& rings) {
+    require_outer_rings(rings);
     Set set;
     for (const Ring& ring : rings) {
         if (ring.rows() < 3) continue;
@@ -156,6 +165,7 @@ auto heard(const Work& work, const Shapes&... shapes) {
 }
 
 Rings united(const Rings& rings) {
+    require_outer_rings(rings);
     // a tree of small unions: neighbours overlap most, and a sweep over all of them at once meets every crossing twice
     std::vector<Set> level;
     level.reserve(rings.size());

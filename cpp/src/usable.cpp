@@ -11,9 +11,7 @@ namespace brushsvg {
 namespace {
 
 constexpr double kDeepestMm = 1000.0, kLargestLawMm = 1000.0;  // as check(brush) has it
-/// Marks reach beyond what was drawn by a brush's lag, no more.
-constexpr double kFarthestMm = 1e7;
-constexpr int kLooks = 16;  // at a law over the depth range
+constexpr int kLooks = 16;                                     // at a law over the depth range
 
 template <class... Numbers>
 std::string format(const char* pattern, Numbers... numbers) {
@@ -94,8 +92,8 @@ void require_usable(const PassMarks& marks) {
         !parallel(marks.taut.size()) || !parallel(marks.pull.size()))
         throw Error("sizes-differ", "the rows of the marks are not parallel: some columns are shorter than others",
                     marks.stroke);
-    const auto sound = [](double x) { return std::abs(x) <= kFarthestMm; };
-    if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestMm)) ||
+    const auto sound = [](double x) { return std::abs(x) <= kFarthestPaintedMm; };
+    if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm)) ||
         !std::all_of(marks.heading_rad.begin(), marks.heading_rad.end(), sound) ||
         !std::all_of(marks.depth_mm.begin(), marks.depth_mm.end(), sound) ||
         !std::all_of(marks.pull.begin(), marks.pull.end(), sound))

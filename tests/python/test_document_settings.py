@@ -4,7 +4,7 @@ import gzip
 
 import pytest
 
-from brushsvg import read_plan
+from brushsvg import Settings, read_plan
 from brushsvg.cli import commands, main
 from brushsvg.cli.arguments import parse
 from brushsvg.machine.cell_file import cell_names
@@ -162,4 +162,4 @@ def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
     assert main(["convert", "d.svg", "x.json"]) == 0
-    assert [each.settings for each in read_plan(desk / "x.json").passes] == ["{}", "{}"]
+    assert [each.settings for each in read_plan(desk / "x.json").passes] == [Settings(), Settings()]

@@ -27,12 +27,15 @@ WATER = Station("water", (-20.0, 70.0), depth_mm=12.0)
 BRUSH = SimpleNamespace(name="b", max_speed_mm_s=25.0)
 
 
+ASKED, REFUSED = (_core.Settings(reload=asked) for asked in (True, False))
+
+
 def cell_with(reload, *stations):
     return replace(find_cell(), reload=reload, stations=stations or (BLACK, ANY, WATER))
 
 
 def plan_of(*strokes):
-    """Strokes as (length in mm, colour, layer, and perhaps settings as JSON)."""
+    """Strokes as (length in mm, colour, layer, and perhaps settings)."""
     passes = [
         _core.Pass(f"s{k}", np.array([(0, 0, 0), (length, 0, -1.0)]), 20.0, layer, colour, *settings)
         for k, (length, colour, layer, *settings) in enumerate(strokes, 1)
@@ -140,9 +143,7 @@ def test_a_station_out_of_the_box_is_refused():
 
 
 def test_a_stroke_may_ask_for_paint_or_go_without():
-    plan = plan_of(
-        (9, "#000000", ""), (9, "#000000", "", '{"reload": true}'), (999, "#000000", "", '{"reload": false}')
-    )
+    plan = plan_of((9, "#000000", ""), (9, "#000000", "", ASKED), (999, "#000000", "", REFUSED))
     assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
     assert in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))) == whole(plan)
 
@@ -185,7 +186,7 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
         assert where == "rub" and sentence.startswith(
             f"{painted_mm(passes[0]):.0f} mm are painted without a place"
         )
-        passes[0].settings = '{"reload": false}'
+        passes[0].settings = REFUSED
         assert too_long(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
     for every in (40.0, 90.0):  # a line is cut between its two poses
         long = [
@@ -226,7 +227,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     ]
     names_of_loads = [("short", 1), ("long", 1), ("long", 2), ("long", 3), ("last", 1)]
     assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in loads.loads] == names_of_loads
-    assert {a_pass.settings for a_pass in loads.loads} == {"{}"}
+    assert {a_pass.settings for a_pass in loads.loads} == {_core.Settings()}
     assert names(visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
     assert max(map(painted_mm, loads.loads)) < 120 + 8
     rings = []

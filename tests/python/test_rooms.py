@@ -24,6 +24,7 @@ UNTESTED = {
     "error": "two value types; what is said with them is tested where it is said",
     "lag_impl": "the bodies of lag.hpp, tested with it",
     "marks": "value types; simulate, coverage and io fill and carry them",
+    "settings": "a value type; io reads and writes it",
     **dict.fromkeys(("interrupt", "wanted", "miss", "verdict", "overlay"), "a name until 0.2"),
 }
 

@@ -42,7 +42,7 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
             arcs=ARCS.get(name, ()),
             colour=colour,
             layer="",
-            settings="{}",
+            settings=_core.Settings(),
             origin=SimpleNamespace(load=1),
         )
         for (name, poses), colour in zip_longest(strokes.items(), colours, fillvalue="")

@@ -58,7 +58,7 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
         every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
         loads = []
         for a_pass in plan.passes:
-            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False or _load(a_pass)
+            whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or _load(a_pass)
             parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
             for number, part in enumerate(parts, 1) if len(parts) > 1 else ():
                 part.extra = json.dumps({**json.loads(part.extra), "load": number})
@@ -80,7 +80,7 @@ def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
             code="load-too-long",
         )
         for a_pass in loads.loads
-        if (length_mm := painted_mm(a_pass)) > last_mm and _asked(a_pass) is not False
+        if (length_mm := painted_mm(a_pass)) > last_mm and a_pass.settings.reload is not False
     ]
 
 
@@ -122,7 +122,7 @@ def painted_mm(a_pass) -> float:
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
     if is_later_part(a_pass):
         return True
-    asked = _asked(a_pass)
+    asked = a_pass.settings.reload
     if asked is not None:
         return asked
     if cell.reload.when == "stroke":
@@ -143,10 +143,6 @@ def _load(a_pass) -> int:
     if type(load) is not int:
         raise Error(f"load must be a whole number, not {load!r:.40}", a_pass.stroke, code="wrong-type")
     return load
-
-
-def _asked(a_pass) -> bool | None:
-    return json.loads(a_pass.settings).get("reload")
 
 
 def _station_for(a_pass, cell: Cell) -> Station:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -218,7 +217,7 @@ def _thins_out(stroke, brush, least_mm: float, greatest_mm: float) -> bool:
 
 def _with_speeds(plan, strokes):
     """The plan with the speeds that the drawing's settings ask for."""
-    speeds = [json.loads(stroke.settings).get("speed_mm_s") for stroke in strokes]
+    speeds = [stroke.settings.speed_mm_s for stroke in strokes]
     if any(speeds):
         for a_pass, speed in zip(plan.passes, speeds, strict=True):
             a_pass.speed_mm_s = speed or a_pass.speed_mm_s
@@ -226,7 +225,7 @@ def _with_speeds(plan, strokes):
 
 
 def _other_brushes(strokes, brush) -> list[Notice]:
-    asked = ((stroke.id, json.loads(stroke.settings).get("brush", brush.name)) for stroke in strokes)
+    asked = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
     return [
         Notice(
             name,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -126,9 +125,9 @@ def _drawn(element: Element, subpath: SubPath) -> _Line:
 
 
 def _of_element(element: Element, name: str, lines: list[_Line]):
-    from .._core import Stroke, StrokeId
+    from .._core import Settings, Stroke, StrokeId
 
-    settings = json.dumps(element.settings, sort_keys=True)
+    settings = Settings(**element.settings)
     for part, line in zip(_parts(len(lines)), lines, strict=True):
         for repeat in range(1, element.settings.get("passes", 1) + 1):
             stroke = Stroke(

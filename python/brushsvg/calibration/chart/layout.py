@@ -9,7 +9,6 @@ the same way, the other apart. The TCP's path is known and not compensated.
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -469,7 +468,7 @@ def _plan(brush, sheet_mm, named):
         ]
         poses = stroke.poses_mm + np.array([dx, dy, 0.0])
         speed = min(PAINT_MM_S, brush.max_speed_mm_s)
-        settings = json.dumps({"kind": stroke.kind})
+        settings = _core.Settings(kind=stroke.kind)
         passes.append(_core.Pass(name, poses, speed, settings=settings, arcs=arcs))
     plan.passes = passes
     return plan
