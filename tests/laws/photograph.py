@@ -35,6 +35,10 @@ class Camera:
     shadow: float = 0.0  # depth of a soft shadow over a corner
     quality: int = 92
     sag_mm: float = 0.0  # the paper bulges so high in the middle
+    exposure: float = 1.0  # 2: what throws back half of the light is white already
+    motion_px: tuple[float, float] = (0.0, 0.0)  # the camera moves so far right and down
+    glare: tuple[float, float, float] = (0.0, 0.0, 0.0)  # x, y and radius in mm of a lamp's mirror image
+    edge: float = 0.0  # depth of a shadow with a hard edge across the sheet
 
 
 class Sheet:
@@ -186,10 +190,16 @@ def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
             at = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
             height = _height(camera, sheet.size_mm, at)
         out[top : top + len(v)] = _looked_up(sheet, at) * _lit(camera, sheet.size_mm, at)[..., None]
+        if camera.glare[2]:
+            away = np.hypot(at[..., 0] - camera.glare[0], at[..., 1] - camera.glare[1]) / camera.glare[2]
+            out[top : top + len(v)] += np.float32(1.5 * np.exp(-((np.minimum(away, 5.0)) ** 4)))[..., None]
         corner = 0.5 * np.hypot(columns, rows) / focal_px
         out[top : top + len(v)] *= (1 - camera.vignette * (distance / corner) ** 2)[..., None]
+    out *= camera.exposure
     if camera.blur_px:
         out = _blurred(out, camera.blur_px)
+    if any(camera.motion_px):
+        out = _moved(out, camera.motion_px)
     out += rng.normal(size=out.shape).astype(np.float32) * (camera.noise * np.sqrt(np.maximum(out, 0.02)))
     out = np.clip(out, 0, 1)
     coded = np.where(out <= 0.0031308, 12.92 * out, 1.055 * np.maximum(out, 1e-9) ** (1 / 2.4) - 0.055)
@@ -202,6 +212,8 @@ def _lit(camera, size_mm, at):
     light = 0.85 * (1 + camera.light[0] * x + camera.light[1] * y - 0.1 * (x * x + y * y))
     if camera.shadow:
         light = light * (1 - camera.shadow / (1 + np.exp(-(x + y - 0.2) * 25)))
+    if camera.edge:
+        light = np.where(x + 0.6 * y > 0.05, light * (1 - camera.edge), light)
     return light
 
 
@@ -234,6 +246,24 @@ def _blurred(picture, sigma):
             total += np.float32(weight) * padded.take(range(k, k + length), axis=axis)
         picture = total
     return picture
+
+
+def _moved(picture, way_px):
+    """The mean of what is seen along a straight way, in steps of half a pixel."""
+    steps = max(2, round(2 * np.hypot(*way_px)))
+    total = np.zeros_like(picture)
+    rows, columns = picture.shape[:2]
+    for share in np.linspace(-0.5, 0.5, steps):
+        right, down = share * np.array(way_px)
+        (r, fr), (c, fc) = ((int(np.floor(v)), v - np.floor(v)) for v in (down, right))
+        for dr, wr in ((r, 1 - fr), (r + 1, fr)):
+            for dc, wc in ((c, 1 - fc), (c + 1, fc)):
+                at = (
+                    np.clip(np.arange(rows) - dr, 0, rows - 1),
+                    np.clip(np.arange(columns) - dc, 0, columns - 1),
+                )
+                total += np.float32(wr * wc) * picture[at[0]][:, at[1]]
+    return total / np.float32(steps)
 
 
 def with_turn(jpeg, orientation):

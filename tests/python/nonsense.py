@@ -258,7 +258,7 @@ ARGUMENTS = {
     "within_reach": [
         lambda: ([each] for each in some_strokes()),
         brushes,
-        ["clamp", "passes", "refuse", "varnish"],
+        ["auto", "clamp", "passes", "refuse", "varnish"],
     ],
     "write_cell": [cells],
     "write_marks": [marks],
@@ -298,13 +298,7 @@ def painted_marks():
     yield [_core.PaintedMark("a", poses[:0], [square])]
     for rings in ([], [square[:2]], [square[::-1]], [square * 0]):
         yield [_core.PaintedMark("a", poses, rings)]
-    for value in (
-        1e300,
-        5.5e9,
-        NAN,
-        INF,
-        -INF,
-    ):  # small ones make marks that no brush paints, tried for minutes
+    for value in NUMBERS[:8]:  # small ones make marks that no brush paints
         yield [_core.PaintedMark("a", np.where(poses == 30, value, poses), [square])]
         yield [_core.PaintedMark("a", poses, [np.where(square == 33, value, square)])]
 

@@ -3,6 +3,7 @@
 import ast
 import re
 from fnmatch import fnmatch
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,7 @@ def codes_in(node: ast.AST):
             yield from codes_in(child)
 
 
+@cache
 def in_sources() -> tuple[set[str], list[str]]:
     """The codes, and the places of notices and refusals that have none."""
     found, without = set(), []

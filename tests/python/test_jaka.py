@@ -141,6 +141,8 @@ def test_what_is_written_is_read(cell):
     ends = np.array([poses[-1, :3] for _, poses, *_ in moves(run(text))])
     assert np.array([step[2:5] for step in steps]) == pytest.approx(ends)
     assert read.joint_mm == cell.blending.tolerance_mm
+    blanks = read_program(text.replace("\n", "  \n"), ".jks", cell)
+    assert blanks.acts == read.acts and blanks.sections == read.sections
 
 
 @pytest.mark.parametrize(

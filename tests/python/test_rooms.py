@@ -105,6 +105,7 @@ def python_target(parts: list[str], folder: str = "") -> str | None:
     return inside if inside == "_core" or home.with_suffix(".py").is_file() else "__init__"
 
 
+@cache
 def imported(path: Path, text: str) -> list[list[str]]:
     """Every import anywhere in the file, those inside functions and for type checkers too, by its full name."""
     folder = ["brushsvg", *path.relative_to(PACKAGE).parts[:-1]]

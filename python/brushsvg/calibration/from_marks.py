@@ -134,7 +134,10 @@ def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float
     """By how much all that is fitted changes where every edge lies edge_mm farther out, in the covariance's order."""
     wider = [
         _core.PaintedMark(
-            mark.stroke, np.array(mark.poses_mm), [_farther_out(ring, edge_mm) for ring in mark.outline_mm]
+            mark.stroke,
+            np.array(mark.poses_mm),
+            [_farther_out(ring, edge_mm) for ring in mark.outline_mm],
+            mark.arcs,
         )
         for mark in marks
     ]
@@ -214,7 +217,7 @@ def expected_brush(
     marks = _core.simulate(plan, seen)
     _core.trace_outlines(marks, seen)
     painted = [
-        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm)
+        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm, one.arcs)
         for one, mark in zip(plan.passes, marks.passes, strict=True)
         if mark.outline_mm
     ]

@@ -126,7 +126,9 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
             piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
             for piece in unreached
         )
-        why = cause(stroke, line, brush, place, size_mm, is_bare, miss, tolerance_mm, compensation)
+        is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
+        where = "bare" if is_bare else "corner" if is_corner else ""
+        why = cause(stroke, line, brush, place, size_mm, where, miss, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
@@ -142,10 +144,23 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
 
 def _lies_in(place_mm, rings, reach_mm: float) -> bool:
     """Whether a square about a place meets what rings enclose."""
+    return _core.area(_core.intersect([_square(place_mm, reach_mm)], rings)) > _BARE * (2 * reach_mm) ** 2
+
+
+def _beside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
+    """What discs of its widths leave of a stroke's shape in a square about a place: there no round brush paints."""
+    if not stroke.wanted_mm:
+        return 0.0
+    within = _core.intersect([_square(place_mm, size_mm / 2)], stroke.wanted_mm)
+    bare = _core.Stroke(middle_mm=stroke.middle_mm, half_width=stroke.half_width, closed=stroke.closed)
+    discs = _core.wanted_outline(bare, RING_TOLERANCE_MM)
+    return _core.area(within) - _core.area(_core.intersect(within, discs))
+
+
+def _square(place_mm, reach_mm: float) -> np.ndarray:
     x, y = place_mm
-    corners = [(x - reach_mm, y - reach_mm), (x + reach_mm, y - reach_mm)]
-    corners += [(x + reach_mm, y + reach_mm), (x - reach_mm, y + reach_mm)]
-    return _core.area(_core.intersect([np.array(corners)], rings)) > _BARE * (2 * reach_mm) ** 2
+    sides = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
 
 
 def groups(marks, brush, strokes) -> tuple[Group, ...]:

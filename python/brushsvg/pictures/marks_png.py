@@ -25,11 +25,9 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_png(
-    marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None, unreached=()
-) -> bytes:
+def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None, blank=()) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
-    with a legend; unreached: rings of what no stroke reaches, outlined."""
+    with a legend; blank: rings of what of shapes stays blank, outlined."""
     check_picture(marks, sheet_mm, colours)
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
@@ -46,7 +44,7 @@ def marks_png(
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
-    for ring in unreached:
+    for ring in blank:
         at = (np.asarray(ring) * (1, -1) + (0, sheet_mm[1])) * px_per_mm - 0.5
         fixed = np.round(at * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
         thick = max(round(EDGE * max(image.shape[:2])), 1)

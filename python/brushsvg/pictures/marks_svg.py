@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, need
 
 BAND = "#e0862b"  # where an edge lies with 95 %
-EDGE = 0.002  # of the sheet, how wide the line round what no stroke reaches is
+EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
 
 
 def marks_svg(
@@ -22,12 +22,14 @@ def marks_svg(
     tracking_errors=(),
     made: str = "",
     band=None,
-    unreached=(),
+    blank=(),
+    seen_mm: float = 0.0,
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
     marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: where their edges lie,
-    with a legend; unreached: rings of what no stroke reaches, outlined.
+    with a legend; blank: rings of what of shapes stays blank, outlined; seen_mm: no stroke is marked for a smaller
+    tracking error, whatever the tolerance.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -40,14 +42,16 @@ def marks_svg(
     for trace, colour, miss in zip(marks.passes, colours, tracking_errors, strict=True):
         if trace.outline_mm:
             stroke = _quoted(trace.stroke)
-            lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
+            lines.append(
+                f'<path data-stroke={stroke}{_missed(miss, seen_mm)} fill="{known_colour(colour)}" d="'
+            )
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
-    if unreached:
-        data = "".join(_path_data(ring, height) for ring in unreached)
+    if blank:
+        data = "".join(_path_data(ring, height) for ring in blank)
         wide = round(EDGE * max(width, height), 3)
         lines.append(
-            f'<path class="unreached" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
+            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
         )
     if band is not None:
         lines += _band(band, width, height)
@@ -128,10 +132,11 @@ def overlap_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], titl
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _missed(miss) -> str:
+def _missed(miss, seen_mm: float) -> str:
     if miss is None:
         return ""
-    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * (not miss.within_tolerance)
+    is_missed = not miss.within_tolerance and miss.largest_mm > seen_mm
+    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * is_missed
 
 
 def known_colour(colour: str) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .. import _core
+from ..brush.confidence import law_band
 from ..errors import Error
 from ..evaluation import report
 from ..evaluation.uncertainty import uncertainty
@@ -33,17 +36,31 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
-    bare = [ring for piece in work.unreached for ring in piece.rings]
+    bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"
         text = marks_svg(
-            marks, work.plan.sheet_mm, colours, work.title, work.tracking_errors, made, band, bare
+            marks,
+            work.plan.sheet_mm,
+            colours,
+            work.title,
+            work.tracking_errors,
+            made,
+            band,
+            bare,
+            _seen_mm(work.brush),
         )
         return text.encode()
     from ..pictures import marks_png  # brings OpenCV, which the others do not need
 
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
+
+
+def _seen_mm(brush) -> float:
+    """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares."""
+    known = law_band(brush, "lag", np.array([brush.paint_depth_mm]))
+    return 0.0 if known is None else 0.25 * float(known[0][0])
 
 
 def overlap_picture(suffix: str, work: Work, marks) -> bytes:

@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from .. import _core, drawing
 from ..brush.library import find_brush
 from ..drawing import layout
@@ -18,8 +20,8 @@ from ..machine.program import Job
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.extraction import strokes as strokes_of
-from ..strokes.unreached import notices as unreached_notices
-from ..strokes.unreached import unreached
+from ..strokes.unreached import missed, unreached
+from ..strokes.unreached import notices as blank_notices
 from ..strokes.width_limits import within_reach
 from .json_files import read_plan
 
@@ -38,7 +40,7 @@ class Options:
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
-    wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
+    wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
 
@@ -65,6 +67,7 @@ class Work:
     left_out: tuple = ()  # the strokes that were refused, as they were wanted
     drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
+    missed: tuple = ()  # pieces that strokes reach and the mark does not
 
 
 def prepare(
@@ -101,12 +104,16 @@ def prepare(
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _with_speeds(plan, strokes)
-    notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
+    told = _widths(painted, brush, done.warnings, options.layout.width_mm is None)
+    notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
-    notices += unreached_notices(bare)
+    notices += blank_notices(bare)
+    blank = []
     if options.compensation in ("closed", "refined"):
+        blank = missed(drawn, painted, _core.simulate(plan, brush).passes, bare, brush)
+        notices += blank_notices(blank, is_reached=True)
         notices += _tracking_notices(painted, tracking_errors, moved, brush, options.tolerance_mm)
     return Work(
         design.title,
@@ -120,6 +127,7 @@ def prepare(
         tuple(left_out),
         drawn,
         tuple(bare),
+        tuple(blank),
     )
 
 
@@ -170,10 +178,41 @@ def _sorted_out(painted, wanted, step):
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
-def _widths(warnings, may_advise: bool) -> list[Notice]:
-    """What compensation warns of, with what helps against depths that were not measured."""
+def _widths(painted, brush, warnings, may_advise: bool) -> list[Notice]:
+    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
+    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them."""
     advice = "--width MM gives all strokes one width" if may_advise else ""
-    return [replace(each, advice=advice) if each.code == "depth-not-measured" else each for each in warnings]
+    laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
+    ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
+    measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
+    thin = {stroke.id: stroke for stroke in painted if measured and _thins_out(stroke, brush, *measured)}
+    is_end = [each.code == "depth-not-measured" and each.where in thin for each in warnings]
+    told = [
+        replace(each, advice=advice) if each.code == "depth-not-measured" else each
+        for each, end in zip(warnings, is_end, strict=True)
+        if not end
+    ]
+    ends = [thin[each.where] for each, end in zip(warnings, is_end, strict=True) if end]
+    if ends:
+        least = min(half for stroke in ends for _, half in stroke.half_width)
+        count = "1 stroke begins or ends" if len(ends) == 1 else f"{len(ends)} strokes begin or end"
+        sentence = (
+            f"{count} at less depth, from {brush.depth_for_half_width(least, ''):.2g} mm on, than the "
+            f"{measured[0]:g} mm from which on brush {brush.name} was measured"
+        )
+        told.append(Notice("", sentence, code="ends-not-measured"))
+    return told
+
+
+def _thins_out(stroke, brush, least_mm: float, greatest_mm: float) -> bool:
+    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide."""
+    half = max(half for _, half in stroke.half_width)
+    if stroke.closed or brush.depth_for_half_width(half, stroke.id) > greatest_mm:
+        return False
+    length_mm = _core.flatten(stroke, 0.1)[-1, 2]
+    end = min(2 * half / max(length_mm, 1e-9), 0.5)
+    inside = np.interp(np.linspace(end, 1 - end, 101), *np.array(stroke.half_width).T)
+    return bool((inside >= brush.half_width(least_mm)).all())
 
 
 def _with_speeds(plan, strokes):

@@ -20,6 +20,11 @@ FAINTEST = 0.12  # share of the light that paint takes away at least
 CERTAIN = 6.0  # times the paper's noise
 SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by itself
 SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
+MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a shadow or a thing on the page
+MOST_TOUCHING = 0.25  # share of the strokes: more, and it is not one painting of this chart
+TURNED = 0.1  # of the paint: so much more lies in the room of strokes were the page turned
+IN_ROOM = 0.7  # of the paint at least: the rest strays
+MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
 RIM_MM = 2.0  # along the sheet's edges, where the table and shadows show
@@ -170,6 +175,8 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
     home[shares[:, 1:].max(axis=1) == 0] = 0
     second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
     cut = (second > SPLIT * areas) & (second > SPLIT_MM2 * fine**2)
+    _refuse_covered(shares, areas, kept & cut, rooms, fine)
+    _refuse_elsewhere(kept[part], flat, rooms)
     outlines, missing, joined = {}, [], []
     for number, room in enumerate(rooms, 1):
         own = kept & np.where(cut, shares[:, number] > LEAST_MM2 * fine**2, home == number)
@@ -183,7 +190,63 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
             pair = tuple(sorted((room.stroke, rooms[other[0] - 1].stroke)))
             if pair not in joined:
                 joined.append(pair)
+    touching = sorted({stroke for pair in joined for stroke in pair})
+    if len(touching) > MOST_TOUCHING * len(rooms):
+        raise Error(
+            f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, the range is "
+            f"[0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, once, and did the page lie "
+            "at its stop? Or the brush is wider than the chart has room for",
+            value=len(touching),
+            code="photo-paint-elsewhere",
+        )
+    if len(missing) > MOST_MISSING * len(rooms):
+        raise Error(
+            f"no paint is found of {len(missing)} of the {len(rooms)} strokes, the range is "
+            f"[0, {int(MOST_MISSING * len(rooms))}]: is this chart painted, at its place and the right way round?",
+            value=len(missing),
+            code="mark-missing",
+        )
     return Marks(outlines, missing, joined, paint)
+
+
+def _refuse_covered(shares, areas, several, rooms: list[Room], fine: float) -> None:
+    """several: which parts lie in the room of more strokes than one."""
+    widest = max((room.box_mm[2] - room.box_mm[0]) * (room.box_mm[3] - room.box_mm[1]) for room in rooms)
+    for each in np.flatnonzero(several):
+        large = np.flatnonzero(shares[each, 1:] > np.maximum(0.5 * SPLIT * areas[each], SPLIT_MM2 * fine**2))
+        if len(large) > MOST_JOINED and areas[each] > widest * fine**2:
+            names = ", ".join(rooms[k].stroke for k in large)
+            raise Error(
+                f"something dark of {areas[each] / fine**2 / 100:.0f} cm^2 covers the room of {len(large)} strokes "
+                f"({names}): a shadow with a hard edge, a thing on the page, or paint that was smeared; take it away, "
+                "and photograph in even light",
+                value=len(large),
+                code="photo-covered",
+            )
+
+
+def _refuse_elsewhere(painted: np.ndarray, flat: Flat, rooms: list[Room]) -> None:
+    """painted (rows, columns): what counts as paint. Where it lies beside the strokes' room."""
+    room = np.zeros(painted.shape, bool)
+    for each in rooms:
+        c0, r0, c1, r1 = _window(flat, each.box_mm, 0.5)
+        room[r0:r1, c0:c1] = True
+    total = max(int(painted.sum()), 1)
+    here, turned = ((painted & there).sum() / total for there in (room, room[::-1, ::-1]))
+    if turned > here + TURNED:
+        raise Error(
+            f"{100 * turned:.0f} % of the paint lies where the strokes would be were the page turned by 180 degrees, "
+            f"{100 * here:.0f} % where they should be: lay the page the other way round for the machine",
+            value=turned,
+            code="photo-paint-elsewhere",
+        )
+    if here < IN_ROOM:
+        raise Error(
+            f"only {100 * here:.0f} % of the paint lies where strokes of this chart should be, it takes "
+            f"{100 * IN_ROOM:.0f} %: was this chart painted on this page, once, and did the page lie at its stop?",
+            value=here,
+            code="photo-paint-elsewhere",
+        )
 
 
 def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, height_mm: float) -> list:

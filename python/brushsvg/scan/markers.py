@@ -3,13 +3,13 @@ view of the sheet from them. Refuses pictures that cannot be measured in."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 
 from ..errors import Error
-from .photo import grey_light
+from .photo import blur_px, grey_light, white_share
 
 FEWEST = 3  # markers: two leave the tilt of the sheet open to the noise of their corners
 SEEN_AT_PX = 2400  # longer side of the picture that markers are looked for in; their corners are found in the whole one
@@ -25,6 +25,10 @@ MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but n
 # bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six it leaves 0.10 and
 # moves them by 0.4. Half of it is remarked on.
 MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
+COVERED = 2.0  # times the limit that one marker is off, and the others within: something lies on its edge
+TOO_WHITE = 0.5  # share of the brightest parts that are as white as can be
+# Where no marker is found, edges over more of the picture's longer side are the reason: a module is lost in them
+SMEARED = 1 / 250
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,9 @@ class View:
     """How a photograph shows the sheet: a homography from mm, then radial distortion about the picture's middle.
 
     residual_mm: rms distance of the markers' corners from where the view has them, and worst, the marker where it is
-    largest, with its own; blur_mm: standard deviation of the blur, from the markers' edges.
+    largest, with its own; unsure_mm: standard deviation of the least certain place on the sheet, by its corners;
+    blur_mm: standard deviation of the blur, from the markers' edges, across or down, whichever is more; white: share of
+    the picture's brightest parts that are as white as can be.
     """
 
     homography: np.ndarray
@@ -55,6 +61,8 @@ class View:
     worst: tuple[int, float] = (0, 0.0)
     blur_mm: float = 0.0
     seen: tuple[int, ...] = ()
+    unsure_mm: float = 0.0
+    white: float = 0.0
 
     @property
     def most_residual_mm(self) -> float:
@@ -77,16 +85,16 @@ class View:
 def find_view(pixels: np.ndarray, printed: Printed) -> View:
     """Error in one sentence where markers are missing, doubled, of another chart or mirrored, where the picture is too
     small or blurred, or where the corners do not lie as on flat paper."""
-    found = _of_this_chart(pixels, printed)
     light = grey_light(pixels)
+    found = _of_this_chart(pixels, light, printed)
     modules = _modules(printed.dictionary)
     corners, blurs = {}, []
     for number, rough in found.items():
         corners[number], blur = _exact(light, rough, modules)
         blurs.append(blur)
-    view = _fitted(corners, printed, pixels.shape)
+    view = _without_a_covered_one(_fitted(corners, printed, pixels.shape), corners, printed, pixels.shape)
     blur_mm = float(np.median(blurs)) / view.px_per_mm
-    view = View(**{**view.__dict__, "blur_mm": blur_mm})
+    view = replace(view, blur_mm=blur_mm, white=white_share(light))
     _refuse_unmeasurable(view, printed)
     return view
 
@@ -111,7 +119,7 @@ def _detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray
     ]
 
 
-def _of_this_chart(pixels: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
+def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
     seen = _detected(pixels, printed.dictionary)
     ours = [(number, corners) for number, corners in seen if number in printed.corners_mm]
     others = {number for number, _ in seen} - set(printed.corners_mm)
@@ -138,6 +146,7 @@ def _of_this_chart(pixels: np.ndarray, printed: Printed) -> dict[int, np.ndarray
             "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back",
             code="photo-mirrored",
         )
+    _refuse_blind(light, len(found))
     if not found:
         raise Error(
             f"no marker of chart{name} is in the picture: photograph the whole page, sharp and without deep shadows",
@@ -148,6 +157,25 @@ def _of_this_chart(pixels: np.ndarray, printed: Printed) -> dict[int, np.ndarray
         "or more: photograph the whole page, with nothing over its markers",
         code="photo-markers-missing",
     )
+
+
+def _refuse_blind(light: np.ndarray, count: int) -> None:
+    """Where markers are not found because of the picture as a whole."""
+    few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
+    if (white := white_share(light)) > TOO_WHITE:
+        raise Error(
+            f"{few}, and {100 * white:.0f} % of the brightest parts are as white as can be: the picture is "
+            "overexposed; take it with less light, without glare, or with the exposure turned down",
+            value=white,
+            code="photo-overexposed",
+        )
+    if (wide := blur_px(light)) > SMEARED * max(light.shape):
+        raise Error(
+            f"{few}, and edges go over {wide:.0f} pixels, more than {SMEARED * max(light.shape):.0f}: the picture is "
+            "blurred; hold the camera still and let it focus on the paper",
+            value=wide,
+            code="photo-blurred",
+        )
 
 
 def _listed(numbers) -> str:
@@ -164,7 +192,7 @@ def _exact(light: np.ndarray, corners: np.ndarray, modules: int) -> tuple[np.nda
             lines.append(_line(points))
             blurs.append(spread)
         corners = np.array([_meet(lines[k - 1], lines[k]) for k in range(4)])
-        blur = float(np.median(blurs))
+        blur = max(blurs[0] + blurs[2], blurs[1] + blurs[3]) / 2  # a camera that moves blurs one way alone
     return corners, blur
 
 
@@ -253,6 +281,7 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape) -> View:
     each = {number: float(np.sqrt(squares[4 * k : 4 * k + 4].mean())) for k, number in enumerate(ids)}
     worst = max(each, key=lambda number: each[number])
     residual = float(np.sqrt(squares.sum() / freedom))
+    unsure = _unsure_px(view, unknowns, np.linalg.pinv(slopes.T @ slopes), printed.sheet_mm) / scale
     return View(
         found.homography,
         found.distortion,
@@ -262,7 +291,28 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape) -> View:
         residual,
         (worst, each[worst]),
         seen=ids,
+        unsure_mm=unsure,
     )
+
+
+def _without_a_covered_one(view: View, corners: dict, printed: Printed, shape) -> View:
+    """Something that covers the edge of one marker moves its corners; paper that bulges moves all."""
+    number, own = view.worst
+    limit = view.most_residual_mm
+    if view.residual_mm <= limit or own < COVERED * limit or len(corners) <= FEWEST:
+        return view
+    others = _fitted({k: c for k, c in corners.items() if k != number}, printed, shape)
+    return others if others.residual_mm < others.most_residual_mm / COVERED else view
+
+
+def _unsure_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:
+    at = np.array([(x * sheet_mm[0], y * sheet_mm[1]) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)])
+    here = view(unknowns).to_px(at)
+    slopes = [
+        (view(unknowns + step).to_px(at) - here).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))
+    ]
+    spread = np.einsum("ki,kl,li->i", slopes, covariance, slopes).reshape(-1, 2)
+    return float(np.sqrt(spread.sum(axis=1).max()))
 
 
 def _px_per_mm(view: View, sheet_mm) -> float:
@@ -288,6 +338,13 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
             code="photo-blurred",
         )
     limit = view.most_residual_mm
+    if view.residual_mm > limit and view.white > TOO_WHITE:
+        raise Error(
+            f"the markers lie {view.residual_mm:.2f} mm (rms) off, more than {limit:.2f}, and {100 * view.white:.0f} % "
+            "of the brightest parts are as white as can be: the picture is overexposed; take it with less light",
+            value=view.white,
+            code="photo-overexposed",
+        )
     if view.residual_mm > limit:
         number, own = view.worst
         raise Error(

@@ -10,6 +10,11 @@ from ..errors import Error
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 HEIC = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1", b"avif")  # brands of such files
 LARGEST_PX = 200_000_000
+STEPS_OF_50 = (
+    105  # of the eight coarsest steps of a JPEG's brightness, at quality 50, summed: finer ones end at 255
+)
+WHITE = 0.98  # of the light: beyond, a camera's numbers end
+FLAT = 0.05  # of the light: a picture with less contrast shows nothing
 # sRGB to light, of each of its 256 values: half way between paint and paper is half of the light, not of the number
 _NUMBERS = np.arange(256) / 255
 LIGHT = np.where(
@@ -37,6 +42,34 @@ def read_photo(data: bytes) -> np.ndarray:
             code="photo-too-large",
         )
     return pixels
+
+
+def jpeg_quality(data: bytes) -> float | None:
+    """0 to 100 as encoders count it, from the steps that brightness is rounded to; None of other formats."""
+    at = 2
+    while data[:2] == b"\xff\xd8" and at + 4 <= len(data) and data[at] == 0xFF and data[at + 1] != 0xDA:
+        length = int.from_bytes(data[at + 2 : at + 4], "big")
+        if data[at + 1] == 0xDB and data[at + 4] == 0 and length >= 67:  # table 0, of 8 bits: brightness
+            scale = 100.0 * sum(data[at + 5 : at + 13]) / STEPS_OF_50
+            return (200.0 - scale) / 2 if scale < 100 else 5000.0 / scale
+        at += 2 + length
+    return None
+
+
+def white_share(light: np.ndarray) -> float:
+    """Of the brightest fifth of a picture, how much is as white as can be told: a camera that saw more tells it as
+    less."""
+    levels = np.sort(light[::7, ::7].ravel())
+    return float(np.mean(levels[-max(1, len(levels) // 5) :] >= WHITE))
+
+
+def blur_px(light: np.ndarray) -> float:
+    """Over how many pixels the steepest edges go from black to white, across or down, whichever takes longer."""
+    low, high = np.quantile(light[::5, ::5], [0.01, 0.99])
+    if high - low < FLAT:
+        return 0.0
+    steepest = min(float(np.quantile(np.abs(np.diff(light, axis=axis)), 0.998)) for axis in (0, 1))
+    return float(high - low) / max(steepest, 1e-3)
 
 
 def grey_light(pixels: np.ndarray) -> np.ndarray:

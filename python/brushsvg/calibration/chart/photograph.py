@@ -11,8 +11,8 @@ from ... import _core
 from ...errors import Error, Notice
 from ...scan.edges import Marks, Room, find_marks, told_apart
 from ...scan.flatten import Flat, flatten
-from ...scan.markers import Printed, View, find_view
-from ...scan.photo import read_photo
+from ...scan.markers import TOO_WHITE, Printed, View, find_view
+from ...scan.photo import jpeg_quality, read_photo
 from .layout import Chart
 from .page import bar_rings, label_box
 
@@ -21,6 +21,8 @@ MARGIN = 1 / 5  # of a marker's side around it: blur
 # Standard deviation of where all edges of a picture lie off together: blue paint lies 0.1 px outward, yellow, of which
 # JPEG keeps one colour for four pixels, 0.2 to 0.3
 EDGE_PX = 0.2
+WORST_QUALITY = 12.0  # of a JPEG: its squares of 8 pixels take the places of edges
+UNSURE_MM, MOST_UNSURE_MM = 0.1, 0.5  # of a place on the sheet: remarked on, refused
 ALIKE_MM = 0.15  # photographs of one flat sheet; a robot paints a second one less alike
 
 
@@ -55,7 +57,10 @@ def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: flo
     for name, data in photos:
         try:
             pixels = read_photo(data)
+            _refuse_compressed(data)
             view = find_view(pixels, shown)
+            _refuse_cropped(pixels, view, rooms)
+            _refuse_unsure(view, pixels, corners)
             fine = reads[0].flat.px_per_mm if reads else None
             flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
             reads.append(Read(chart, flat, view, find_marks(flat, rooms, printed, labels)))
@@ -76,6 +81,50 @@ def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: flo
         _refuse_another_sheet(each.marks, marks, name)
     worst = max((each.view for each in reads), key=lambda view: view.residual_mm)
     return Read(chart, reads[0].flat, worst, marks, len(reads))
+
+
+def _refuse_compressed(data: bytes) -> None:
+    quality = jpeg_quality(data)
+    if quality is not None and quality < WORST_QUALITY:
+        raise Error(
+            f"the JPEG was saved at quality {quality:.0f} of 100, it takes {WORST_QUALITY:g}: give the picture as the "
+            "camera wrote it, not as a messenger sent it on",
+            value=quality,
+            code="photo-compressed",
+        )
+
+
+def _refuse_cropped(pixels: np.ndarray, view: View, rooms: list[Room]) -> None:
+    """Where room of a stroke lies beyond the picture."""
+    cut = []
+    for room in rooms:
+        left, bottom, right, top = room.box_mm
+        corners = view.to_px(np.array([(left, bottom), (right, bottom), (right, top), (left, top)]))
+        if (corners < 0).any() or (corners > np.array(pixels.shape[1::-1]) - 1).any():
+            cut.append(room.stroke)
+    if cut:
+        raise Error(
+            f"the page is cropped: the room of {len(cut)} stroke{'s' * (len(cut) > 1)} runs out of the picture "
+            f"({', '.join(cut[:4])}{', ...' * (len(cut) > 4)}): photograph the whole page",
+            value=len(cut),
+            code="photo-cropped",
+        )
+
+
+def _refuse_unsure(view: View, pixels: np.ndarray, corners_mm: dict[int, np.ndarray]) -> None:
+    if view.unsure_mm <= MOST_UNSURE_MM:
+        return
+    unseen = np.vstack([corners for number, corners in corners_mm.items() if number not in view.seen])
+    px = view.to_px(unseen)
+    beyond = bool((px < 0).any() or (px > np.array(pixels.shape[1::-1]) - 1).any())
+    raise Error(
+        f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
+        f"open by {view.unsure_mm:.2f} mm, {MOST_UNSURE_MM:g} is the most, "
+        + ("and others lie beyond the picture" if beyond else "and others are covered")
+        + ": photograph the whole page, with nothing over its markers",
+        value=view.unsure_mm,
+        code="photo-cropped" if beyond else "photo-markers-missing",
+    )
 
 
 def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
@@ -156,12 +205,18 @@ def remarks(read: Read) -> list[Notice]:
     if view.residual_mm > 0.5 * view.most_residual_mm:
         sentence = (
             f"the markers lie {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
-            "flat, and marks may lie off by more than that"
+            "flat, or the picture is noisy, and marks may lie off by more than that"
         )
         out.append(Notice("", sentence, code="photo-not-flat"))
+    if view.white > TOO_WHITE:
+        sentence = (
+            f"{100 * view.white:.0f} % of the brightest parts are as white as can be: the picture is overexposed, and "
+            "edges may lie farther out than they are"
+        )
+        out.append(Notice("", sentence, code="photo-overexposed"))
     if missing := read.marks.missing:
         each = "stroke" if len(missing) == 1 else "strokes"
-        sentence = f"no paint is found of {each} {', '.join(missing)}, left out"
+        sentence = f"no paint is found of {each} {', '.join(missing)}, left out{_left_at(read, missing)}"
         out.append(Notice("", sentence, code="mark-missing"))
     for one, other in read.marks.joined:
         sentence = f"its mark touches that of {other}: they are cut apart half way between their places"
@@ -169,5 +224,19 @@ def remarks(read: Read) -> list[Notice]:
     unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
     if unseen:
         sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen"
+        if view.unsure_mm > UNSURE_MM:
+            sentence += f": places on the sheet may lie off by {view.unsure_mm:.2f} mm (standard deviation)"
         out.append(Notice("", sentence, code="photo-markers-missing"))
     return out
+
+
+def _left_at(read: Read, missing: list[str]) -> str:
+    """What is left of the depths at which strokes are missing."""
+    strokes = read.chart.strokes
+    depths = sorted({stroke.depth_mm for stroke in strokes if stroke.id in missing})
+    of = {depth: [stroke.id for stroke in strokes if stroke.depth_mm == depth] for depth in depths}
+    parts = [
+        f"{sum(name not in missing for name in names)} of {len(names)} at {depth:g} mm"
+        for depth, names in of.items()
+    ]
+    return f"; strokes that are left: {', '.join(parts)} depth"

@@ -127,7 +127,9 @@ def _check_scan(args) -> None:
 
 def _check_photos(args, photos: list[str], written) -> None:
     if any(suffix_of(path) in (".heic", ".heif") for path in photos):
-        args.parser.error("HEIC pictures are not read: export them as JPEG")
+        args.parser.error(
+            "HEIC pictures are not read: export them as JPEG (iPhone: Settings, Camera, Formats, Most Compatible)"
+        )
     if args.chart is None:
         args.parser.error("photographs need --chart, the chart.json that was written with the page")
     read = [*((path, PHOTOS) for path in photos), (args.chart, (".json",))]

@@ -32,12 +32,10 @@ def read_jaka(text: str, cell: Cell) -> Readback:
     """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
     out, poses = Readback(), {}
     turned = np.round(turned_deg(cell), DEGREE_DECIMALS) + 0.0
-    lines = [
-        (number, line.lstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
-    ]
+    lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     for number, line in lines:
         if line.startswith("# "):
-            out.comment(number, line[2:])
+            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
         elif found := _POSE.fullmatch(line):
             pose = np.array([float(value) for value in found[2].split(", ")])
             _stands(number, line, pose[3:], turned)

@@ -1,0 +1,224 @@
+"""Random brushes paint printed charts, random cameras photograph them, and `calibrate` is asked which brush it was.
+
+    photographs.py [--count 200] [--brushes 40] [--seed 1] [--processes 2] [--sheet a4] [--strokes few]
+
+The paint is the slow stepping simulator's of tests/laws, the pictures the renderer's there: a tilt, a lens of another
+formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet bulges by a millimetre. Every other brush has laws
+outside of the family that is fitted: a lag that saturates and swings, a width that grows as a root, a bent tip gap.
+The two halves are reported apart. Printed: how far places on the sheet lie off (rms), how far the lag is off over the
+range, how often the 95 % intervals hold the truth, what was refused, and which marks were left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import sys
+import time
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "laws"))
+import painter
+import photograph
+from numpy.polynomial import polynomial
+
+from brushsvg import _core
+from brushsvg.brush.confidence import law_band
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.chart.photograph import edge_mm, marks_of, read_chart_photos, remarks
+from brushsvg.calibration.from_marks import brush_of, calibrate_marks
+from brushsvg.calibration.mark_input import read_painted
+from brushsvg.cli.arguments import values
+from brushsvg.errors import Error
+
+KNOWN_TO = 0.15  # what a person knows of the brush beforehand
+SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest
+FAULTS = painter.Faults(noise=0.05, noise_length=0.5, displacement=0.3, placement=0.8, turn=0.008, height=0.1)
+COLOURS = (
+    photograph.BLUE,
+    np.array([0.05, 0.05, 0.05]),
+    np.array([0.7, 0.1, 0.08]),
+    np.array([0.1, 0.35, 0.15]),
+)
+BULGING = 6  # every so many sheets
+TEXELS = 16.0  # per mm of the sheet: of A4, more take a gigabyte
+
+
+def outside_family(brush: painter.TrueBrush, rng) -> painter.TrueBrush:
+    """The same depths and sizes, by other functions: polynomials of sixth degree that follow them."""
+    share = np.linspace(0, 1, 60)
+    first, last = (brush.law("lag")(share_ * brush.deepest) for share_ in (0.0, 1.0))
+    rise = (1 - np.exp(-rng.uniform(1.5, 3.5) * share)) * (1 + 0.05 * np.sin(2 * np.pi * share))
+    lag = first + (last - first) * rise / rise[-1]
+    half = brush.law("half_width")(brush.deepest) * share ** rng.uniform(0.65, 0.9)
+    gap = brush.law("tip_gap")(brush.deepest) * (share + rng.uniform(-0.3, 0.3) * share * (1 - share))
+
+    def followed(law, from_power):
+        powers = np.arange(from_power, 7)
+        found = np.zeros(7)
+        found[powers] = np.linalg.lstsq(share[:, None] ** powers, law, rcond=None)[0]
+        return found / brush.deepest ** np.arange(7)
+
+    laws = followed(lag, 0), followed(gap, 1), followed(half, 1)
+    return painter.TrueBrush(brush.deepest, *laws, brush.widest_per_half, brush.front_per_half)
+
+
+def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
+    wide = int(sheet_mm[0] * rng.uniform(7.5, 11))
+    return photograph.Camera(
+        size_px=(wide, int(wide * sheet_mm[1] / sheet_mm[0])),
+        focal=rng.uniform(0.9, 1.5),
+        tilt_deg=tuple(rng.uniform(-8, 8, 2)),
+        turn_deg=rng.uniform(-2, 2) + rng.choice([0.0, 180.0]),
+        bend=rng.uniform(-0.04, 0.03),
+        fill=0.88,
+        aside_mm=tuple(rng.uniform(-3, 3, 2)),
+        blur_px=rng.uniform(0.6, 1.2),
+        noise=rng.uniform(0.004, 0.015),
+        light=tuple(rng.uniform(-0.3, 0.3, 2)),
+        shadow=rng.choice([0.0, 0.3]),
+        quality=int(rng.integers(75, 96)),
+        sag_mm=1.0 if is_bulging else 0.0,
+    )
+
+
+def photographed(number: int, seed: int, brushes: int, sheet_mm, strokes: str) -> dict:
+    """One photograph: what is known of it, and what came of it."""
+    photograph.TEXELS = TEXELS
+    which = number % brushes
+    rng = np.random.default_rng([seed, which])
+    brush = painter.random_brush(rng)
+    inside = which % 2 == 0
+    if not inside:
+        brush = outside_family(brush, rng)
+    lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
+    laws = _core.MarkLaws(list(lag * brush.lag), [0.0, 0.4], list(width * brush.half_width), 1.8, 1.0)
+    out = {"number": number, "inside": inside, "bulging": number % BULGING == BULGING - 1}
+    rng = np.random.default_rng([seed, which, number])
+    made = chart(brush_of(laws, "roughly", (0.0, brush.deepest)), sheet_mm, strokes)
+    ways = [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
+    painted = painter.paint(rng, brush, ways, FAULTS)
+    sheet, colour = photograph.page(made, number), COLOURS[number % len(COLOURS)]
+    for _, _, rings in painted.marks:
+        sheet.paint(rings, colour)
+    camera = camera_of(rng, sheet_mm, out["bulging"])
+    jpeg = photograph.photograph(sheet, camera, number)
+    del sheet
+    try:
+        begin = time.process_time()
+        read = read_chart_photos(made, [("", jpeg)])
+        out["read_s"] = time.process_time() - begin
+        at = (
+            np.array([(x, y) for x in np.linspace(0.05, 0.95, 12) for y in np.linspace(0.05, 0.95, 16)])
+            * sheet_mm
+        )
+        off = read.view.to_px(at) - photograph.corners_seen(camera, sheet_mm, at)
+        out["geometry"] = float(np.sqrt(np.mean(np.sum(off**2, axis=1)))) / read.view.px_per_mm
+        out["remarks"] = [notice.code for notice in remarks(read)]
+        begin = time.process_time()
+        plan = json.loads(_core.write_plan(made.plan))
+        fitted = calibrate_marks(
+            read_painted(plan, marks_of(read), None), "found", edge_mm=edge_mm(read), leave_out_strays=True
+        )
+        out["fit_s"] = time.process_time() - begin
+    except Error as refusal:
+        return out | {"refused": refusal.code, "sentence": refusal.sentence}
+    out["strays"] = [stray.mark.stroke for stray in fitted.strays]
+    found, deepest = fitted.brush, fitted.brush.depth_range_mm[1]
+    out["values"] = {}
+    for law in ("lag", "tip_gap", "half_width"):
+        for share in SHARES if law != "tip_gap" else (1.0,):
+            depth = share * deepest
+            error = getattr(found, law)(depth) - brush.law(law)(depth)
+            out["values"][f"{law} at {share:g}"] = (
+                error,
+                float(law_band(found, law, np.array([depth]))[0][0]),
+            )
+    half = _core.deviations_of_95() * np.sqrt(fitted.covariance[-4, -4])
+    out["values"]["height"] = (fitted.fit.height_mm - painted.height, half)
+    depths = np.linspace(0.15, 1, 18) * deepest
+    lag = polynomial.polyval(depths, fitted.fit.laws.lag)
+    out["lag"] = float(np.max(np.abs(lag / brush.law("lag")(depths) - 1)))
+    return out
+
+
+def summary(found: list[dict]) -> str:
+    lines = [f"{len(found)} photographs"]
+    for words, chosen in (
+        ("brushes of the family that is fitted", [each for each in found if each["inside"]]),
+        ("brushes outside of it", [each for each in found if not each["inside"]]),
+    ):
+        lines += ["", f"{words}: {len(chosen)} photographs", *_half(chosen)]
+    reads = [each["read_s"] for each in found if "read_s" in each]
+    fits = [each["fit_s"] for each in found if "fit_s" in each]
+    if fits:
+        lines += [
+            "",
+            f"processor time: {np.median(reads):.1f} s to read, {np.median(fits):.1f} s to fit (median)",
+        ]
+    return "\n".join(lines)
+
+
+def _half(found: list[dict]) -> list[str]:
+    lines = []
+    for words, bulging in (("flat", False), ("bulging by 1 mm", True)):
+        places = [each["geometry"] for each in found if each["bulging"] == bulging and "geometry" in each]
+        refused = sum("geometry" not in each for each in found if each["bulging"] == bulging)
+        worst = f", {np.median(places):.3f} median, {max(places):.3f} mm worst" if places else ""
+        lines.append(f"  places on {words} sheets: {len(places)} read{worst} (rms); {refused} refused")
+    for each in found:
+        if "refused" in each:
+            lines.append(f"  {each['number']}: refused, {each['refused']}: {each['sentence'][:90]}")
+        elif each["strays"] or each["remarks"]:
+            lines.append(
+                f"  {each['number']}: {', '.join(each['remarks'])}; left out: {', '.join(each['strays'])}"
+            )
+    made = [each for each in found if "values" in each]
+    if not made:
+        return lines
+    worst = np.array([each["lag"] for each in made])
+    lines.append(
+        f"  lag within 3 % over the range: {np.sum(worst < 0.03)} of {len(made)}; off by "
+        f"{100 * np.median(worst):.2f} % (median), {100 * worst.max():.2f} % (worst)"
+    )
+    held = {
+        name: np.array([abs(each["values"][name][0]) < each["values"][name][1] for each in made])
+        for name in made[0]["values"]
+    }
+    for name, each in held.items():
+        half = np.median([one["values"][name][1] for one in made])
+        off = np.median([abs(one["values"][name][0]) for one in made])
+        lines.append(
+            f"    {name:18s} held by {100 * each.mean():5.1f} %, +- {half:.3f} mm, off by {off:.3f} mm (medians)"
+        )
+    lines.append(f"    pooled             held by {100 * np.mean(list(held.values())):5.1f} %")
+    return lines
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    arguments.add_argument("--count", type=int, default=200)
+    arguments.add_argument("--brushes", type=int, default=40)
+    arguments.add_argument("--seed", type=int, default=1)
+    arguments.add_argument("--processes", type=int, default=2)
+    arguments.add_argument("--sheet", type=values.sheet, default=(210.0, 297.0), help="a4, a3, 210x297")
+    arguments.add_argument("--strokes", choices=("few", "normal", "many"), default="few")
+    args = arguments.parse_args()
+    one = partial(
+        photographed, seed=args.seed, brushes=args.brushes, sheet_mm=args.sheet, strokes=args.strokes
+    )
+    found = []
+    with multiprocessing.Pool(args.processes, maxtasksperchild=4) as pool:
+        for each in pool.imap_unordered(one, range(args.count)):
+            found.append(each)
+            if len(found) % 8 == 0 and len(found) < args.count:
+                print(summary(sorted(found, key=lambda f: f["number"])), "\n", flush=True)
+    print(summary(sorted(found, key=lambda f: f["number"])))
+
+
+if __name__ == "__main__":
+    main()

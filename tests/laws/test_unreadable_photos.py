@@ -1,0 +1,160 @@
+"""Photographs that cannot be read, or not whole, in more than twenty ways: each is refused, or told, with the code of
+its cause, and what is read of the others lies where it was painted."""
+
+from functools import cache
+
+import cv2
+import numpy as np
+import photograph
+import pytest
+from photograph import BLUE, INK, Camera, replace
+from test_scan import A5, a5, hide, off_mm, painted_marks, painted_sheet
+
+from brushsvg import _core, find_brush
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.chart.photograph import read_chart_photos, remarks
+from brushsvg.errors import Error
+
+CAMERA = Camera(size_px=(950, 1300), blur_px=0.6)
+
+
+def shot(marks=None, things=(), **camera):
+    sheet = painted_sheet((marks or painted_marks()).values())
+    for ring, colour in things:
+        sheet.paint([ring], colour)
+    return photograph.exposed(sheet, replace(CAMERA, **camera))
+
+
+@cache
+def good():
+    return shot()
+
+
+def part(top, bottom, left, right):
+    rows, columns = good().shape[:2]
+    return good()[int(top * rows) : int(bottom * rows), int(left * columns) : int(right * columns)].copy()
+
+
+def round_(x, y, radius):
+    turn = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    return np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn)])
+
+
+def moved(by):
+    return {stroke: [ring + np.array(by) for ring in rings] for stroke, rings in painted_marks().items()}
+
+
+def of_another_chart():
+    other, brush = chart(find_brush("round-6"), A5, "few", deepest_mm=9.0), find_brush("round-6")
+    marks = _core.simulate(other.plan, brush)
+    _core.trace_outlines(marks, brush)
+    return {one.stroke: [np.array(ring) for ring in one.outline_mm] for one in marks.passes}
+
+
+def without_markers(kept):
+    pixels = good().copy()
+    for marker in a5().markers[kept:]:
+        hide(pixels, marker.corners_mm)
+    return pixels
+
+
+def with_a_marker_twice():
+    pixels = good().copy()
+    around = photograph.corners_seen(CAMERA, A5, np.array(a5().markers[0].corners_mm))
+    (left, top), (right, bottom) = around.min(axis=0).astype(int) - 8, around.max(axis=0).astype(int) + 8
+    pixels[600 : 600 + bottom - top, 300 : 300 + right - left] = pixels[top:bottom, left:right]
+    return pixels
+
+
+WHITE = np.array([0.9, 0.9, 0.88])
+REFUSED = {
+    "nothing on it": (lambda: np.full_like(good(), 120), "photo-markers-missing"),
+    "two markers left": (lambda: without_markers(2), "photo-markers-missing"),
+    "a marker twice": (with_a_marker_twice, "photo-marker-twice"),
+    "mirrored": (lambda: np.ascontiguousarray(good()[:, ::-1]), "photo-mirrored"),
+    "right side cropped": (lambda: part(0, 1, 0, 0.75), "photo-cropped"),
+    "lower markers cropped": (lambda: part(0, 0.9, 0, 1), "photo-cropped"),
+    "too coarse": (
+        lambda: cv2.resize(good(), None, fx=0.6, fy=0.6, interpolation=cv2.INTER_AREA),
+        "photo-too-coarse",
+    ),
+    "out of focus": (lambda: shot(blur_px=2.5), "photo-blurred"),
+    "far out of focus": (lambda: shot(blur_px=9.0), "photo-blurred"),
+    "camera moved": (lambda: shot(motion_px=(15.0, 5.0)), "photo-blurred"),
+    "overexposed": (lambda: shot(exposure=8.0), "photo-overexposed"),
+    "hard shadow": (lambda: shot(edge=0.8), "photo-covered"),
+    "a thing on the page": (lambda: shot(things=[(photograph.box(30, 90, 110, 130), INK)]), "photo-covered"),
+    "bulging": (lambda: shot(sag_mm=3.0), "photo-not-flat"),
+    "not painted": (lambda: photograph.exposed(photograph.page(a5()), CAMERA), "photo-without-paint"),
+    "painted the wrong way round": (
+        lambda: shot(
+            {stroke: [np.array(A5) - ring for ring in rings] for stroke, rings in painted_marks().items()}
+        ),
+        "photo-paint-elsewhere",
+    ),
+    "another chart painted": (lambda: shot(of_another_chart()), "photo-paint-elsewhere"),
+    "painted twice": (
+        lambda: shot(painted_marks() | {f"{k}-again": rings for k, rings in moved((4.0, 4.0)).items()}),
+        "photo-paint-elsewhere",
+    ),
+    "page not at its stop": (lambda: shot(moved((8.0, 3.0))), "photo-paint-elsewhere"),
+    "few strokes painted": (
+        lambda: shot({k: rings for k, rings in painted_marks().items() if k.startswith("straight")}),
+        "mark-missing",
+    ),
+}
+TOLD = {
+    "two strokes missing": (
+        lambda: shot({k: rings for k, rings in painted_marks().items() if k not in ("arc-2", "straight-1")}),
+        "mark-missing",
+    ),
+    "a marker covered": (lambda: without_markers(5), "photo-markers-missing"),
+    "glare on a marker": (lambda: shot(glare=(10.0, 200.0, 12.0)), "photo-markers-missing"),
+    "a blot over two strokes": (
+        lambda: shot(things=[(round_(*np.vstack(painted_marks()["reference-1"]).mean(axis=0), 7.0), BLUE)]),
+        "marks-touch",
+    ),
+    "a bit overexposed": (lambda: shot(exposure=1.5), "photo-overexposed"),
+}
+
+
+def code_of(data):
+    with pytest.raises(Error) as refusal:
+        read_chart_photos(a5(), [("photo.jpg", data)])
+    assert refusal.value.file == "photo.jpg" and len(refusal.value.sentence) > 40
+    return refusal.value.code
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_a_picture_that_cannot_be_read_is_refused_for_its_cause(kind):
+    make, code = REFUSED[kind]
+    assert code_of(photograph.encoded(make())) == code
+
+
+def test_a_picture_that_was_saved_too_small_is_refused():
+    assert code_of(photograph.encoded(good(), 5)) == "photo-compressed"
+    found = read_chart_photos(a5(), [("", photograph.encoded(good(), 30))])
+    assert not found.marks.missing and not remarks(found)
+
+
+@pytest.mark.parametrize("kind", TOLD)
+def test_what_can_be_read_in_part_is_told(kind):
+    make, code = TOLD[kind]
+    found = read_chart_photos(a5(), [("", photograph.encoded(make()))])
+    told = {notice.code for notice in remarks(found)}
+    assert code in told
+    touched = {stroke for pair in found.marks.joined for stroke in pair}
+    for stroke, rings in painted_marks().items():
+        if stroke not in touched and stroke not in found.marks.missing:
+            assert off_mm(found.marks.outlines_mm[stroke], rings)[1] < 0.15, stroke
+
+
+def test_something_over_the_edge_of_one_marker_does_not_bend_the_sheet():
+    """It once was paper that is not flat."""
+    x, y = np.mean(a5().markers[2].corners_mm, axis=0)
+    found = read_chart_photos(
+        a5(), [("", photograph.encoded(shot(things=[(photograph.box(x - 12, y - 3, x - 4.5, y + 3), BLUE)])))]
+    )
+    assert found.view.residual_mm < 0.04
+    for stroke, rings in painted_marks().items():
+        assert off_mm(found.marks.outlines_mm[stroke], rings)[1] < 0.15, stroke
