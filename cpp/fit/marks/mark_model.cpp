@@ -113,6 +113,7 @@ void MarkModel::refuse_endless() const {
     }
     if (looks <= most) return;
     throw Error(
+        "fit-failed",
         "no brush was found that paints these marks, least of all this one: is it the mark of this stroke, in mm?",
         painted_[which].stroke);
 }
