@@ -45,14 +45,18 @@ mark was seen instead of the centre of friction. free_heading, displaced: each s
 
     py::class_<PaintedMark>(m, "PaintedMark", R"(What one pass painted.
 
-stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them.)")
-        .def(py::init([](std::string stroke, brushsvg::Poses poses_mm, brushsvg::Rings outline_mm) {
-                 return PaintedMark{std::move(stroke), std::move(poses_mm), std::move(outline_mm)};
+stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them; arcs: of
+the pass, followed on their circles.)")
+        .def(py::init([](std::string stroke, brushsvg::Poses poses_mm, brushsvg::Rings outline_mm,
+                         std::vector<brushsvg::Arc> arcs) {
+                 return PaintedMark{std::move(stroke), std::move(poses_mm), std::move(outline_mm), std::move(arcs)};
              }),
-             py::arg("stroke"), py::arg("poses_mm"), py::arg("outline_mm"))
+             py::arg("stroke"), py::arg("poses_mm"), py::arg("outline_mm"),
+             py::arg("arcs") = std::vector<brushsvg::Arc>{})
         .def_readonly("stroke", &PaintedMark::stroke)
         .def_readonly("poses_mm", &PaintedMark::poses_mm)
-        .def_property_readonly("outline_mm", frozen_copy(&PaintedMark::outline_mm));
+        .def_property_readonly("outline_mm", frozen_copy(&PaintedMark::outline_mm))
+        .def_property_readonly("arcs", frozen_copy(&PaintedMark::arcs));
     py::class_<Prior>(m, "Prior", "What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.")
         .def(py::init([](double value, double sigma) { return Prior{value, sigma}; }), py::arg("value"),
              py::arg("sigma"))

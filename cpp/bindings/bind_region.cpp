@@ -6,12 +6,13 @@ void bind_region(py::module_& m) {
     using namespace brushsvg;
     const auto unlocked = py::call_guard<Unlocked>();
     m.def("unite", &unite, py::arg("rings"), unlocked,
-          "Union of shapes: counter-clockwise rings fill, the clockwise rings behind one are its holes.");
+          "Union of shapes: counter-clockwise rings fill, the clockwise rings behind one are its holes. Error where "
+          "clockwise ones outweigh.");
     m.def(
         "fill",
         [](const Rings& outlines, const std::string& rule) {
             if (rule != "nonzero" && rule != "evenodd")
-                throw Error("the fill rule is nonzero or evenodd, not \"" + rule + "\"");
+                throw Error("choice-unknown", "the fill rule is nonzero or evenodd, not \"" + rule + "\"");
             return fill(outlines, rule == "nonzero" ? FillRule::nonzero : FillRule::evenodd);
         },
         py::arg("outlines"), py::arg("rule") = "nonzero", unlocked,
@@ -21,7 +22,8 @@ void bind_region(py::module_& m) {
     m.def("convex_hull", &convex_hull, py::arg("points"), "Convex hull of points (n, 2), counter-clockwise.");
     m.def("clearance", &clearance, py::arg("rings"), py::arg("points"), unlocked,
           "Distance [mm] of points (n, 2) from the outline, on whichever side of it.");
-    m.def("area", &area, py::arg("rings"), "Area [mm^2], holes (clockwise) taken off.");
+    m.def("area", &area, py::arg("rings"),
+          "Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.");
     m.def("overlap", &overlap, py::arg("rings_a"), py::arg("rings_b"), unlocked,
-          "Area of the intersection over area of the union.");
+          "Area of the intersection over area of the union, each given as for unite; 1 when both are empty.");
 }

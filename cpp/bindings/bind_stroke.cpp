@@ -32,10 +32,10 @@ which of the passes that fill a shape wider than the brush; load: which of the l
     py::class_<Stroke>(m, "Stroke",
                        R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
-id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm: to be set as a
-whole.)")
+id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
+set as a whole.)")
         .def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
-                                  std::string layer, std::string colour, std::string settings) {
+                                  std::string layer, std::string colour, Settings settings) {
                  Stroke s;
                  s.id = std::move(id);
                  s.middle_mm = middle_mm;
@@ -47,7 +47,8 @@ whole.)")
                  return s;
              }),
              py::arg("id") = "", py::arg("middle_mm") = Cubics(0, 8), py::arg("closed") = false,
-             py::arg("half_width") = Knots{}, py::arg("layer") = "", py::arg("colour") = "", py::arg("settings") = "{}")
+             py::arg("half_width") = Knots{}, py::arg("layer") = "", py::arg("colour") = "",
+             py::arg("settings") = Settings{})
         .def_property(
             "id", [](const Stroke& s) { return s.id.name(); }, [](Stroke& s, StrokeId id) { s.id = std::move(id); })
         .def_property_readonly("origin", [](const Stroke& s) { return s.id; })
@@ -60,7 +61,9 @@ whole.)")
                       [](Stroke& s, Rings rings) { s.wanted_mm = std::move(rings); })
         .def_readwrite("layer", &Stroke::layer)
         .def_readwrite("colour", &Stroke::colour)
-        .def_readwrite("settings", &Stroke::settings);
+        .def_property(
+            "settings", [](const Stroke& s) { return s.settings; },
+            [](Stroke& s, Settings settings) { s.settings = std::move(settings); });
     m.def(
         "flatten",
         [](const Stroke& stroke, double tolerance_mm) {

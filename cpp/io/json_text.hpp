@@ -17,7 +17,8 @@
 namespace brushsvg::io {
 
 inline void refuse_not_finite(double value, const std::string& what) {
-    if (!std::isfinite(value)) throw Error(what + " is not a finite number and cannot be written", what, value);
+    if (!std::isfinite(value))
+        throw Error("not-finite", what + " is not a finite number and cannot be written", what, value);
 }
 
 /// The shortest plain decimal that reads back to the same double: no exponent, no -0.
@@ -54,12 +55,16 @@ inline void append_rounded(std::string& out, double value, const char* what) {
     out.append(digits.data() + (is_minus_zero ? 1 : 0), end);
 }
 
-inline void append_string(std::string& out, const std::string& text, const std::string& path) {
+inline void append_json(std::string& out, const Json& value, const std::string& path) {
     try {
-        out += Json(text).dump();
+        out += value.dump();
     } catch (const Json::exception&) {
-        throw Error("the text is not valid UTF-8", path);
+        throw Error("not-text", "the text is not valid UTF-8", path);
     }
+}
+
+inline void append_string(std::string& out, const std::string& text, const std::string& path) {
+    append_json(out, Json(text), path);
 }
 
 /// "[item, item,\n      item]": as many to a line as fit into 110 columns.

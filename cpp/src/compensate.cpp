@@ -8,6 +8,7 @@
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
 #include "brushsvg/thin_out.hpp"
 #include "landing.hpp"
 #include "middle_line.hpp"
@@ -20,11 +21,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-Vector2d turned(const Vector2d& u, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    return {c * u.x() - s * u.y(), s * u.x() + c * u.y()};
-}
-
 /// Chords of the circle about the contact from one heading to the other. Inscribed chords leave the lever loose, so the
 /// patch rests; tangent ones would drag it. Noted as an arc too, of radius r and not a hair less: a radius too large by
 /// some rounding lets the patch creep by (1 + turn^2 / 2) times that, 0.6 um for 1e-4 mm and half a turn.
@@ -33,7 +29,7 @@ void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, Pos
     const int n = int(std::ceil(std::abs(angle) / kTurnChordRad));
     for (int k = 1; k < n; ++k) {
         const double c = double(k) / n, depth = from.depth + c * (to.depth - from.depth);
-        out.add(from.contact + brush.lag(depth) * turned(from.heading, c * angle), depth);
+        out.add(from.contact + brush.lag(depth) * turned_by<double>(from.heading, c * angle), depth);
     }
 }
 
@@ -241,7 +237,8 @@ PoseList offset(const Stroke& stroke, const Brush& brush, const Line& line, doub
             const int n = int(std::ceil(std::abs(angle) / std::min(kTurnStepRad, 2.0 * std::acos(sagitta))));
             const std::int64_t before = out.last();
             for (int k = 1; k < n; ++k)
-                out.add(samples[i].middle + r0 * turned(samples[i - 1].heading, angle * k / n), samples[i].depth);
+                out.add(samples[i].middle + r0 * turned_by<double>(samples[i - 1].heading, angle * k / n),
+                        samples[i].depth);
             out.add(samples[i].tcp, samples[i].depth);
             out.arc(before, samples[i].middle, angle);
         } else {
@@ -276,7 +273,7 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
     char text[200];
     std::snprintf(text, sizeof text, "depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
                   least < lo - 1e-9 ? least : greatest, lo, hi);
-    warnings.push_back({stroke.id, text + brush.name + " was measured"});
+    warnings.push_back(Warning{"depth-not-measured", stroke.id, text + brush.name + " was measured"});
 }
 
 constexpr double kLongestLagMm = 1000.0;  // no brush is longer
@@ -308,10 +305,10 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
     require_usable(brush);
     require_tolerance(options.tolerance_mm, stroke.id);
     if (options.lag_mm && !(*options.lag_mm >= 0.0 && *options.lag_mm <= kLongestLagMm))
-        throw Error("the lag is not within [0, 1000] mm", stroke.id, *options.lag_mm,
+        throw Error("out-of-range", "the lag is not within [0, 1000] mm", stroke.id, *options.lag_mm,
                     std::array<double, 2>{0.0, kLongestLagMm});
     if (!(options.speed_mm_s > 0.0) || std::isinf(options.speed_mm_s))
-        throw Error("the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
+        throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
     const Line line(stroke, brush);
     CompensatedPass result;
     warn(stroke, brush, result.warnings);

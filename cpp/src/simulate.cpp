@@ -7,7 +7,7 @@
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
-#include "brushsvg/lag_arc.hpp"
+#include "pass_walk.hpp"
 #include "tolerance.hpp"
 #include "usable.hpp"
 
@@ -60,28 +60,29 @@ class Tracer {
                 kinks_.push_back(piece.lo);
     }
 
-    /// Poses index and fractions of the following moves: pose + scale * t.
-    void place(double pose, double scale) {
-        pose_ = pose;
-        scale_ = scale;
+    bool is_done() const { return false; }
+    void begin_above(const Vec2<double>& q, double height) {
+        place(0.0, 0.0);
+        lifted(q, height, 0.0);
     }
-    void touch(const Vec2<double>& q) {
+    void above(Eigen::Index i, const AboveStretch<double>& stretch, double, bool touches) {
+        if (touches) return;
+        place(double(i), 1.0);
+        lifted(stretch.to, -stretch.depth_to, 1.0);
+    }
+    void touch(Eigen::Index i, double at, const Vec2<double>& q) {
+        place(double(i) + at, 0.0);
         state_ = touch_down<double>(q);
         state_.heading = last_heading_;
         if (moved_once_) first_row_ = out_.pose.size();  // before any motion the first rows wait for a heading too
         moved_ = false;
         row(q, 0.0, state_, 0.0);
     }
-    void lifted(const Vec2<double>& q, double z, double t) {
-        LagState<double> away = state_;
-        away.contact = q;
-        away.taut = false;
-        add(t, q, -z, away, 0.0);
-    }
     template <class Motion>
-    void move(const Motion& m) {
-        advance(law_, m, state_, [&](const auto& piece, const auto& mv, const auto& start, double begin, double end) {
-            sample(piece, mv, start, begin, end);
+    void move(const Motion& m, Eigen::Index i, double begin, double end) {
+        place(double(i) + begin, end - begin);
+        advance(law_, m, state_, [&](const auto& piece, const auto& mv, const auto& start, double from, double until) {
+            sample(piece, mv, start, from, until);
         });
         row(m.tcp(1.0), m.depth(1.0), state_, 1.0);
     }
@@ -92,6 +93,18 @@ class Tracer {
     }
 
  private:
+    /// Poses index and fractions of the following rows: pose + scale * t.
+    void place(double pose, double scale) {
+        pose_ = pose;
+        scale_ = scale;
+    }
+    void lifted(const Vec2<double>& q, double z, double t) {
+        LagState<double> away = state_;
+        away.contact = q;
+        away.taut = false;
+        add(t, q, -z, away, 0.0);
+    }
+
     /// What the footprint looks like at one instant; its corners stand for its motion.
     struct Instant {
         LagState<double> state;
@@ -233,7 +246,8 @@ class Tracer {
     void add(double t, const Vec2<double>& q, double depth, const LagState<double>& state, double pull) {
         checkpoint();
         if (out_.pose.size() >= most_rows_)
-            throw Error("the mark of the pass takes more than " + std::to_string(most_rows_) +
+            throw Error("tolerance-too-fine",
+                        "the mark of the pass takes more than " + std::to_string(most_rows_) +
                             " rows: it is too large for the tolerance",
                         out_.stroke, tolerance_);
         out_.pose.push_back(pose_ + scale_ * t);
@@ -264,20 +278,22 @@ class Tracer {
 void refuse_bad_poses(const Pass& pass, const Brush& brush) {
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         if (!pass.poses_mm.row(i).allFinite())
-            throw Error("pose " + std::to_string(i) + " has a coordinate that is not finite", pass.stroke);
+            throw Error("not-finite", "pose " + std::to_string(i) + " has a coordinate that is not finite",
+                        pass.stroke);
         const double largest = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
         if (largest > kLargestMm) {
             char text[120];
             std::snprintf(text, sizeof text, "pose %ld lies at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
                           largest);
-            throw Error(text, pass.stroke, largest, std::array<double, 2>{-kLargestMm, kLargestMm});
+            throw Error("geometry-out-of-range", text, pass.stroke, largest,
+                        std::array<double, 2>{-kLargestMm, kLargestMm});
         }
         const double depth = -pass.poses_mm(i, 2);
         if (depth > brush.depth_range_mm[1] + 1e-9) {
             char text[200];
             std::snprintf(text, sizeof text, "depth %.3f mm of pose %ld is outside the range [%.1f, %.1f] mm of brush ",
                           depth, long(i), brush.depth_range_mm[0], brush.depth_range_mm[1]);
-            throw Error(text + brush.name, pass.stroke, depth, brush.depth_range_mm);
+            throw Error("depth-out-of-range", text + brush.name, pass.stroke, depth, brush.depth_range_mm);
         }
     }
 }
@@ -292,53 +308,11 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bo
     PassMarks marks;
     marks.stroke = pass.stroke;
     Tracer tracer(brush, tolerance_mm, for_outlines, std::size_t(pass.poses_mm.rows()), marks);
-    const Eigen::Index n = pass.poses_mm.rows();
-    if (n == 0) {
-        tracer.finish();
-        return marks;
+    if (pass.poses_mm.rows() > 0) {
+        if (pass.poses_mm(0, 2) > 0.0)
+            tracer.begin_above(pass.poses_mm.row(0).head<2>().transpose(), pass.poses_mm(0, 2));
+        walk_pass(pass.poses_mm, pass.arcs, 0.0, false, tracer);
     }
-    const auto q = [&](Eigen::Index i) -> Vec2<double> { return pass.poses_mm.row(i).head<2>().transpose(); };
-    const auto z = [&](Eigen::Index i) { return pass.poses_mm(i, 2); };
-
-    // a pass that begins below the paper's surface is set down on the spot, one that ends there lifted on the spot
-    tracer.place(0.0, 0.0);
-    if (z(0) > 0.0) {
-        tracer.lifted(q(0), z(0), 0.0);
-    } else {
-        tracer.touch(q(0));
-        if (z(0) < 0.0) tracer.move(Move<double>(q(0), q(0), 0.0, -z(0)));
-    }
-    auto arc = pass.arcs.begin();
-    for (Eigen::Index i = 0; i + 1 < n; ++i) {
-        while (arc != pass.arcs.end() && arc->last <= i) ++arc;
-        const Vec2<double> a = q(i), b = q(i + 1);
-        const double za = z(i), zb = z(i + 1);
-        if (za <= 0.0 && zb <= 0.0) {
-            tracer.place(double(i), 1.0);
-            if (arc != pass.arcs.end() && arc->first <= i)
-                tracer.move(arc_between<double>(a, b, turn_between(*arc, a, b), -za));
-            else
-                tracer.move(Move<double>(a, b, -za, -zb));
-        } else if (za > 0.0 && zb > 0.0) {
-            tracer.place(double(i), 1.0);
-            tracer.lifted(b, zb, 1.0);
-        } else {
-            const double t = za / (za - zb);
-            const Vec2<double> c = a + t * (b - a);
-            if (za > 0.0) {
-                tracer.place(double(i) + t, 1.0 - t);
-                tracer.touch(c);
-                if (zb < 0.0) tracer.move(Move<double>(c, b, 0.0, -zb));
-            } else {
-                tracer.place(double(i), t);
-                if (t > 0.0) tracer.move(Move<double>(a, c, -za, 0.0));
-                tracer.place(double(i), 1.0);
-                tracer.lifted(b, zb, 1.0);
-            }
-        }
-    }
-    tracer.place(double(n - 1), 0.0);
-    if (z(n - 1) < 0.0) tracer.move(Move<double>(q(n - 1), q(n - 1), -z(n - 1), 0.0));
     tracer.finish();
     return marks;
 }

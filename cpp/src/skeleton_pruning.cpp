@@ -76,10 +76,19 @@ std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size
         if (axis_.out[junction].size() < 3) continue;
         const double share = axis_.share(h);
         if (share < least_share && !is_limb(h, least_share, least_limb))
-            drops.push_back({junction, share, h, share >= kStemEnd * least_share && corner_[p] >= kLeastCorner});
+            drops.push_back({junction, share, h, share >= kStemEnd * least_share && is_blunt(h)});
     }
     sort_and_thin(drops);
     return drops;
+}
+
+/// Whether a corner was dropped at the end of a branch: of both of a square end, or of the one that stands out less.
+bool KeptBranches::is_blunt(std::size_t half) const {
+    for (std::size_t h = half; h != VoronoiAxis::none; h = axis_.next[h]) {
+        const std::size_t p = axis_.to(h);
+        if (is_end_[p] || (axis_.next[h] == VoronoiAxis::none && corner_[p] >= kLeastCorner)) return true;
+    }
+    return false;
 }
 
 /// A corner looks the same from all places on its branch; a bar on a thick stem adds little to the stem's disc, but

@@ -35,6 +35,7 @@ class KeptBranches {
     };
 
     std::vector<Drop> judged(const std::vector<std::size_t>& ends, double least_share, double least_limb) const;
+    bool is_blunt(std::size_t half) const;
     bool is_limb(std::size_t half, double least_share, double least_limb) const;
     /// Where a line would end, its way out to the one corner that stands out stays.
     void keep_ends(std::vector<Drop>& drops);

@@ -28,7 +28,7 @@ Error refusal_of(Act act) {
         return error;
     }
     FAIL("it was not refused");
-    return Error("");
+    return Error("", "");
 }
 
 const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name": "flat", "depth_range_mm": [0, 4],
@@ -49,7 +49,7 @@ const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name":
 const std::string kPlan = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50.5],
   "author": "me", "passes": [
     {"stroke": "a", "poses_mm": [[1, 2, 0], [3.5, 2, -1]], "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456",
-     "settings": {"dry": true}, "tilt": [[0, 1, 5, 5, -1]], "mood": "calm"},
+     "settings": {"dry": true, "order": -3}, "tilt": [[0, 1, 5, 5, -1]], "mood": "calm"},
     {"stroke": "b", "poses_mm": [[7, 8, -2]]}]})";
 
 const std::string kArcs = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50],
@@ -223,10 +223,13 @@ TEST_CASE("plan.json: every key arrives and is written back") {
     CHECK(pass.speed_mm_s == 12.5);
     CHECK(pass.layer == "ink");
     CHECK(pass.colour == "#123456");
-    CHECK(pass.settings == R"({"dry":true})");
+    CHECK(pass.settings.order == -3);
+    CHECK(!pass.settings.passes);
+    CHECK(pass.settings.extra == R"({"dry":true})");
     CHECK(pass.extra == R"({"tilt":[[0,1,5,5,-1]],"mood":"calm"})");
     CHECK(plan.passes[1].speed_mm_s == 20.0);
-    CHECK(plan.passes[1].settings == "{}");
+    CHECK(!plan.passes[1].settings.order);
+    CHECK(plan.passes[1].settings.extra == "{}");
     CHECK(plan.passes[1].poses_mm(0, 2) == -2.0);
     CHECK(io::write_plan(plan) == R"({
   "format": "brushsvg/plan",
@@ -236,7 +239,7 @@ TEST_CASE("plan.json: every key arrives and is written back") {
   "sheet_mm": [100, 50.5],
   "author": "me",
   "passes": [
-    {"stroke": "a", "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456", "settings": {"dry":true},
+    {"stroke": "a", "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456", "settings": {"order":-3,"dry":true},
      "tilt": [[0,1,5,5,-1]],
      "mood": "calm",
      "poses_mm": [[1, 2, 0], [3.5, 2, -1]]},
@@ -265,7 +268,9 @@ TEST_CASE("plan.json: each fault is named with its key") {
         {"12.5", "0", "passes[0].speed_mm_s", "greater than 0, not 0"},
         {"12.5", "2e6", "passes[0].speed_mm_s", "at most 1e6, not 2000000"},
         {"[3.5, 2, -1]", "[3.5, 2e6, -1]", "passes[0].poses_mm[1]", "outside [-1e6, 1e6] mm"},
-        {"{\"dry\": true}", "[]", "passes[0].settings", "must be an object, not an array"},
+        {"{\"dry\": true, \"order\": -3}", "[]", "passes[0].settings", "must be an object, not an array"},
+        {"\"order\": -3", "\"order\": \"x\"", "passes[0].settings.order", "must be a number, not a string"},
+        {"\"order\": -3", "\"order\": 1.5", "passes[0].settings.order", "must be a whole number, not 1.5"},
         {"[100, 50.5]", "[100, 0]", "sheet_mm", "within (0, 1e6] mm, not be 0"},
         {"[100, 50.5]", "[100, 1e300]", "sheet_mm", "within (0, 1e6] mm, not be 1e+300"},
         {"[100, 50.5]", "[100]", "sheet_mm", "two numbers"},
@@ -368,7 +373,10 @@ TEST_CASE("plan.json: what cannot be read back is not written") {
     CHECK(refused([&](Plan& p) { p.passes[0].poses_mm(1, 2) = 0.01; }) == "passes[0].poses_mm[1]");
     CHECK(refused([&](Plan& p) { p.passes[0].poses_mm.resize(0, 3); }) == "passes[0].poses_mm");
     CHECK(refused([&](Plan& p) { p.passes[0].speed_mm_s = nan; }) == "passes[0].speed_mm_s");
-    CHECK(refused([&](Plan& p) { p.passes[0].settings = "7"; }) == "passes[0].settings");
+    CHECK(refused([&](Plan& p) { p.passes[0].settings.extra = "7"; }) == "passes[0].settings.extra");
+    CHECK(refused([&](Plan& p) { p.passes[0].settings.extra = "{\"order\": 1}"; }) == "passes[0].settings.extra");
+    CHECK(refused([&](Plan& p) { p.passes[0].settings.width_mm = nan; }) == "passes[0].settings.width_mm");
+    CHECK(refused([&](Plan& p) { p.passes[0].settings.brush = "\xc3"; }) == "passes[0].settings");
     CHECK(refused([&](Plan& p) { p.passes[0].extra = "{\"stroke\": 1}"; }) == "passes[0].extra");
     CHECK(refused([&](Plan& p) { p.passes[0].layer = "\xc3"; }) == "passes[0].layer");
     CHECK(refused([&](Plan& p) { p.sheet_mm = {0.0, 10.0}; }) == "sheet_mm");

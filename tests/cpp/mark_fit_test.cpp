@@ -193,6 +193,69 @@ TEST_CASE("where the TCP passes the resting patch the mark's edge moves no faste
     }
 }
 
+TEST_CASE("an arc is followed on its circle, not on its chords") {
+    // from the left half of a circle's diameter to the right: 4 poses 60 degrees apart, or 181
+    const auto half_circle = [](Eigen::Index parts) {
+        Poses poses(parts + 1, 3);
+        for (Eigen::Index k = 0; k <= parts; ++k) {
+            const double angle = M_PI * double(k) / double(parts);
+            poses.row(k) << -15.0 * std::cos(angle), 15.0 * std::sin(angle), -3.0;
+        }
+        return poses;
+    };
+    Ring ring(30, 2);
+    for (Eigen::Index k = 0; k < 30; ++k) {
+        const double angle = 2.0 * M_PI / 30.0 * double(k);
+        ring.row(k) << 16.0 * std::cos(angle), 6.0 + 10.0 * std::sin(angle);
+    }
+    const Eigen::Vector2d still = Eigen::Vector2d::Zero();
+    const auto distances = [&](const Poses& poses, const std::vector<Arc>& arcs) {
+        const MarkModel model({{"s", poses, {ring}, arcs}}, {});
+        const VectorXd x = model.unknowns({{3.0, 0.2}, {0.0, 0.4}, {0.0, 0.5}});
+        VectorXd at;
+        RowMajor by = RowMajor::Zero(model.points(0), x.size()), own = RowMajor::Zero(model.points(0), 2);
+        REQUIRE(model.distances(0, x.data(), still.data(), at, &by, &own));
+        return at;
+    };
+    const VectorXd truth = distances(half_circle(180), {});
+    const Arc arc{0, 3, {0.0, 0.0}, -1};
+    CHECK((distances(half_circle(3), {arc}) - truth).cwiseAbs().maxCoeff() < 0.03);
+    CHECK((distances(half_circle(3), {}) - truth).cwiseAbs().maxCoeff() > 1.0);
+    CHECK_THROWS_WITH_AS(fit_marks({{"s", half_circle(3), {ring}, {{0, 9, {0.0, 0.0}, -1}}}}, std::nullopt, {}),
+                         doctest::Contains("arc 0 of stroke s names poses 0 to 9"), Error);
+}
+
+TEST_CASE("laws with footprints that no brush has predict nothing: their instants would be a million") {
+    Poses poses(3, 3);
+    poses << 0, 0, -3, 30, 0, -6, 30, 25, -6;
+    Ring ring(4, 2);
+    ring << -9, -3, 33, -3, 33, 25, -9, 25;
+    const MarkModel model({{"s", poses, {ring}}}, {});
+    const Eigen::Vector2d still = Eigen::Vector2d::Zero();
+    for (const double half : {0.4, 4.0, 400.0}) {
+        const VectorXd x = model.unknowns({{3.0}, {0.0, 0.3}, {0.0, half}});
+        VectorXd at;
+        CHECK(model.distances(0, x.data(), still.data(), at, nullptr, nullptr) == half < 100.0);
+    }
+}
+
+TEST_CASE("marks that no brush paints are refused by counted work, and one of them is named") {
+    Poses poses(4, 3);
+    poses << 0, 0, 0, 12, 0, -3, 30, 0, -3, 30, 25, -3;
+    Ring star(24, 2);
+    for (Eigen::Index k = 0; k < star.rows(); ++k) {
+        const double angle = 2.0 * M_PI / 24.0 * double(k), radius = k % 2 ? 30.0 : 4.0;
+        star.row(k) << 15.0 + radius * std::cos(angle), 10.0 + radius * std::sin(angle);
+    }
+    try {
+        fit_marks({{"a star", poses, {star}}}, std::nullopt, {});
+        FAIL("a brush was found that paints a star");
+    } catch (const Error& refusal) {
+        CHECK(refusal.where() == "a star");
+        CHECK(std::string(refusal.what()).find("no brush was found that paints these marks") != std::string::npos);
+    }
+}
+
 TEST_CASE("what cannot be fitted is refused") {
     CHECK_THROWS_AS(fit_marks({}, std::nullopt, {}), Error);
     Poses poses(2, 3);

@@ -44,6 +44,17 @@ TEST_CASE("holes survive a union with what does not cover them, and are filled b
     CHECK(overlap(frame, {box(0, 0, 10, 10)}) == doctest::Approx(0.84));
 }
 
+TEST_CASE("clockwise rings are holes in nothing: they are refused, not lost") {
+    const Ring square = box(0, 0, 4, 4), turned = square.colwise().reverse();
+    CHECK(area({turned}) == doctest::Approx(-16.0));
+    CHECK_THROWS_WITH_AS(overlap({turned}, {turned}), doctest::Contains("run clockwise"), Error);
+    CHECK_THROWS_AS(overlap({square}, {turned}), Error);
+    CHECK_THROWS_AS(intersect({turned}, {square}), Error);
+    CHECK_THROWS_AS(unite({turned}), Error);
+    CHECK(area(fill({turned}, FillRule::nonzero)) == doctest::Approx(16.0));
+    CHECK(unite({square, turned}).empty());  // a hole as large as the shape
+}
+
 TEST_CASE("many shapes far from the origin") {
     Rings boxes;
     for (int i = 0; i < 300; ++i) boxes.push_back(box(5000 + 0.3 * i, 5000 + 0.1 * i, 1, 1));

@@ -16,7 +16,12 @@ ROOT = Path(__file__).parents[2]
 @pytest.fixture(scope="session", autouse=True)
 def _installed():
     assert COMMAND.exists(), f"{COMMAND} is missing: run make setup"
-    needed = (("rs274", "linuxcnc-uspace"), ("inkscape", "inkscape"), ("chromium", "chromium"))
+    needed = (
+        ("rs274", "linuxcnc-uspace"),
+        ("inkscape", "inkscape"),
+        ("chromium", "chromium"),
+        ("tesseract", "tesseract-ocr"),
+    )
     for tool, package in needed:
         assert shutil.which(tool), f"{tool} is missing: apt-get install --no-install-recommends {package}"
 

@@ -972,6 +972,7 @@ OWN = {
     "insert on a layer that is off": "only a frozen layer hides what a block holds on other layers",
     "colour 255": "white ink on white paper: ours is black",
     "dashed circle": "it goes another way round",
+    "dashed polyline by segments": "it dashes on over the corners, whatever the polyline's flag says",
     "dashed wide polyline": "it does not dash them",
 }
 

@@ -15,7 +15,7 @@ if not hasattr(core, "fit_marks"):
 
 from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration import mark_report  # noqa: E402
-from brushsvg.calibration.from_marks import _refuse_unsure, brush_of, calibrate_marks, expected_brush  # noqa: E402
+from brushsvg.calibration.from_marks import _refuse_undetermined, brush_of, calibrate_marks, expected_brush  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.mark_report import report  # noqa: E402
 from brushsvg.errors import Error  # noqa: E402
@@ -200,7 +200,7 @@ def test_a_law_that_is_left_open_is_refused_with_its_number():
         """The lag's cubic is open, by this share of the lag at the deepest, 10 mm."""
         covariance = np.zeros((13, 13))
         covariance[3, 3] = (share * 12.0 / 1000.0 / 1.96) ** 2
-        _refuse_unsure(brush_of(laws, "b", (0.0, 10.0), covariance), SimpleNamespace(remarks=[]))
+        _refuse_undetermined(brush_of(laws, "b", (0.0, 10.0), covariance), SimpleNamespace(remarks=[]))
 
     with pytest.raises(
         Error, match=r"do not determine the lag: 12\.0 \+- 14\.4 mm \(95 %\) at depth 10 mm: paint curved"

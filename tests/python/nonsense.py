@@ -80,7 +80,7 @@ def some_strokes():
         yield stroke(width=[(0, value), (1, 1)])
         yield stroke(width=[(value, 1), (1, 1)])
         yield stroke(wanted_mm=[np.full((4, 2), value), np.zeros((0, 2))])
-    yield stroke(settings="{", id="\0")
+    yield stroke(settings=_core.Settings(extra="{"), id="\0")
 
 
 def a_pass(poses=((20, 20, 0), (30, 20, -2), (40, 20, -2)), **more):
@@ -99,9 +99,10 @@ def plans():
     yield plan(a_pass([(3, 3, -2)]))
     yield plan(a_pass(arcs=[brushsvg.Arc(-1, 5, (0, 0), 1)]))
     yield plan(a_pass(arcs=[brushsvg.Arc(1, 2, (35, 20), 1)] * 3))
-    yield plan(a_pass(settings="{", extra="[]"), extra="{")
+    yield plan(a_pass(settings=_core.Settings(extra="{"), extra="[]"), extra="{")
     yield plan(a_pass(speed_mm_s=1e-320))
     for value in (NAN, INF, -INF, 1e300, 1e6, -1e6):
+        yield plan(a_pass(settings=_core.Settings(speed_mm_s=value, width_mm=value, brush="\0")))
         yield plan(a_pass([(0, 0, 0), (value, 0, -2)]))
         yield plan(a_pass([(0, 0, 0), (9, 0, value)]))
         yield plan(a_pass(speed_mm_s=value), sheet_mm=(value, value))
@@ -210,6 +211,7 @@ ARGUMENTS = {
     ],
     "Plan": [["b", *TEXTS], ["", *TEXTS], [(9, 9), (NAN, INF), (9,)], [[a_pass()], []], ["{}", *TEXTS]],
     "ReadOptions": [],
+    "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
     "brush_names": [],
@@ -256,7 +258,7 @@ ARGUMENTS = {
     "within_reach": [
         lambda: ([each] for each in some_strokes()),
         brushes,
-        ["clamp", "passes", "refuse", "varnish"],
+        ["auto", "clamp", "passes", "refuse", "varnish"],
     ],
     "write_cell": [cells],
     "write_marks": [marks],
@@ -296,13 +298,7 @@ def painted_marks():
     yield [_core.PaintedMark("a", poses[:0], [square])]
     for rings in ([], [square[:2]], [square[::-1]], [square * 0]):
         yield [_core.PaintedMark("a", poses, rings)]
-    for value in (
-        1e300,
-        5.5e9,
-        NAN,
-        INF,
-        -INF,
-    ):  # small ones make marks that no brush paints, tried for minutes
+    for value in NUMBERS[:8]:  # small ones make marks that no brush paints
         yield [_core.PaintedMark("a", np.where(poses == 30, value, poses), [square])]
         yield [_core.PaintedMark("a", poses, [np.where(square == 33, value, square)])]
 

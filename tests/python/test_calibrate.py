@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy import stats
+from diagnostics import agrees, in_json
+from scipy import special
 
 from brushsvg import _core, find_brush
 from brushsvg.brush.confidence import law_band
@@ -114,76 +115,75 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
 @pytest.mark.parametrize(
     ("rows", "where", "said"),
     [
-        ({"lag": values([7, 7.4], [3, 3.01]), **WIDTH}, "lag[0]", "at depth 3 mm alone: measure it at two"),
+        ({"lag": values([7, 7.4], [3, 3.01]), **WIDTH}, "lag[0]", "depths-too-few 3"),
         (
             {"straight": [{"depth_mm": 3, "path_mm": 60, "distance_mm": 50}], **WIDTH},
             "straight",
-            "the two cannot be told apart: add angles",
+            "law-undetermined",
         ),
-        ({"lag": values(LAG / 1000), **WIDTH}, "lag", "all lengths count in millimetres"),
+        ({"lag": values(LAG / 1000), **WIDTH}, "lag", "not-millimetres"),
         (
             {"lag": values(0 * LAG), **WIDTH},
             "lag[0]",
-            "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new with --lag 0",
+            "pen-without-lag 0 0",
         ),
         (
             {"lag": values(LAG), "half_width": values(HALF[1:] * 2, DEPTHS[1:]), **WIDTH},
             "half_width[0]",
-            "these rows are twice what those of width say: half_width counts from the middle",
+            "half-width-doubled",
         ),
         (
             {"lag": values(LAG), "half_width": values(HALF), "width": values(HALF)},
             "half_width[0]",
-            "these rows are twice what those of width say",
+            "half-width-doubled",
         ),
         (
             {"lag": values(LAG / 1000), "width": values(HALF / 500)},
             "half_width",
-            "depths and widths both count in millimetres",
+            "not-millimetres",
         ),
         (
             {"lag": values(LAG / 1e3, DEPTHS / 1e3), "width": values(HALF / 500, DEPTHS / 1e3)},
             "depth_mm",
-            "depths and values count in millimetres",
+            "depth-out-of-range",
         ),
-        ({"lag": values(LAG[::-1]), **WIDTH}, "lag[0]", "the lag falls by"),
+        ({"lag": values(LAG[::-1]), **WIDTH}, "lag[0]", "law-falls"),
         (
             {"lag": values(LAG), "width": values(2 * HALF[::-1])},
             "width[0]",
-            "are the rows in the right order, and depths counted from first contact down?",
+            "law-falls",
         ),
-        ({"lag": values(LAG), "width": values(2 * HALF[MIXED])}, "width[0]", "hardly follows the depth, R^2"),
+        ({"lag": values(LAG), "width": values(2 * HALF[MIXED])}, "width[0]", "law-scatters 2"),
         (
             {"lag": values(LAG), "width": values(0 * HALF + 3)},
             "width[0]",
-            "at every depth: such a pen is made by",
+            "pen-without-lag",
         ),
         (
             {"lag": values(LAG), "tip_gap": values(10 * GAP), **WIDTH},
             "tip_gap",
-            "the centre of friction must lie in it",
+            "not-millimetres",
         ),
         (
             {"lag": values(LAG), "tip_to_widest": values(10 * WIDEST), **WIDTH},
             "tip_to_widest",
-            "farther than the tool",
+            "not-millimetres",
         ),
-        ({"angles": series(np.pi / 2, unit=np.pi / 180), **WIDTH}, "angles[0]", "are these radians?"),
-        ({"angles": series(way=-1), **WIDTH}, "angles[0]", "are the rows in the right order?"),
-        ({"angles": series(s=(0.001, 0.003, 0.006)), **WIDTH}, "lag", "all lengths count in millimetres"),
+        ({"angles": series(np.pi / 2, unit=np.pi / 180), **WIDTH}, "angles[0]", "angles-in-radians"),
+        ({"angles": series(way=-1), **WIDTH}, "angles[0]", "angles-grow"),
+        ({"angles": series(s=(0.001, 0.003, 0.006)), **WIDTH}, "lag", "not-millimetres"),
         (
             {"lag": values(LAG), "depth_range_mm": [0, 40], **WIDTH},
             "width[0]",
-            'or give "depth_range_mm": [0, 10]',
+            "depth-not-measured depth_range_mm 0 10",
         ),
-        ({"lag": values(LAG[:3], DEPTHS[:3]), **WIDTH}, "lag[0]", "measure it deeper, or give"),
+        ({"lag": values(LAG[:3], DEPTHS[:3]), **WIDTH}, "lag[0]", "depth-not-measured"),
     ],
 )
 def test_what_no_brush_can_have_is_refused_with_what_to_do(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 1
-    told = capsys.readouterr().err
-    assert f"m.json: {where}: " in told and said in told
+    status, _, ((file, told),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
+    assert (status, file, told.where) == (1, str(tmp_path / "m.json"), where) and agrees(told, said), told
     assert not (tmp_path / "b.json").exists()
 
 
@@ -504,16 +504,16 @@ def test_a_calibration_of_five_readings_says_one_interval_for_one_number(tmp_pat
     half, _ = law_band(made.brush, "lag", np.array([0.0]))
     assert half[0] == pytest.approx(law.half_interval_95[0])
     error = np.sqrt(np.diag(made.brush.covariance)[:3])
-    np.testing.assert_allclose(law.half_interval_95, stats.t.ppf(0.975, 2) * error, rtol=1e-9)
+    np.testing.assert_allclose(law.half_interval_95, special.stdtrit(2, 0.975) * error, rtol=1e-9)
     again = _core.read_brush(_core.write_brush(made.brush))
     assert again.lag.degrees_of_freedom == 2 and '"degrees_of_freedom": 2' in _core.write_brush(made.brush)
 
 
 @pytest.mark.parametrize("freedom", [1, 2, 3.5, 10, 200])
 def test_quantiles_are_scipys(freedom):
-    assert _core.deviations_of_95(freedom) == pytest.approx(stats.t.ppf(0.975, freedom), rel=1e-9)
-    assert _core.deviations_of_95() == pytest.approx(stats.norm.ppf(0.975), rel=1e-12)
+    assert _core.deviations_of_95(freedom) == pytest.approx(special.stdtrit(freedom, 0.975), rel=1e-9)
+    assert _core.deviations_of_95() == pytest.approx(special.ndtri(0.975), rel=1e-12)
     t = np.array([-30.0, -2.0, 0.0, 0.5, 4.0])
     np.testing.assert_allclose(
-        _core.as_normal(t, freedom), stats.norm.isf(stats.t.sf(np.abs(t), freedom)), rtol=1e-7, atol=1e-12
+        _core.as_normal(t, freedom), -special.ndtri(special.stdtr(freedom, -np.abs(t))), rtol=1e-7, atol=1e-12
     )

@@ -4,7 +4,7 @@ import gzip
 
 import pytest
 
-from brushsvg import read_plan
+from brushsvg import Settings, read_plan
 from brushsvg.cli import commands, main
 from brushsvg.cli.arguments import parse
 from brushsvg.machine.cell_file import cell_names
@@ -109,13 +109,13 @@ FAT = (
 
 
 def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
-    for name, setting in (("said.svg", 'data-brushsvg-wide="passes"'), ("d.svg", "")):
+    for name, setting in (("said.svg", 'data-brushsvg-wide="clamp"'), ("d.svg", "")):
         (desk / name).write_text(FAT.format(setting))
     assert main(["convert", "said.svg", "said.ngc"]) == 0
-    assert main(["convert", "d.svg", "typed.ngc", "--wide", "passes"]) == 0
-    assert main(["convert", "d.svg", "clamped.ngc"]) == 0
+    assert main(["convert", "d.svg", "typed.ngc", "--wide", "clamp"]) == 0
+    assert main(["convert", "d.svg", "filled.ngc"]) == 0
     said = (desk / "said.ngc").read_bytes()
-    assert said == (desk / "typed.ngc").read_bytes() != (desk / "clamped.ngc").read_bytes()
+    assert said == (desk / "typed.ngc").read_bytes() != (desk / "filled.ngc").read_bytes()
     assert main(["check", "said.ngc", "said.svg"]) == 0
     (desk / "no.svg").write_text(FAT.format('data-brushsvg-wide="refuse"'))
     assert "width 14 mm of its outline is outside" in refusal_of(capsys, "convert", "no.svg", "x.ngc")
@@ -126,7 +126,7 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
     [
         ('compensation="most"', "data-brushsvg-compensation: 'most' is none of none, constant, closed"),
         ('tolerance="11mm"', "data-brushsvg-tolerance: 11 mm is outside the range [1e-05, 10] mm"),
-        ('wide="very"', "data-brushsvg-wide: 'very' is none of clamp, passes, refuse"),
+        ('wide="very"', "data-brushsvg-wide: 'very' is none of auto, clamp, passes, refuse"),
         ('cell=""', "data-brushsvg-cell: it is empty"),
         ('machine="x"', "data-brushsvg-machine is not known; known: width, speed"),
     ],
@@ -162,4 +162,4 @@ def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
     assert main(["convert", "d.svg", "x.json"]) == 0
-    assert [each.settings for each in read_plan(desk / "x.json").passes] == ["{}", "{}"]
+    assert [each.settings for each in read_plan(desk / "x.json").passes] == [Settings(), Settings()]

@@ -174,3 +174,49 @@ def test_clipped_blocks_are_named():
     assert [spans(element) for element in design.elements] == [[(0, 99)]] * 2
     first = design.elements[0].id.split("/")[0]
     assert said(design) == [(first, "its clipping (XCLIP) is not read: it counts as whole", "0")]
+
+
+def corners(element):
+    """Of each dash the points at which it begins, turns and ends."""
+    return [
+        [tuple(float(round(x, 6)) + 0.0 for x in point) for point in (*s.cubics[:, 0], s.cubics[-1, 3])]
+        for s in element.subpaths
+    ]
+
+
+SIDES = [(0, 0), (32, 0), (32, 32)]
+TURNING = [
+    [(0, 0), (10, 0)],
+    [(15, 0), (25, 0)],
+    [(30, 0), (32, 0), (32, 10)],
+    [(32, 15), (32, 25)],
+    [(32, 30), (32, 32)],
+]
+
+
+@pytest.mark.parametrize("kind", ["add_lwpolyline", "add_polyline2d"])
+def test_dashes_begin_anew_at_corners_unless_the_polyline_says_otherwise(kind):
+    def draw(flags, close=False):
+        look = {"linetype": "DASHED", "flags": flags}
+        return lambda m: getattr(m, kind)(SIDES, close=close, dxfattribs=look)
+
+    (anew,) = read(typed(draw(0))).elements
+    assert corners(anew) == TURNING
+    (on,) = read(typed(draw(128))).elements
+    assert [ends[0] for ends in corners(on)] == [(0, 0), (15, 0), (30, 0), (32, 13), (32, 28)]
+    assert corners(on)[2] == [(30, 0), (32, 0), (32, 8)]
+    (ring,) = read(typed(draw(0, close=True))).elements  # closed by a side of 45.25 mm
+    assert corners(ring)[4] == [(32, 30), (32, 32), (pytest.approx(32 - 50**0.5, abs=1e-5),) * 2]
+    assert corners(ring)[0][-2:] == [(0, 0), (10, 0)] and len(corners(ring)) == 7
+
+
+def test_sides_that_are_shorter_than_the_pattern_are_unbroken():
+    def draw(points, closed=False):
+        return lambda m: m.add_lwpolyline(points, close=closed, dxfattribs={"linetype": "DASHED"})
+
+    (element,) = read(typed(draw([(0, 0), (14, 0), (14, 14), (28, 14), (28, 0), (28, -14)]))).elements
+    assert corners(element) == [
+        [(0, 0), (14, 0), (14, 14), (28, 14), (28, 0), (28, -14)],
+    ]
+    (square,) = read(typed(draw([(0, 0), (14, 0), (14, 14), (0, 14)], closed=True))).elements
+    assert len(square.subpaths) == 1 and square.subpaths[0].closed

@@ -4,6 +4,7 @@ import json
 import re
 
 import pytest
+from diagnostics import agrees, in_json
 from programs import LANGUAGES, call
 
 from brushsvg.machine.cell_file import SHIPPED
@@ -37,9 +38,10 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
     status, out, err = call(capsys, "check", program, "two.svg", "--fit", "90x50")
     assert (status, err) == (0, [])
     assert out.endswith("nothing forbids to run it\n")
-    status, _, err = call(capsys, "check", program, "two.svg")
-    assert status == 1
-    assert any("the drawing is painted within" in line for line in err), "it was fitted into less"
+    status, _, told = in_json(capsys, "check", program, "two.svg")
+    assert (status, "border-elsewhere" in {each.code for _, each in told}) == (1, True), (
+        "it was fitted into less"
+    )
 
 
 @pytest.mark.parametrize("name", LANGUAGES)
@@ -62,40 +64,40 @@ def edited(old, new, count=1):
 
 CHANGED = {
     ("border", ".ngc"): [
-        (edited(r"(?m)^(G1 .*) Z10\.0000", r"\1 Z2.0000"), "height 2.00 mm is below the safe height, 10 mm"),
+        (edited(r"(?m)^(G1 .*) Z10\.0000", r"\1 Z2.0000"), "too-low 2.00 10"),
         (
             edited(r"(?m)^(G1 X\S+ Y\S+) Z10\.0000", r"\1 Z-9.0000"),
-            "while the brush touches|below the safe height",
+            "travel-too-low",
         ),
-        (edited(r"(?m)^G1 X\S+", "G1 X500.0000"), "350.00 mm beyond the right edge of the workspace"),
-        (edited(r"(?m)^G1 X(\S+)", "G1 X90.0000"), "for these strokes and this cell brushsvg would write"),
-        (edited(r"G4 P0\.500", "M0"), "brushsvg would write 'G4 P0.500'"),
-        (edited(r"(border: )\S+", r"\g<1>10.0"), "brushsvg would write"),
-        (edited(r"(border: )\S+", r"\g<1>1.0.0"), "its header is damaged"),
-        (edited(r"(border: )\S+", r"\g<1>-90"), "beyond the left edge of the workspace"),
-        (edited(r"\(border: .*\n", ""), "there is nothing to paint"),
-        (edited(r"\(sheet: .*\n", ""), "does not say how large the sheet is"),
+        (edited(r"(?m)^G1 X\S+", "G1 X500.0000"), "tool-off-sheet 350.00 right"),
+        (edited(r"(?m)^G1 X(\S+)", "G1 X90.0000"), "program-changed"),
+        (edited(r"G4 P0\.500", "M0"), "program-changed 'G4 P0.500'"),
+        (edited(r"(border: )\S+", r"\g<1>10.0"), "program-changed"),
+        (edited(r"(border: )\S+", r"\g<1>1.0.0"), "header-damaged"),
+        (edited(r"(border: )\S+", r"\g<1>-90"), "tool-off-sheet left"),
+        (edited(r"\(border: .*\n", ""), "nothing-to-paint"),
+        (edited(r"\(sheet: .*\n", ""), "sheet-unknown"),
     ],
     ("height", ".ngc"): [
         (
             edited(r"Z-0\.5000", "Z-2.5000", 0),
-            "height -2.50 mm is below the height of the lowest stroke, -1 mm",
+            "too-low -2.50 -1",
         ),
-        (edited(r"Z-0\.5000", "Z-0.6000", 0), "for these strokes and this cell brushsvg would write"),
-        (edited(r"F900\.0", "F1600.0", 0), "speed 26.7 mm/s while the brush touches, limit 25.0 mm/s"),
-        (edited(r"(?m)^G1 (.* Z0\.9000)", r"G0 \1"), "a rapid move while the brush touches"),
+        (edited(r"Z-0\.5000", "Z-0.6000", 0), "program-changed"),
+        (edited(r"F900\.0", "F1600.0", 0), "speed-out-of-range 26.7 25.0"),
+        (edited(r"(?m)^G1 (.* Z0\.9000)", r"G0 \1"), "rapid-too-low"),
         (
             edited(r"(?m)^(G0 X.*) Z10\.0000\n\n\(stroke 9 ", r"\1 Z3.0000\n\n(stroke 9 "),
-            "below the safe height",
+            "rapid-too-low 3.00",
         ),
-        (edited(r"heights: 1 to -1 mm", "heights: 1 to -30 mm"), "are 311 strokes, not 2 to 100"),
-        (edited(r"heights: 1 to", "heights: nan to"), "heights in its header: nan is outside the range"),
-        (edited(r"--z-offset 0\.50", "--z-offset 0.80"), "brushsvg would write"),
-        (edited(r"\(heights: .*\n", ""), "the brush touches the paper never"),
-        (edited(r"(?s)\(stroke 21 .*?\n\n", ""), "brushsvg would write"),
+        (edited(r"heights: 1 to -1 mm", "heights: 1 to -30 mm"), "strokes-out-of-range 311 2 100"),
+        (edited(r"heights: 1 to", "heights: nan to"), "header-damaged heights nan"),
+        (edited(r"--z-offset 0\.50", "--z-offset 0.80"), "program-changed"),
+        (edited(r"\(heights: .*\n", ""), "touches-miscounted never"),
+        (edited(r"(?s)\(stroke 21 .*?\n\n", ""), "program-changed"),
     ],
     ("height", ".nc"): [
-        (edited(r"(?m)^G4 P0\.0\d\d\n", "", 0), "at once while the brush touches|brushsvg would write"),
+        (edited(r"(?m)^G4 P0\.0\d\d\n", "", 0), "speed-out-of-range 'at once'"),
     ],
 }
 
@@ -108,18 +110,18 @@ def test_whatever_was_changed_is_told(desk, capsys, kind):
     assert call(capsys, *operands, *cell)[0] == 0
     text = (desk / f"job{suffix}").read_text()
     assert call(capsys, "check", f"job{suffix}")[0] == 0
-    for edit, words in CHANGED[kind]:
+    for edit, said in CHANGED[kind]:
         (desk / f"job{suffix}").write_text(edit(text))
-        status, _, err = call(capsys, "check", f"job{suffix}")
-        assert (status, any(re.search(words, line) for line in err)) == (1, True), (words, err)
+        status, _, told = in_json(capsys, "check", f"job{suffix}")
+        assert (status, any(agrees(each, said) for _, each in told)) == (1, True), (said, told)
 
 
 def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
     assert call(capsys, "height", "height.ngc")[0] == 0
-    status, _, err = call(capsys, "check", "height.ngc", "two.svg")
-    assert status == 1 and "paints no drawing: check it alone" in err[0]
-    status, _, err = call(capsys, "check", "height.ngc", "--preview", "x.png")
-    assert status == 1 and "there is no picture of it" in err[0]
+    status, _, ((_, told),) = in_json(capsys, "check", "height.ngc", "two.svg")
+    assert (status, told.code) == (1, "nothing-to-compare")
+    status, _, ((_, told),) = in_json(capsys, "check", "height.ngc", "--preview", "x.png")
+    assert (status, told.code) == (1, "nothing-to-show")
     status, out, _ = call(capsys, "check", "height.ngc", "--json")
     assert status == 0 and json.loads(out)["heights_mm"] == [1, -1, 0.1]
 
@@ -127,8 +129,8 @@ def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
 def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
     """Round a job that could never be run itself."""
     (desk / "two.svg").write_text(DRAWING.replace("C40 10 60 10 90 40", "L190 40"))
-    status, _, err = call(capsys, "border", "two.svg", "border.ngc")
-    assert status == 1 and "beyond the right edge of the workspace" in err[-1]
+    status, _, told = in_json(capsys, "border", "two.svg", "border.ngc")
+    assert status == 1 and agrees(told[-1][1], "tool-off-sheet right")
     assert not (desk / "border.ngc").exists()
 
 

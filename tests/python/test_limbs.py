@@ -87,3 +87,19 @@ def test_a_stem_inside_of_a_crossing_is_painted():
     """A thick stem between a bar and its foot lay in the crossing of both, where no line ran."""
     made = found("M20 5H28V33H33V37H28V42H32V45H16V42H20V37H8V33H20Z")
     assert reached(made, 20.5, 36, 27.5, 42) > 0.9
+
+
+@pytest.mark.parametrize(("top", "slant_deg"), [(5, 0), (8, 16)])
+def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_beside_the_bowl(top, slant_deg):
+    """Bowl and stem meet in necks; the first became a ring through both of them, with the foot left over; at the second
+    the stem began where the bowl leaves it."""
+    outer = (
+        f"M20 {top}H29V34C29 38 32 39 37 37C36 43 32 46 27 46C23 46 20 43 20 39"
+        "C17 44 13 46 9 46C-1 46 -1 5 10 5C15 5 18 7 20 10Z"
+    )
+    hole = "M20 14V34C18 38 15 40 12 40C5 40 5 11 12 11C16 11 18 12 20 14Z"
+    how = f'fill="#123456" stroke="none" fill-rule="evenodd" transform="translate(14) skewX({-slant_deg})"'
+    made, _ = strokes(read(f'<path id="a" {how} d="{outer}{hole}"/>'))
+    assert len(made) == 2, "a bowl and a stem"
+    down = [50 - _core.flatten(stroke, 0.05)[[0, -1], 1] for stroke in made]
+    assert any(first < top + 4.6 and last > 36 for first, last in down), down

@@ -1,7 +1,6 @@
 """Every number of every measurement file, one after the other, as something that it cannot be: a sentence with file,
 element and number, and no brush."""
 
-import copy
 import json
 import re
 import warnings
@@ -105,14 +104,14 @@ def places(value, path=()):
 
 
 def changed(content, path, value):
-    out = copy.deepcopy(content)
-    parent = out
-    for key in path[:-1]:
-        parent = parent[key]
-    if value is GONE:
-        del parent[path[-1]]
+    key, *rest = path
+    out = content.copy()
+    if rest:
+        out[key] = changed(content[key], rest, value)
+    elif value is GONE:
+        del out[key]
     else:
-        parent[path[-1]] = value
+        out[key] = value
     return out
 
 

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from diagnostics import refused
 
 from brushsvg import _core, compensate, find_brush, read_drawing, strokes
 from brushsvg.calibration.from_widths import new_brush
@@ -67,16 +68,16 @@ def test_no_lag_is_a_pen():
 @pytest.mark.parametrize(
     ("widths", "deepest", "said"),
     [
-        ([], None, "there is no width"),
-        ([(3, 7), (8, 2)], None, "no brush fits these widths"),
-        ([(3, -1)], None, "the width -1 mm is outside the range"),
-        ([(0, 1)], None, "the depth 0 mm of a width is outside the range"),
-        ([(3, float("nan"))], None, "the width nan mm"),
-        ([(3, 2)], 2, "the greatest depth 2 mm is outside the range"),
+        ([], None, "measurement-missing"),
+        ([(3, 7), (8, 2)], None, "width-falls"),
+        ([(3, -1)], None, "out-of-range -1"),
+        ([(0, 1)], None, "depth-out-of-range 0"),
+        ([(3, float("nan"))], None, "out-of-range nan"),
+        ([(3, 2)], 2, "depth-out-of-range 2"),
     ],
 )
 def test_what_no_brush_can_have_is_refused(widths, deepest, said):
-    with pytest.raises(Error, match=said):
+    with refused(said):
         new_brush("mine", 5.0, widths, deepest)
 
 
@@ -119,34 +120,36 @@ def test_a_table_as_any_spreadsheet_writes_it(separator, mark, ending):
         (
             "depth_mm;width_mm\n3;2,5\n8;7.1\n",
             "line 2, width_mm",
-            "'2,5' has a comma for its decimals and '7.1'",
+            "table-separators '2,5' '7.1'",
         ),
-        ("depth_mm;width_mm\n3;1.234,5\n", "line 2, width_mm", "'1.234,5' is not a number"),
-        ("depth_mm;width_mm\n3;1,234,567\n", "line 2, width_mm", "'1,234,567' is not a number"),
-        ("depth_mm;width_mm\n3,2.5\n", "line 2, depth_mm", "'3,2.5' is not a number"),
-        ("depth_mm,width_mm\n3;2,5\n", "line 2, depth_mm", "'3;2' is not a number"),
+        ("depth_mm;width_mm\n3;1.234,5\n", "line 2, width_mm", "not-a-number '1.234,5'"),
+        ("depth_mm;width_mm\n3;1,234,567\n", "line 2, width_mm", "not-a-number '1,234,567'"),
+        ("depth_mm;width_mm\n3,2.5\n", "line 2, depth_mm", "not-a-number '3,2.5'"),
+        ("depth_mm,width_mm\n3;2,5\n", "line 2, depth_mm", "not-a-number '3;2'"),
         (
             "depth_mm;width_mm\n3;2;5\n",
             "line 2",
-            "'5' stands beyond the columns of the first line\nin line 2",
+            "table-columns '5'",
         ),
-        ("depth_mm,width_mm\n3,2,5\n", "line 2", "or semicolons stand between columns"),
-        ("depth_mm,width_mm,a;depth_mm;width_mm\n", "line 1", "separated by commas and by semicolons"),
+        ("depth_mm,width_mm\n3,2,5\n", "line 2", "table-columns 5"),
+        ("depth_mm,width_mm,a;depth_mm;width_mm\n", "line 1", "table-separators"),
         (
             "depth_mm|width_mm\n3|2\n",
             "",
-            "with semicolons or tabs for the commas; it lacks depth_mm and width_mm",
+            "table-columns depth_mm width_mm",
         ),
-        ("depth_mm;weight\n3;2\n", "", "it lacks width_mm"),
-        ("depth_mm;width_mm\n3;1_0\n", "line 2, width_mm", "'1_0' is not a number"),
-        ("depth_mm;width_mm\n3;\u0663\n", "line 2, width_mm", "is not a number"),
-        ('depth_mm;width_mm\n"3;2\n', "line 2, depth_mm", "is not a number"),
+        ("depth_mm;weight\n3;2\n", "", "table-columns width_mm"),
+        ("depth_mm;width_mm\n3;1_0\n", "line 2, width_mm", "not-a-number '1_0'"),
+        ("depth_mm;width_mm\n3;\u0663\n", "line 2, width_mm", "not-a-number"),
+        ('depth_mm;width_mm\n"3;2\n', "line 2, depth_mm", "not-a-number"),
     ],
 )
 def test_a_table_that_could_be_read_in_two_ways_is_refused(table, where, said):
-    with pytest.raises(Error, match=said) as refused:
+    with refused(said, where) as refusal:
         read_widths(table)
-    assert refused.value.where == where
+    assert ("semicolons stand" in str(refusal.value)) == (table.endswith("3,2,5\n")), (
+        "only commas can be both"
+    )
 
 
 def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):

@@ -27,12 +27,15 @@ WATER = Station("water", (-20.0, 70.0), depth_mm=12.0)
 BRUSH = SimpleNamespace(name="b", max_speed_mm_s=25.0)
 
 
+ASKED, REFUSED = (_core.Settings(reload=asked) for asked in (True, False))
+
+
 def cell_with(reload, *stations):
     return replace(find_cell(), reload=reload, stations=stations or (BLACK, ANY, WATER))
 
 
 def plan_of(*strokes):
-    """Strokes as (length in mm, colour, layer, and perhaps settings as JSON)."""
+    """Strokes as (length in mm, colour, layer, and perhaps settings)."""
     passes = [
         _core.Pass(f"s{k}", np.array([(0, 0, 0), (length, 0, -1.0)]), 20.0, layer, colour, *settings)
         for k, (length, colour, layer, *settings) in enumerate(strokes, 1)
@@ -78,11 +81,17 @@ def test_another_colour_is_washed_for():
 def test_a_resumed_job_begins_with_paint():
     plan = plan_of(*[(40, "#000000", "")] * 4)
     assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
-        ["black"],
+        [],
         [],
         ["black"],
         [],
     ]
+
+
+def test_what_is_not_painted_again_asks_for_no_paint():
+    plan = plan_of((40, "#00ff00", ""), (40, "#000000", ""))
+    cell = cell_with(Reload("stroke"), BLACK)
+    assert names(visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
 
 
 def test_a_colour_that_nobody_serves_is_refused():
@@ -134,9 +143,7 @@ def test_a_station_out_of_the_box_is_refused():
 
 
 def test_a_stroke_may_ask_for_paint_or_go_without():
-    plan = plan_of(
-        (9, "#000000", ""), (9, "#000000", "", '{"reload": true}'), (999, "#000000", "", '{"reload": false}')
-    )
+    plan = plan_of((9, "#000000", ""), (9, "#000000", "", ASKED), (999, "#000000", "", REFUSED))
     assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
     assert in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))) == whole(plan)
 
@@ -179,7 +186,7 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
         assert where == "rub" and sentence.startswith(
             f"{painted_mm(passes[0]):.0f} mm are painted without a place"
         )
-        passes[0].settings = '{"reload": false}'
+        passes[0].settings = REFUSED
         assert too_long(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
     for every in (40.0, 90.0):  # a line is cut between its two poses
         long = [
@@ -220,7 +227,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     ]
     names_of_loads = [("short", 1), ("long", 1), ("long", 2), ("long", 3), ("last", 1)]
     assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in loads.loads] == names_of_loads
-    assert {a_pass.settings for a_pass in loads.loads} == {"{}"}
+    assert {a_pass.settings for a_pass in loads.loads} == {_core.Settings()}
     assert names(visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
     assert max(map(painted_mm, loads.loads)) < 120 + 8
     rings = []
@@ -242,6 +249,29 @@ def test_loads_are_no_plan():
             taken()
     with pytest.raises(AttributeError, match="loads"):
         visits(long_plan(brush), cell)
+
+
+def test_loads_that_were_written_as_a_plan_are_not_cut_again():
+    """Parts are longer than a load by what the brush comes back: as strokes they would be cut once more."""
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
+    loads = in_loads(long_plan(brush), brush, cell)
+    back = _core.read_plan(_core.write_plan(loads.as_plan()))
+    again = in_loads(back, brush, cell)
+    assert [a_pass.stroke for a_pass in again.loads] == [a_pass.stroke for a_pass in loads.loads]
+    assert again.strokes() == loads.strokes() == ["short", "long", "long", "long", "last"]
+    assert visits(again, cell) == visits(loads, cell)
+    for before, after in zip(loads.loads, again.loads, strict=True):
+        assert np.abs(before.poses_mm - after.poses_mm).max() <= 1e-7
+    shorter = in_loads(back, brush, cell_with(Reload("length", 30.0))).strokes()
+    assert shorter.count("long") == 3 and shorter.count("short") > 1
+    for passes in ([2, 1, 3], [2], [1, 0, 2], [1, 3]):
+        lost = _core.Plan(back.brush, "", back.sheet_mm, [back.passes[k] for k in passes])
+        with pytest.raises(Error, match="of a stroke stands where no load") as refused:
+            in_loads(lost, brush, cell)
+        assert refused.value.code == "load-out-of-order"
+    one = _core.Pass("one", back.passes[0].poses_mm, extra='{"load": "2"}')
+    with pytest.raises(Error, match="load must be a whole number, not '2'"):
+        in_loads(_core.Plan(back.brush, "", back.sheet_mm, [one]), brush, cell)
 
 
 def test_what_every_load_does_is_told_once_of_its_stroke():

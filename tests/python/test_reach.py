@@ -38,7 +38,7 @@ def test_what_is_in_reach_and_what_was_drawn_stays(brush):
 
 def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
     made = of(WEDGE)
-    (narrower,), wanted, (notice,) = within_reach(made, brush)
+    (narrower,), wanted, (notice,) = within_reach(made, brush, "clamp")
     assert wanted == made
     halves = np.array(narrower.half_width)
     assert halves[:, 1].max() == pytest.approx(4.2)
@@ -78,3 +78,42 @@ def test_refusal_names_stroke_width_and_range(brush):
 def test_a_pen_of_one_width_is_not_asked(brush):
     made = of(WIDE)
     assert within_reach(made, find_brush("rigid"), "refuse") == (made, made, [])
+
+
+@pytest.mark.parametrize(
+    ("wide_mm", "is_filled"),
+    [(8.2, False), (8.6, False), (10.0, False), (12.0, True), (16.0, True), (24.0, True)],
+)
+def test_passes_are_taken_where_the_nearest_width_would_paint_too_little(brush, wide_mm, is_filled):
+    """Of a bar of 16 mm half was painted, unless passes were asked for."""
+    made = of(f"M10 10H90V{10 + wide_mm}H10Z")
+    narrower, _, _ = within_reach(made, brush, "clamp")
+    nearest = _core.area(_core.intersect(painted(narrower), made[0].wanted_mm)) / (80 * wide_mm)
+    passes, _, notices = within_reach(made, brush)
+    if not is_filled:
+        assert nearest > 0.8
+        assert len(passes) == 1
+        assert [each.half_width for each in passes] == [each.half_width for each in narrower]
+        return
+    assert nearest < 0.8
+    filled, _, _ = within_reach(made, brush, "passes")
+    assert [each.id for each in passes] == [each.id for each in filled]
+    assert len(passes) > 1
+    assert f"the nearest width would paint {100 * nearest:.0f} % of the shape" in notices[0].sentence
+
+
+def test_each_shape_of_an_element_is_looked_at_for_itself(brush):
+    made = of("M10 5H60V29H10Z M10 40H60V49H10Z")
+    passes, _, _ = within_reach(made, brush)
+    lanes = {stroke.origin.part: [] for stroke in made}
+    for stroke in passes:
+        lanes[stroke.origin.part].append(stroke.origin.lane)
+    assert min(len(each) for each in lanes.values()) == 1
+    assert max(len(each) for each in lanes.values()) > 1
+
+
+def test_passes_are_advised_only_where_they_paint_more(brush):
+    """8.43 mm in place of 8.4 was said to be filled by passes."""
+    for wide_mm, is_advised in ((8.43, False), (10.0, True)):
+        (notice,) = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush, "clamp")[2]
+        assert bool(notice.advice) == is_advised

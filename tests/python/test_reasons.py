@@ -30,7 +30,7 @@ def box(x0, y0, x1, y1):
 
 def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
     brush = find_brush(name)
-    painted, wanted, _ = within_reach([wanted], brush)
+    painted, wanted, _ = within_reach([wanted], brush, "clamp")
     plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
     rows, _ = report.measure(plan, simulate(plan, brush), brush, wanted, tolerance_mm, compensation=how)
     return rows[0].worst

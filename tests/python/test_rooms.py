@@ -24,6 +24,7 @@ UNTESTED = {
     "error": "two value types; what is said with them is tested where it is said",
     "lag_impl": "the bodies of lag.hpp, tested with it",
     "marks": "value types; simulate, coverage and io fill and carry them",
+    "settings": "a value type; io reads and writes it",
     **dict.fromkeys(("interrupt", "wanted", "miss", "verdict", "overlay"), "a name until 0.2"),
 }
 
@@ -104,6 +105,7 @@ def python_target(parts: list[str], folder: str = "") -> str | None:
     return inside if inside == "_core" or home.with_suffix(".py").is_file() else "__init__"
 
 
+@cache
 def imported(path: Path, text: str) -> list[list[str]]:
     """Every import anywhere in the file, those inside functions and for type checkers too, by its full name."""
     folder = ["brushsvg", *path.relative_to(PACKAGE).parts[:-1]]

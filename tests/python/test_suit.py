@@ -96,12 +96,13 @@ def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
 def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
     """A square filled in passes was advised to shrink, as if it were painted in one."""
     text = f'{SHEET}<rect id="r" x="30" y="20" width="60" height="50"/></svg>'
-    overlap, advice = said(tmp_path, text)
+    overlap, advice = said(tmp_path, text, wide="clamp")
     assert " at 0." in advice
     assert f"in place of {overlap:.2f}" in advice
-    overlap, advice = said(tmp_path, text, wide="passes")
-    assert overlap > 0.99
-    assert advice.startswith("Size: none from 0.5 to 1.4")
+    for wide in ("passes", "auto"):
+        overlap, advice = said(tmp_path, text, wide=wide)
+        assert overlap > 0.99
+        assert advice.startswith("Size: none from 0.5 to 1.4")
 
 
 def test_scaling_a_stroke_scales_all_of_it():

@@ -1,6 +1,7 @@
 """use, symbol, nested svg, switch, layers, and what a drawing says to brushsvg."""
 
 import pytest
+from diagnostics import agrees
 from svg_text import HEAD, lines, read, sentences
 
 from brushsvg import Error
@@ -74,22 +75,22 @@ def test_what_a_viewport_hides_is_left_out_or_told():
 
 
 @pytest.mark.parametrize(
-    ("body", "sentence", "damaged"),
+    ("body", "said", "damaged"),
     [
-        ('<use id="u" href="#none"/>', "u: what it uses, '#none', is nowhere in the drawing: left out", False),
-        ('<use id="u" href="other.svg#a"/>', "u: what it uses, 'other.svg#a', lies outside", False),
-        ('<use id="u"/>', "u: it has no href, so it uses nothing", False),
-        ('<use id="u" href="#u"/>', "u: it uses #u, in which it lies itself", True),
-        ('<g id="g"><use id="u" href="#g"/></g>', "u: it uses #g, in which it lies itself", True),
+        ('<use id="u" href="#none"/>', "use-of-nothing '#none'", False),
+        ('<use id="u" href="other.svg#a"/>', "use-of-nothing 'other.svg#a'", False),
+        ('<use id="u"/>', "use-of-nothing", False),
+        ('<use id="u" href="#u"/>', "use-of-itself u #u", True),
+        ('<g id="g"><use id="u" href="#g"/></g>', "use-of-itself u #g", True),
         ('<defs><g id="a"><use id="ub" href="#b"/></g><g id="b"><use id="ua" href="#a"/></g></defs><use href="#a"/>',
-         "ua: it uses #a, in which it lies itself", True),
-        ('<use id="u" href="#l" x="2furlongs"/>', "u: '2furlongs' has a unit that is not read", True),
-        ('<svg id="s" viewBox="0 0 1"/>', "s: viewBox '0 0 1' is not four numbers", True),
+         "use-of-itself ua #a", True),
+        ('<use id="u" href="#l" x="2furlongs"/>', "not-a-length '2furlongs'", True),
+        ('<svg id="s" viewBox="0 0 1"/>', "viewbox-invalid '0 0 1'", True),
     ],
 )  # fmt: skip
-def test_uses_that_lead_nowhere(body, sentence, damaged):
+def test_uses_that_lead_nowhere(body, said, damaged):
     design = read(LINE + body)
-    (found,) = (notice for notice in design.notices if sentence in f"{notice.where}: {notice.sentence}")
+    (found,) = (notice for notice in design.notices if agrees(notice, said))
     assert found.damaged == damaged
     assert len(design.elements) == 1
 
@@ -364,26 +365,26 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
 
 
 @pytest.mark.parametrize(
-    ("setting", "sentence"),
+    ("setting", "said"),
     [
-        ('speed="fast"', "data-brushsvg-speed: 'fast' is not a speed in mm/s"),
-        ('speed="-1"', "-1 mm/s is outside the range [0.001, 10000] mm/s"),
-        ('speed="nan"', "'nan' is not a speed in mm/s"),
-        ('speed="1_0"', "'1_0' is not a speed in mm/s"),
-        ('passes="\u0663"', "'\u0663' is not a whole number"),  # an Arabic three
-        ('width="5 furlongs"', "data-brushsvg-width: '5 furlongs' has a unit"),
-        ('width="0"', "0 mm is outside the range [0.001, 1000] mm"),
-        ('passes="1.5"', "'1.5' is not a whole number"),
-        ('passes="21"', "21 is outside the range [1, 20]"),
-        ('skip="perhaps"', "'perhaps' is neither yes nor no"),
-        ('brush=""', "it is empty"),
-        ('colour="red"', "data-brushsvg-colour is not known; known: width, speed"),
+        ('speed="fast"', "setting-invalid 'fast'"),
+        ('speed="-1"', "setting-invalid -1 0.001 10000"),
+        ('speed="nan"', "setting-invalid 'nan'"),
+        ('speed="1_0"', "setting-invalid '1_0'"),
+        ('passes="\u0663"', "setting-invalid '٣'"),  # an Arabic three
+        ('width="5 furlongs"', "setting-invalid '5 furlongs'"),
+        ('width="0"', "setting-invalid 0 0.001 1000"),
+        ('passes="1.5"', "setting-invalid '1.5'"),
+        ('passes="21"', "setting-invalid 21 1 20"),
+        ('skip="perhaps"', "setting-invalid 'perhaps'"),
+        ('brush=""', "setting-invalid"),
+        ('colour="red"', "setting-invalid data-brushsvg-colour width speed"),
     ],
 )
-def test_settings_that_make_no_sense_stop_convert(setting, sentence):
+def test_settings_that_make_no_sense_stop_convert(setting, said):
     design = read(f'<path id="p" d="M0 0H4" data-brushsvg-{setting}/>')
     (notice,) = design.notices
-    assert sentence in notice.sentence and notice.damaged
+    assert agrees(notice, said) and notice.damaged, notice
     assert not design.elements[0].settings
 
 

@@ -42,13 +42,13 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
             arcs=ARCS.get(name, ()),
             colour=colour,
             layer="",
-            settings="{}",
+            settings=_core.Settings(),
             origin=SimpleNamespace(load=1),
         )
         for (name, poses), colour in zip_longest(strokes.items(), colours, fillvalue="")
     ]
     made = program(SimpleNamespace(sheet_mm=(100.0, 60.0), passes=passes), BRUSH, cell, header, Job(**job))
-    return "".join(text_of(POSTS["urscript"], made))
+    return "".join(text_of(POSTS[cell.language], made))
 
 
 def rows_of(robot, cell):

@@ -14,6 +14,13 @@ constexpr int kStraighter = 3;      // times that a way out is made square to th
 constexpr double kSquare = 0.9999;  // cosine above which it is
 constexpr double kGrazing = 0.3;    // cosine below which an edge that is met aslant says nothing more exact
 
+/// Counts what looking for the edges of one mark took.
+struct Spent {
+    const Footprints& on;
+    std::uint64_t& looks;
+    ~Spent() { looks += on.looks(); }
+};
+
 /// The predicted edge beside one point of a painted one.
 struct Beside {
     NearestEdge edge;
@@ -105,7 +112,8 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     const Painted& painted = painted_[std::size_t(mark)];
     const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
     thread_local Footprints footprints;
-    if (!footprints.follow(painted.poses_mm, painted.at, laws(shared), by_shared ? &lag_powers_ : nullptr,
+    const Spent spent{footprints, looks_[std::size_t(mark)]};
+    if (!footprints.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_shared ? &lag_powers_ : nullptr,
                            shared[layout_.height()], deepest_))
         return false;
     const Ring points = placed(mark, shared_data, displacement);
@@ -139,7 +147,9 @@ VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* 
     const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
     VectorXd out = VectorXd::Zero(painted.point_mm.rows());
     thread_local Footprints footprints;
-    if (!footprints.follow(painted.poses_mm, painted.at, laws(shared), nullptr, shared[layout_.height()], deepest_))
+    const Spent spent{footprints, looks_[std::size_t(mark)]};
+    if (!footprints.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), nullptr, shared[layout_.height()],
+                           deepest_))
         return out;
     const Ring points = placed(mark, shared_data, displacement);
     const Eigen::Rotation2Dd back(-shared[layout_.turn()]);

@@ -15,8 +15,9 @@ namespace brushsvg::fit {
 /// What one pass painted. Outer rings and holes, in the frame of the plan as far as that is known.
 struct PaintedMark {
     std::string stroke;
-    Poses poses_mm;  ///< z = -depth; arcs are followed on their chords
+    Poses poses_mm;  ///< z = -depth
     Rings outline_mm;
+    std::vector<Arc> arcs;  ///< of the pass, as in Pass
 };
 
 /// What is known of an unknown beforehand, as a normal distribution. sigma 0: known; infinite: nothing.
@@ -86,7 +87,7 @@ struct MarkFit {
 /// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
 /// other and count as fewer, by the integral of their autocorrelation. Points beside ends narrower than three times the
 /// noise have no say. Throws Error: no mark, numbers that are not finite or no millimetres, marks that lie far from
-/// their strokes.
+/// their strokes, marks that no brush paints: found out by counted work.
 MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& start,
                   const MarkOptions& options);
 

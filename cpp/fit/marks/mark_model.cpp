@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bernstein.hpp"
+#include "brushsvg/error.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -11,6 +12,9 @@ namespace {
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
 constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush comes, above any error of the paper's height
 constexpr double kLeastRingMm2 = 0.2;  // specks
+// Looks at instants in a whole fit, for each place and point there is. Marks of a brush take five to fifteen thousand;
+// those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
+constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
 
 /// From above the paper down to the first pose and from the last one up again, as a robot moves.
 Poses from_above(const Poses& poses, double above_mm) {
@@ -72,7 +76,11 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     centre_.setZero();
     Index poses = 0;
     for (const PaintedMark& mark : marks) {
-        Painted painted{from_above(mark.poses_mm, kAboveMm + deepest_), {}, {}, {}, {0}};
+        Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {}, {}, {}, {0}};
+        for (Arc& arc : painted.arcs) {  // counted from the first pose, which comes second here
+            ++arc.first;
+            ++arc.last;
+        }
         painted.at = close_places(painted.poses_mm);
         std::vector<double> xy;
         for (const Ring& ring : mark.outline_mm) {
@@ -89,6 +97,25 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
         poses += mark.poses_mm.rows();
     }
     centre_ /= double(std::max<Index>(1, poses));
+    looks_.assign(painted_.size(), 0);
+}
+
+void MarkModel::refuse_endless() const {
+    double looks = 0.0, most = kMostLooks, worst = 0.0;
+    std::size_t which = 0;
+    for (std::size_t i = 0; i < painted_.size(); ++i) {
+        const double size = double(painted_[i].at.size()) + double(painted_[i].point_mm.rows());
+        looks += double(looks_[i]);
+        most += kMostLooksEach * size;
+        if (double(looks_[i]) <= worst * size) continue;
+        worst = double(looks_[i]) / size;
+        which = i;
+    }
+    if (looks <= most) return;
+    throw Error(
+        "fit-failed",
+        "no brush was found that paints these marks, least of all this one: is it the mark of this stroke, in mm?",
+        painted_[which].stroke);
 }
 
 VectorXd MarkModel::unknowns(const MarkLaws& laws) const {

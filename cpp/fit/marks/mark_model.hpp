@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "mark_fit.hpp"
+#include "parallel.hpp"
 #include "swept_footprints.hpp"
 
 // Distances of painted edges from predicted ones, with their derivatives. Inside fit_marks.
@@ -47,6 +50,14 @@ class MarkModel {
     /// Least value of each shared unknown; the lag stays above 0, the half width rises.
     VectorXd least() const;
 
+    /// work(mark) for every mark, on all processors. Throws Error where these marks have taken so many looks that no
+    /// brush paints them: it names the one that took most.
+    template <class Work>
+    void for_each(Work&& work) const {
+        on_all_processors(0, painted_.size(), [&](std::size_t mark) { work(Index(mark)); });
+        refuse_endless();
+    }
+
     /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
     /// mark's displacement where asked for. Outside it is that from the nearest footprint and what it sweeps to its
     /// neighbours. Inside it is negative: how far it is out of all footprints, square to the edge that the painted
@@ -61,16 +72,20 @@ class MarkModel {
 
  private:
     struct Painted {
+        std::string stroke;
         Poses poses_mm;  ///< from above the paper and back there
+        std::vector<Arc> arcs;
         std::vector<double> at;
         Ring point_mm, outward;    ///< of the paint, unit vectors
         std::vector<Index> rings;  ///< where each begins, and the end
     };
+    void refuse_endless() const;
     /// Derivatives of a distance by the laws' unknowns and the height.
     void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal, const VectorXd& shared,
                  Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     std::vector<Painted> painted_;
+    mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it
     Layout layout_;
     double deepest_;
     bool round_tail_;

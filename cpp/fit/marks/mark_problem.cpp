@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-
-#include "brushsvg/checkpoint.hpp"
+#include <numeric>
+#include <utility>
 
 namespace brushsvg::fit {
 namespace {
@@ -18,58 +18,86 @@ constexpr int kMoves = 3;
 // with 5 it is known a tenth less well than with 3.
 constexpr double kSlim = 3.0;
 
-/// One mark for the solver: residuals whose squares add up to the loss.
+/// One mark for the solver: residuals whose squares add up to the loss, as they were evaluated last.
 class MarkCost : public ceres::CostFunction {
  public:
-    MarkCost(const MarkModel& model, Index mark, const Weighing& weighing, const std::vector<bool>& held,
-             bool displaced, const VectorXd& says)
-        : model_(model), mark_(mark), weighing_(weighing), held_(held), displaced_(displaced), says_(says) {
-        set_num_residuals(int(model.points(mark)));
-        *mutable_parameter_block_sizes() = {model.layout().size(), 2};
+    MarkCost(const MarkProblem& at, Index mark, const std::vector<bool>& held, bool displaced)
+        : at_(at), mark_(mark), held_(held), displaced_(displaced) {
+        set_num_residuals(int(at.model.points(mark)));
+        *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
-    bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-        checkpoint(500);
-        const Index n = num_residuals(), size = model_.layout().size();
+    void evaluate(bool slopes) {
+        const Index n = num_residuals(), size = at_.model.layout().size();
+        const Weighing& weighing = at_.weighing;
+        const VectorXd& says = at_.says[std::size_t(mark_)];
+        VectorXd& residuals = slopes ? beside_slopes_ : alone_;
         VectorXd distance;
-        RowMajor shared, own;
-        if (jacobians) {
-            shared.setZero(n, size);
-            own.setZero(n, 2);
+        residuals.resize(n);
+        if (slopes) {
+            by_shared_.setZero(n, size);
+            by_own_.setZero(n, 2);
         }
-        if (!model_.distances(mark_, x[0], x[1], distance, jacobians ? &shared : nullptr, jacobians ? &own : nullptr))
-            return false;
-        const double share = 1.0 / std::sqrt(weighing_.repeats);
+        is_painted_ = at_.model.distances(mark_, at_.shared.data(), at_.own[std::size_t(mark_)].data(), distance,
+                                          slopes ? &by_shared_ : nullptr, slopes ? &by_own_ : nullptr);
+        if (!is_painted_) return;
+        const double share = 1.0 / std::sqrt(weighing.repeats);
         for (Index k = 0; k < n; ++k) {
-            const double z = distance[k] / weighing_.noise_mm;
-            const Cost c = cost(weighing_.loss, z);
+            const double z = distance[k] / weighing.noise_mm;
+            const Cost c = cost(weighing.loss, z);
             const double root = std::sqrt(c.rho);
-            residuals[k] = std::copysign(root, z) * share * says_[k];
-            if (!jacobians) continue;
-            const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing_.noise_mm * share * says_[k];
-            if (jacobians[0]) {
-                Eigen::Map<RowMajor> out(jacobians[0], n, size);
-                out.row(k) = rate * shared.row(k);
-                for (Index i = 0; i < size; ++i)
-                    if (held_[std::size_t(i)]) out(k, i) = 0.0;
-            }
-            if (jacobians[1]) Eigen::Map<RowMajor>(jacobians[1], n, 2).row(k) = (displaced_ ? rate : 0.0) * own.row(k);
+            residuals[k] = std::copysign(root, z) * share * says[k];
+            if (!slopes) continue;
+            const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing.noise_mm * share * says[k];
+            by_shared_.row(k) *= rate;
+            by_own_.row(k) *= displaced_ ? rate : 0.0;
         }
+        for (Index i = 0; slopes && i < size; ++i)
+            if (held_[std::size_t(i)]) by_shared_.col(i).setZero();
+    }
+    bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+        if (!is_painted_) return false;
+        const VectorXd& found = jacobians ? beside_slopes_ : alone_;
+        std::copy_n(found.data(), found.size(), residuals);
+        if (jacobians && jacobians[0]) std::copy_n(by_shared_.data(), by_shared_.size(), jacobians[0]);
+        if (jacobians && jacobians[1]) std::copy_n(by_own_.data(), by_own_.size(), jacobians[1]);
         return true;
     }
 
  private:
-    const MarkModel& model_;
+    const MarkProblem& at_;
     Index mark_;
-    const Weighing& weighing_;
     const std::vector<bool>& held_;
-    bool displaced_;
-    const VectorXd& says_;
+    bool displaced_, is_painted_ = false;
+    VectorXd alone_, beside_slopes_;  ///< residuals; they round otherwise where slopes are asked for
+    RowMajor by_shared_, by_own_;
 };
 
-ceres::CostFunction* prior(const VectorXd& value, const VectorXd& sigma) {
+/// All marks at the point that is being tried, on all processors, before Ceres asks for them one by one: most points
+/// three times, because of the bounds.
+class MarkCosts : public ceres::EvaluationCallback {
+ public:
+    explicit MarkCosts(const MarkProblem& at) : at_(at) {}
+    void PrepareForEvaluation(bool slopes, bool) override {
+        const std::vector<double> shared(at_.shared.begin(), at_.shared.end());
+        if (shared != shared_at_ || at_.own != own_at_) alone_ = beside_slopes_ = false;
+        shared_at_ = shared;
+        own_at_ = at_.own;
+        if (std::exchange(slopes ? beside_slopes_ : alone_, true)) return;
+        at_.model.for_each([&](Index mark) { all[std::size_t(mark)]->evaluate(slopes); });
+    }
+    std::vector<std::unique_ptr<MarkCost>> all;
+
+ private:
+    const MarkProblem& at_;
+    std::vector<double> shared_at_;  ///< where all have been evaluated, without slopes or with them
+    std::vector<Eigen::Vector2d> own_at_;
+    bool alone_ = false, beside_slopes_ = false;
+};
+
+std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd& sigma) {
     ceres::Matrix weight = ceres::Matrix::Zero(value.size(), value.size());
     for (Index i = 0; i < value.size(); ++i) weight(i, i) = sigma[i] == 0.0 ? 1.0 : 1.0 / sigma[i];
-    return new ceres::NormalPrior(weight, value);
+    return std::make_unique<ceres::NormalPrior>(weight, value);
 }
 
 }  // namespace
@@ -103,9 +131,9 @@ void MarkProblem::hold_shape(bool hold) {
 }
 
 double MarkProblem::loss() const {
-    double sum = 0.0;
-    for (Index i = 0; i < model.marks(); ++i) sum += loss_of(i, own[std::size_t(i)]);
-    return sum;
+    VectorXd losses(model.marks());
+    model.for_each([&](Index i) { losses[i] = loss_of(i, own[std::size_t(i)]); });
+    return std::accumulate(losses.begin(), losses.end(), 0.0);
 }
 
 double MarkProblem::loss_of(Index mark, const Eigen::Vector2d& displacement) const {
@@ -116,12 +144,11 @@ double MarkProblem::loss_of(Index mark, const Eigen::Vector2d& displacement) con
 }
 
 void MarkProblem::leave_slim_aside() {
-    std::vector<VectorXd> width;
+    std::vector<VectorXd> width(own.size());
+    model.for_each(
+        [&](Index i) { width[std::size_t(i)] = model.widths(i, shared.data(), own[std::size_t(i)].data()); });
     std::vector<double> all;
-    for (Index i = 0; i < model.marks(); ++i) {
-        width.push_back(model.widths(i, shared.data(), own[std::size_t(i)].data()));
-        all.insert(all.end(), width.back().begin(), width.back().end());
-    }
+    for (const VectorXd& one : width) all.insert(all.end(), one.begin(), one.end());
     if (all.empty()) return;
     const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
     std::nth_element(all.begin(), middle, all.end());
@@ -136,7 +163,7 @@ void MarkProblem::find_displaced() {
     const auto loss_at = [&](Index mark, const Eigen::Vector2d& displacement) {
         return loss_of(mark, displacement) + 0.5 * displacement.squaredNorm() / (displacement_mm_ * displacement_mm_);
     };
-    for (Index i = 0; i < model.marks(); ++i) {
+    model.for_each([&](Index i) {
         Eigen::Vector2d& at = own[std::size_t(i)];
         VectorXd distance;
         RowMajor by(model.points(i), shared.size()), by_own(model.points(i), 2);
@@ -153,19 +180,25 @@ void MarkProblem::find_displaced() {
             at = moved;
             now = then;
         }
-    }
+    });
 }
 
 bool MarkProblem::solve(int most_iterations, double tolerance) {
-    ceres::Problem problem;
+    MarkCosts costs(*this);
+    std::vector<std::unique_ptr<ceres::CostFunction>> priors;
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.evaluation_callback = &costs;
+    ceres::Problem problem(options);
     ceres::Solver::Options solver;
     auto order = std::make_shared<ceres::ParameterBlockOrdering>();
     const bool displaced = displacement_mm_ > 0.0;
     for (Index i = 0; i < model.marks(); ++i) {
         double* mine = own[std::size_t(i)].data();
-        problem.AddResidualBlock(new MarkCost(model, i, weighing, held_, displaced, says[std::size_t(i)]), nullptr,
-                                 shared.data(), mine);
-        problem.AddResidualBlock(prior(VectorXd::Zero(2), VectorXd::Constant(2, displacement_mm_)), nullptr, mine);
+        costs.all.push_back(std::make_unique<MarkCost>(*this, i, held_, displaced));
+        problem.AddResidualBlock(costs.all.back().get(), nullptr, shared.data(), mine);
+        priors.push_back(prior(VectorXd::Zero(2), VectorXd::Constant(2, displacement_mm_)));
+        problem.AddResidualBlock(priors.back().get(), nullptr, mine);
         order->AddElementToGroup(mine, 0);
     }
     VectorXd value(shared.size()), sigma(shared.size());
@@ -173,7 +206,8 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
         value[i] = priors_[std::size_t(i)].value;
         sigma[i] = priors_[std::size_t(i)].sigma;
     }
-    problem.AddResidualBlock(prior(value, sigma), nullptr, shared.data());
+    priors.push_back(prior(value, sigma));
+    problem.AddResidualBlock(priors.back().get(), nullptr, shared.data());
     order->AddElementToGroup(shared.data(), 1);
     const VectorXd least = model.least();
     for (Index i = 0; i < shared.size(); ++i)

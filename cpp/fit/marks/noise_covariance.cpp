@@ -21,18 +21,17 @@ struct Seen {
     VectorXd says;
 };
 std::vector<Seen> look(const MarkProblem& at) {
-    std::vector<Seen> out;
+    std::vector<Seen> out(at.own.size());
     const Index g = at.shared.size();
-    for (Index i = 0; i < at.model.marks(); ++i) {
+    at.model.for_each([&](Index i) {
         RowMajor by(at.model.points(i), g), own(at.model.points(i), 2);
-        Seen seen;
+        Seen& seen = out[std::size_t(i)];
         at.model.distances(i, at.shared.data(), at.own[std::size_t(i)].data(), seen.distance_mm, &by, &own);
         seen.by.resize(by.rows(), g + 2);
         seen.by << by, own;
         seen.says = at.says[std::size_t(i)];
         seen.by = seen.says.asDiagonal() * seen.by;
-        out.push_back(std::move(seen));
-    }
+    });
     return out;
 }
 

@@ -14,7 +14,11 @@ namespace {
 // farther apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
 constexpr double kApartMm = 0.25;
 constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
-constexpr double kLeastCosine = 0.05;  // between a footprint's own normal and that of a line that touches it
+// Instants of one pass. Real brushes take less than one a place and 1,500 for the largest footprint that turns round;
+// laws with footprints of half a metre, which a solver tries for marks that no brush paints, took a million.
+constexpr std::size_t kMostInstants = 5000, kMostPerPlace = 10;
+constexpr std::uint64_t kLooksPerStep = 20;  // what it costs to follow a pass to the next instant, in looks at one
+constexpr double kLeastCosine = 0.05;        // between a footprint's own normal and that of a line that touches it
 
 using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
 
@@ -42,10 +46,33 @@ void put(const Vec2<double>& from, Eigen::Vector2d& value, ByLag& by) {
 double by_height(const Jet& depth) { return depth.v[kMostTerms]; }
 double by_height(double) { return 0.0; }
 
+/// First from i on of numbers that never fall that is no less than this one. In strides that double: most are short.
+std::size_t first_from(const std::vector<double>& rising, std::size_t i, double least) {
+    std::size_t end = i;
+    for (std::size_t stride = 1; end < rising.size() && rising[end] < least; stride *= 2) {
+        i = end + 1;
+        end += stride;
+    }
+    const auto begin = rising.begin();
+    return std::size_t(
+        std::lower_bound(begin + std::ptrdiff_t(i), begin + std::ptrdiff_t(std::min(end, rising.size())), least) -
+        begin);
+}
+/// How many of the first i are no more than this one.
+std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double most) {
+    std::size_t begin = i;
+    for (std::size_t stride = 1; begin > 0 && rising[begin - 1] > most; stride *= 2) {
+        i = begin - 1;
+        begin = i - std::min(i, stride - 1);
+    }
+    const auto at = rising.begin();
+    return std::size_t(std::upper_bound(at + std::ptrdiff_t(begin), at + std::ptrdiff_t(i), most) - at);
+}
+
 }  // namespace
 
-bool Footprints::follow(const Poses& poses, const std::vector<double>& at, const MarkLaws& laws,
-                        const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm) {
+bool Footprints::follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at,
+                        const MarkLaws& laws, const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm) {
     const double reach = deepest_mm + std::max(0.0, height_mm);
     if (height_mm > poses(0, 2) || !(laws.lag[0] > 0.0) || !real_roots(laws.lag, 0.0, reach).empty()) return false;
     std::vector<Jet> lag;
@@ -54,14 +81,17 @@ bool Footprints::follow(const Poses& poses, const std::vector<double>& at, const
         lag[i].v.head(lag_by->cols()) = lag_by->row(Eigen::Index(i)).transpose();
     }
     std::vector<double> close = at;
+    looks_ = 0;
     for (int round = 0; round < kRounds; ++round) {
         if (lag_by)
-            walk(lag, Jet(height_mm, kMostTerms), poses, close, laws, reach);
+            walk(lag, Jet(height_mm, kMostTerms), poses, arcs, close, laws, reach);
         else
-            walk(laws.lag, height_mm, poses, close, laws, reach);
+            walk(laws.lag, height_mm, poses, arcs, close, laws, reach);
+        looks_ += kLooksPerStep * close.size();
         enclose();
         const std::vector<double> closer = this->closer(close);
         if (closer.size() == close.size()) break;
+        if (closer.size() > kMostInstants + kMostPerPlace * at.size()) return false;
         close = closer;
     }
     return !rows_.empty();
@@ -83,11 +113,11 @@ std::vector<double> Footprints::closer(const std::vector<double>& at) const {
 }
 
 template <class T>
-void Footprints::walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<double>& at,
-                      const MarkLaws& laws, double reach) {
+void Footprints::walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<Arc>& arcs,
+                      const std::vector<double>& at, const MarkLaws& laws, double reach) {
     const LagLaw<T> law = law_of(lag, 0.0, reach);
     rows_.clear();
-    trace<T>(law, poses, height, at, nullptr, [&](std::size_t k, const Trace<T>& row) {
+    trace<T>(law, poses, arcs, height, at, nullptr, [&](std::size_t k, const Trace<T>& row) {
         if (!row.down) return;
         Instant& now = rows_.emplace_back();
         const double d = std::max(0.0, value_of(row.depth));
@@ -145,6 +175,7 @@ NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) cons
     const Eigen::Vector2d first = rows_[begin].in_frame(x);
     NearestEdge best = nearest_edge(rows_[begin].drop, first.x(), first.y());
     const auto look = [&](std::size_t i) {
+        ++looks_;
         const Eigen::Vector2d here = rows_[i].in_frame(x);
         const double least = least_distance(rows_[i].drop, here.x(), here.y());
         if (least < best.distance) {
@@ -156,12 +187,14 @@ NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) cons
         }
         return least - best.distance;
     };
-    double clear = -INFINITY;
-    for (std::size_t i = begin + 1; i < rows_.size() && best.distance >= 0.0; ++i)
-        if (gone_[i] >= clear) clear = gone_[i] + look(i);
-    clear = INFINITY;
-    for (std::size_t i = begin; i-- > 0 && best.distance >= 0.0;)
-        if (gone_[i] <= clear) clear = gone_[i] - look(i);
+    for (std::size_t i = begin + 1; i < rows_.size() && best.distance >= 0.0;) {
+        const double clear = gone_[i] + look(i);
+        i = first_from(gone_, i + 1, clear);
+    }
+    for (std::size_t i = begin; i > 0 && best.distance >= 0.0;) {
+        const double clear = gone_[i - 1] - look(i - 1);
+        i = count_up_to(gone_, i - 1, clear);
+    }
     return best;
 }
 
@@ -221,13 +254,13 @@ double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out,
     };
     thread_local std::vector<Part> parts;
     parts.clear();
-    double clear = -INFINITY;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        if (gone_[i] < clear) continue;
+    for (std::size_t i = 0, next; i < rows_.size(); i = next) {
+        next = i + 1;
+        ++looks_;
         const Eigen::Vector2d to = middle_[i] - x;
         const double beside = std::abs(out.x() * to.y() - out.y() * to.x()), off = std::max(beside, -out.dot(to));
         if (off >= radius_[i]) {
-            clear = gone_[i] + off - radius_[i];
+            next = first_from(gone_, next, gone_[i] + off - radius_[i]);
             continue;
         }
         const Eigen::Vector2d at = rows_[i].in_frame(x), u = rows_[i].heading;

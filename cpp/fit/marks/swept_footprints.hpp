@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstdint>
 #include <vector>
 
 #include "drop.hpp"
@@ -56,12 +57,14 @@ class Footprints {
  public:
     /// Follows a pass, which begins and ends in the air; `at`: poses, fractional in between, and more are put in where
     /// the footprint turns quickly. lag_by: derivatives of the lag's coefficients by its unknowns, or nullptr for
-    /// places alone. False where these laws paint nothing.
-    bool follow(const Poses& poses, const std::vector<double>& at, const MarkLaws& laws, const Eigen::MatrixXd* lag_by,
-                double height_mm, double deepest_mm);
+    /// places alone. False where these laws paint nothing, and where it takes more instants than any brush does.
+    bool follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at, const MarkLaws& laws,
+                const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
     /// What looking for a point's nearest instant costs at most, for a checkpoint.
     int effort() const { return 5 + int(rows_.size() / 100); }
+    /// How often an instant was looked at since follow() began, which itself costs more than a look for each.
+    std::uint64_t looks() const { return looks_; }
 
     /// Edge of the footprint that comes nearest to x, and which one; the search begins at `row`. Of a point inside
     /// only that it is.
@@ -76,8 +79,8 @@ class Footprints {
 
  private:
     template <class T>
-    void walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<double>& at,
-              const MarkLaws& laws, double reach);
+    void walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<Arc>& arcs,
+              const std::vector<double>& at, const MarkLaws& laws, double reach);
     void enclose();
     /// Those places, and more between instants whose footprints lie too far apart; as many where there are none.
     std::vector<double> closer(const std::vector<double>& at) const;
@@ -86,6 +89,7 @@ class Footprints {
     /// Round each footprint; gone: no point of the footprint has moved farther than this since the first instant.
     std::vector<Eigen::Vector2d> middle_;
     std::vector<double> radius_, gone_;
+    mutable std::uint64_t looks_ = 0;
 };
 
 }  // namespace brushsvg::fit

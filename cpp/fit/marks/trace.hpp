@@ -5,9 +5,9 @@
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/plan.hpp"
+#include "pass_walk.hpp"
 
-// What the patch does at chosen places of a pass, on any scalar: the simulator as a solver differentiates it. Arcs of a
-// pass are followed on their chords.
+// What the patch does at chosen places of a pass, on any scalar: the simulator as a solver differentiates it.
 namespace brushsvg::fit {
 
 /// The patch at one place. Not `down`: the brush is in the air and the rest says nothing.
@@ -38,6 +38,54 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     return {{piece}, plain.rigid};
 }
 
+/// Walks a pass, and tells what the patch does at some of its places.
+template <class T, class Out>
+class TraceAt {
+ public:
+    /// at: poses, fractional in between, ascending.
+    TraceAt(const LagLaw<T>& law, const std::vector<double>& at, Out& out) : law_(law), at_(at), out_(out) {}
+
+    void begin(const LagState<T>& state, const Vec2<T>& tcp, const T& depth) {
+        state_ = state;
+        for (; !is_done() && at_[k_] <= 0.0; ++k_) out_(k_, Trace<T>{true, depth, tcp, state_});
+    }
+    bool is_done() const { return k_ >= at_.size(); }
+    void above(Eigen::Index i, const AboveStretch<T>& way, const T& end, bool) {
+        const T lower = way.depth_to - way.depth_from;
+        for (; !is_done() && here(i) <= value_of(end); ++k_)
+            out_(k_, Trace<T>{false, T(way.depth_from + here(i) * lower),
+                              Vec2<T>(way.from + here(i) * (way.to - way.from)), state_});
+    }
+    void touch(Eigen::Index, const T&, const Vec2<T>& tcp) { state_ = touch_down<T>(tcp); }
+    template <class Motion>
+    void move(const Motion& motion, Eigen::Index i, const T& begin, const T& end) {
+        checkpoint();
+        if (!is_done() && here(i) < value_of(end)) {
+            advance(law_, motion, state_,
+                    [&](const auto& piece, const auto& mv, const auto& start, const T& from, const T& until) {
+                        for (; !is_done() && here(i) < value_of(end); ++k_) {
+                            const T t = (T(here(i)) - begin) / (end - begin);
+                            if (value_of(t) > value_of(until)) break;
+                            out_(k_, Trace<T>{true, mv.depth(t), mv.tcp(t), within_phase(piece, mv, start, from, t)});
+                        }
+                    });
+        } else {
+            advance(law_, motion, state_);
+        }
+        for (; !is_done() && here(i) <= value_of(end); ++k_)
+            out_(k_, Trace<T>{true, motion.depth(T(1.0)), motion.tcp(T(1.0)), state_});
+    }
+
+ private:
+    double here(Eigen::Index i) const { return at_[k_] - double(i); }
+
+    const LagLaw<T>& law_;
+    const std::vector<double>& at_;
+    Out& out_;
+    std::size_t k_ = 0;
+    LagState<T> state_;
+};
+
 /// Calls out(k, Trace) for every k of `at`: poses, fractional in between, ascending.
 ///
 /// deeper_mm: how much deeper than -z the brush is pressed, paper that lies higher than was thought. begun: the state
@@ -46,59 +94,11 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
 /// Derivatives pass through events: where bristles tighten and where they touch by the moment's own derivative; where
 /// they loosen the patch stands still, so that the moment does not matter.
 template <class T, class Out>
-void trace(const LagLaw<T>& law, const Poses& poses, const T& deeper_mm, const std::vector<double>& at,
-           const LagState<T>* begun, Out&& out) {
-    const auto q = [&](Eigen::Index i) -> Vec2<T> { return poses.row(i).head<2>().transpose().template cast<T>(); };
-    std::size_t k = 0;
-    LagState<T> state;
-    bool down = begun != nullptr;
-    if (begun) state = *begun;
-    const T depth0 = deeper_mm - poses(0, 2);
-    if (!begun && value_of(depth0) >= 0.0) {
-        down = true;
-        state = touch_down<T>(q(0));
-        if (value_of(depth0) > 0.0) advance(law, Move<T>(q(0), q(0), T(0.0), depth0), state);
-    }
-    for (; k < at.size() && at[k] <= 0.0; ++k) out(k, Trace<T>{down, depth0, q(0), state});
-    for (Eigen::Index i = 0; i + 1 < poses.rows() && k < at.size(); ++i) {
-        checkpoint();
-        const T d0 = deeper_mm - poses(i, 2), d1 = deeper_mm - poses(i + 1, 2);
-        const bool down0 = value_of(d0) >= 0.0, down1 = value_of(d1) >= 0.0;
-        const Vec2<T> q0 = q(i), q1 = q(i + 1);
-        const T crossing = down0 == down1 ? T(0.0) : T(d0 / (d0 - d1));
-        const Vec2<T> qc = q0 + crossing * (q1 - q0);
-        const double c = value_of(crossing);
-        const auto here = [&] { return at[k] - double(i); };
-        if (!down0)  // in the air, up to where it touches
-            for (; k < at.size() && here() <= (down1 ? c : 1.0); ++k)
-                out(k, Trace<T>{false, T(d0 + here() * (d1 - d0)), Vec2<T>(q0 + here() * (q1 - q0)), state});
-        if (down0 || down1) {
-            if (!down) state = touch_down<T>(qc);
-            down = true;
-            const T begin = down0 ? T(0.0) : crossing, end = down1 ? T(1.0) : crossing;
-            const Move<T> move(down0 ? q0 : qc, down1 ? q1 : qc, down0 ? d0 : T(0.0), down1 ? d1 : T(0.0));
-            const auto within = [&] { return T((T(here()) - begin) / (end - begin)); };
-            if (k < at.size() && here() < value_of(end)) {
-                advance(law, move, state,
-                        [&](const auto& piece, const auto& mv, const auto& start, const T& from, const T& until) {
-                            for (; k < at.size() && here() < value_of(end); ++k) {
-                                const T t = within();
-                                if (value_of(t) > value_of(until)) break;
-                                out(k, Trace<T>{true, mv.depth(t), mv.tcp(t), within_phase(piece, mv, start, from, t)});
-                            }
-                        });
-            } else {
-                advance(law, move, state);
-            }
-            for (; k < at.size() && here() <= value_of(end); ++k)
-                out(k, Trace<T>{true, move.depth(T(1.0)), move.tcp(T(1.0)), state});
-        }
-        if (!down1) {
-            down = false;
-            for (; k < at.size() && here() <= 1.0; ++k)
-                out(k, Trace<T>{false, T(d0 + here() * (d1 - d0)), Vec2<T>(q0 + here() * (q1 - q0)), state});
-        }
-    }
+void trace(const LagLaw<T>& law, const Poses& poses, const std::vector<Arc>& arcs, const T& deeper_mm,
+           const std::vector<double>& at, const LagState<T>* begun, Out&& out) {
+    TraceAt<T, Out> to(law, at, out);
+    if (begun) to.begin(*begun, poses.row(0).head<2>().transpose().template cast<T>(), T(deeper_mm - poses(0, 2)));
+    walk_pass(poses, arcs, deeper_mm, begun != nullptr, to);
 }
 
 }  // namespace brushsvg::fit

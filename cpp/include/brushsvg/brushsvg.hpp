@@ -18,6 +18,7 @@
 #include "brushsvg/profile.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/ring.hpp"
+#include "brushsvg/settings.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/stroke_id.hpp"

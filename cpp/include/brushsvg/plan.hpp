@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "brushsvg/settings.hpp"
 #include "brushsvg/stroke_id.hpp"
 
 namespace brushsvg {
@@ -39,8 +40,8 @@ struct Pass {
     double speed_mm_s = 20.0;
     std::string layer;
     std::string colour;
-    std::string settings = "{}";  ///< JSON object
-    std::string extra = "{}";     ///< JSON object of unknown keys, written back as read
+    Settings settings;
+    std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
 };
 
 struct Plan {

@@ -5,7 +5,7 @@
 namespace brushsvg {
 
 /// Union of shapes: each counter-clockwise ring fills, the clockwise rings behind it are its holes. Coordinates are
-/// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross.
+/// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross. Throws Error where clockwise rings outweigh.
 Rings unite(const Rings& rings);
 
 /// What two shapes have in common, each given as for unite.
@@ -18,10 +18,10 @@ enum class FillRule { nonzero, evenodd };
 /// either way and lie on each other. Coordinates are kept to 1e-5 mm.
 Rings fill(const Rings& outlines, FillRule rule);
 
-/// Area [mm^2] of rings in marks.json orientation (outer positive, holes negative).
+/// Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.
 double area(const Rings& rings);
 
-/// Area of the intersection over area of the union; 1 when both are empty.
+/// Area of the intersection over area of the union, each given as for unite; 1 when both are empty.
 double overlap(const Rings& a, const Rings& b);
 
 /// Convex pieces whose union is that of the hulls of every two neighbours in a chain of convex counter-clockwise rings:

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brushsvg/ring.hpp"
+#include "brushsvg/settings.hpp"
 #include "brushsvg/stroke_id.hpp"
 
 namespace brushsvg {
@@ -27,7 +28,7 @@ struct Stroke {
     Rings wanted_mm;  ///< the drawn outline where there is one; empty: the path with its width and round caps
     std::string layer;
     std::string colour;
-    std::string settings = "{}";  ///< JSON object
+    Settings settings;
 };
 
 /// A place on the middle line: cubic number and its parameter in [0, 1].

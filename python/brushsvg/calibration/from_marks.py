@@ -23,7 +23,7 @@ ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest secti
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
-UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
+UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def calibrate_marks(
             half_interval_95=found.half_interval_95,
         )
         setattr(brush, law, known)
-    _refuse_unsure(brush, fit)
+    _refuse_undetermined(brush, fit)
     _core.check(brush)
     return MarkCalibration(
         brush, fit, painted, options, scale, gain, edge_mm, covariance, astray, leave_out_strays
@@ -134,7 +134,10 @@ def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float
     """By how much all that is fitted changes where every edge lies edge_mm farther out, in the covariance's order."""
     wider = [
         _core.PaintedMark(
-            mark.stroke, np.array(mark.poses_mm), [_farther_out(ring, edge_mm) for ring in mark.outline_mm]
+            mark.stroke,
+            np.array(mark.poses_mm),
+            [_farther_out(ring, edge_mm) for ring in mark.outline_mm],
+            mark.arcs,
         )
         for mark in marks
     ]
@@ -214,7 +217,7 @@ def expected_brush(
     marks = _core.simulate(plan, seen)
     _core.trace_outlines(marks, seen)
     painted = [
-        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm)
+        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm, one.arcs)
         for one, mark in zip(plan.passes, marks.passes, strict=True)
         if mark.outline_mm
     ]
@@ -279,10 +282,10 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     if covariance is not None:
         whole = _over_brush(laws, covariance)
         brush.covariance = whole.tolist()
-        sure = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
-            setattr(brush, law, _core.Profile(coefficients, half_interval_95=sure[place]))
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place]))
     return brush
 
 
@@ -327,15 +330,15 @@ def _refuse_unlike(fit, painted: Painted) -> None:
         )
 
 
-def _refuse_unsure(brush: _core.Brush, fit) -> None:
+def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
     for law in ("lag", "half_width"):  # the others are not what a plan is led by
         half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
-        unsure = (half > UNSURE * values) & (half > UNSURE_MM)
-        if unsure.mean() > UNSURE_PART:
-            worst = int(np.argmax(np.where(unsure, half / np.maximum(values, 1e-9), 0.0)))
+        undetermined = (half > UNDETERMINED * values) & (half > UNDETERMINED_MM)
+        if undetermined.mean() > UNDETERMINED_PART:
+            worst = int(np.argmax(np.where(undetermined, half / np.maximum(values, 1e-9), 0.0)))
             todo = (
                 fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
             )

@@ -70,12 +70,17 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
         rings = [_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
         if not rings:
             raise Error("the mark has no outline: leave out what was not painted", where, code="mark-empty")
-        found.append((stroke, passes[stroke], rings))
+        found.append((stroke, np.array(passes[stroke].poses_mm), rings))
     if not found:
         raise Error("there is no mark in it", "marks", code="measurement-missing")
     _refuse_other_frames(found)
     _refuse_what_is_no_paint(found)
-    return painted_of([_core.PaintedMark(stroke, poses, _oriented(rings)) for stroke, poses, rings in found])
+    return painted_of(
+        [
+            _core.PaintedMark(stroke, poses, _oriented(rings), passes[stroke].arcs)
+            for stroke, poses, rings in found
+        ]
+    )
 
 
 def painted_of(marks: list) -> Painted:
@@ -85,7 +90,7 @@ def painted_of(marks: list) -> Painted:
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
 
-def _passes(plan, read) -> dict[str, np.ndarray]:
+def _passes(plan, read) -> dict[str, _core.Pass]:
     if isinstance(plan, str):
         try:
             parsed = _core.read_plan(read(plan).decode("utf-8", "replace"))
@@ -101,14 +106,14 @@ def _passes(plan, read) -> dict[str, np.ndarray]:
         raise Error(
             'marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing"
         )
-    out: dict[str, np.ndarray] = {}
+    out: dict[str, _core.Pass] = {}
     for number, one in enumerate(parsed.passes, 1):
         name = one.stroke or f"stroke{number}"
         if name in out:
             raise Error(
                 f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice"
             )
-        out[name] = np.array(one.poses_mm)
+        out[name] = one
     return out
 
 

@@ -185,8 +185,8 @@ def _table(brush) -> list[str]:
 def _moved(made) -> list[str]:
     """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
     fit = made.fit
-    sure = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
-    height, shift, turn = sure[-4], sure[-3:-1], sure[-1]
+    half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
+    height, shift, turn = half_intervals[-4], half_intervals[-3:-1], half_intervals[-1]
     way = "higher" if fit.height_mm >= 0 else "lower"
     sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
     far = int(np.argmax(sizes))

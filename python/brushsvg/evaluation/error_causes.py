@@ -31,7 +31,7 @@ def cause(
     brush,
     place,
     size_mm: float,
-    is_bare: bool,
+    where: str,
     miss,
     tolerance_mm: float,
     compensation: str = "closed",
@@ -39,7 +39,8 @@ def cause(
     """The first of the causes that holds near a place, the gravest first.
 
     stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; place: of the
-    stroke's verdict, size_mm: side of its square; is_bare: whether it lies where no stroke reaches; miss: of the pass.
+    stroke's verdict, size_mm: side of its square; where: "bare" where no stroke reaches, "corner" where discs of this
+    one's widths do not, else ""; miss: of the pass.
     """
     is_missing = place.is_missing
     at = int(np.hypot(line[:, 0] - place.at_mm[0], line[:, 1] - place.at_mm[1]).argmin())
@@ -55,8 +56,10 @@ def cause(
         if is_missing and half > greatest + SLIGHT and beside_mm2 > EXPLAINS * place.area_mm2:
             words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
             return Cause(words, code="wider-than-brush")
-        if is_bare:
+        if where == "bare":
             return Cause("no stroke reaches there", code="unreached")
+        if where == "corner":
+            return Cause("a corner of the shape, which round marks leave", code="shape-corner")
         if not is_missing and half < least - SLIGHT:
             words = (
                 f"{2 * half:.3g} mm wide there, thinner than the finest line of the brush, {2 * least:.3g} mm"

@@ -12,7 +12,7 @@ from ..errors import Notice
 from ..geometry.polylines import length
 from ..units import clock
 from .error_causes import cause
-from .uncertainty import Uncertainty
+from .uncertainty import PlanConfidence
 
 RING_TOLERANCE_MM = 0.01
 SMALL_MM2 = 0.005  # that is no difference worth a word
@@ -75,7 +75,7 @@ class Report:
     warnings: tuple[Notice, ...] = ()
     refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
     forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
-    sure: Uncertainty | None = None  # None: the brush has no confidence
+    confidence: PlanConfidence | None = None  # None: the brush has no confidence
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
 
@@ -126,7 +126,9 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
             piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
             for piece in unreached
         )
-        why = cause(stroke, line, brush, place, size_mm, is_bare, miss, tolerance_mm, compensation)
+        is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
+        where = "bare" if is_bare else "corner" if is_corner else ""
+        why = cause(stroke, line, brush, place, size_mm, where, miss, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
@@ -142,10 +144,23 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
 
 def _lies_in(place_mm, rings, reach_mm: float) -> bool:
     """Whether a square about a place meets what rings enclose."""
+    return _core.area(_core.intersect([_square(place_mm, reach_mm)], rings)) > _BARE * (2 * reach_mm) ** 2
+
+
+def _beside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
+    """What discs of its widths leave of a stroke's shape in a square about a place: there no round brush paints."""
+    if not stroke.wanted_mm:
+        return 0.0
+    within = _core.intersect([_square(place_mm, size_mm / 2)], stroke.wanted_mm)
+    bare = _core.Stroke(middle_mm=stroke.middle_mm, half_width=stroke.half_width, closed=stroke.closed)
+    discs = _core.wanted_outline(bare, RING_TOLERANCE_MM)
+    return _core.area(within) - _core.area(_core.intersect(within, discs))
+
+
+def _square(place_mm, reach_mm: float) -> np.ndarray:
     x, y = place_mm
-    corners = [(x - reach_mm, y - reach_mm), (x + reach_mm, y - reach_mm)]
-    corners += [(x + reach_mm, y + reach_mm), (x - reach_mm, y + reach_mm)]
-    return _core.area(_core.intersect([np.array(corners)], rings)) > _BARE * (2 * reach_mm) ** 2
+    sides = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
 
 
 def groups(marks, brush, strokes) -> tuple[Group, ...]:
@@ -204,12 +219,12 @@ def _rounded(value):
 def to_json(report: Report) -> str:
     """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
 
-    def figures(row: Figures, sure) -> dict:
-        known = {} if sure is None else {"uncertainty_95": _rounded(asdict(sure))}
+    def figures(row: Figures, confidence) -> dict:
+        known = {} if confidence is None else {"uncertainty_95": _rounded(asdict(confidence))}
         return _rounded(asdict(row)) | known
 
-    sure = report.sure
-    sures = [None] * len(report.strokes) if sure is None else sure.strokes
+    confidence = report.confidence
+    intervals = [None] * len(report.strokes) if confidence is None else confidence.strokes
 
     return (
         json.dumps(
@@ -221,9 +236,9 @@ def to_json(report: Report) -> str:
                 "compensation": report.compensation,
                 "tolerance_mm": report.tolerance_mm,
                 "time_s": round(report.time_s, 3),
-                "uncertainty_from": None if sure is None else sure.source,
-                "total": figures(report.total, None if sure is None else sure.total),
-                "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
+                "uncertainty_from": None if confidence is None else confidence.source,
+                "total": figures(report.total, None if confidence is None else confidence.total),
+                "strokes": [figures(*pair) for pair in zip(report.strokes, intervals, strict=True)],
                 "warnings": [notice.as_json() for notice in report.warnings],
                 "refused": [notice.as_json() for notice in report.refused],
                 "forbidden": [notice.as_json() for notice in report.forbidden],
@@ -258,7 +273,7 @@ def to_text(report: Report) -> str:
         ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
-        *_sure_columns(report.sure),
+        *_confidence_columns(report.confidence),
     ]
     notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
     table = _table(columns, notes)
@@ -275,7 +290,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
         "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
-        *_sure_words(report.sure),
+        *_confidence_words(report.confidence),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.groups:
@@ -297,10 +312,10 @@ def to_text(report: Report) -> str:
     return "\n".join([*lines, ""])
 
 
-def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
-    if sure is None:
+def _confidence_columns(confidence: PlanConfidence | None) -> list[tuple[str, list[str]]]:
+    if confidence is None:
         return []
-    rows = [*sure.strokes, sure.total]
+    rows = [*confidence.strokes, confidence.total]
     return [
         ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
         ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
@@ -308,12 +323,12 @@ def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
     ]
 
 
-def _sure_words(sure: Uncertainty | None) -> list[str]:
-    if sure is None:
+def _confidence_words(confidence: PlanConfidence | None) -> list[str]:
+    if confidence is None:
         return ["No confidence intervals: the brush has neither covariance nor RMSE."]
     return [
         "+-: half the confidence interval of the mark's middle across the line, of its ends along it, of its width,",
-        f"{sure.words}.",
+        f"{confidence.words}.",
     ]
 
 

@@ -6,7 +6,6 @@ effect, and in d, for programs that do not know it, the outline of both.
 
 from __future__ import annotations
 
-import json
 import re
 from html import escape
 from itertools import groupby
@@ -23,11 +22,11 @@ _PER_SEGMENT = 8  # places at which the widths between offset points are looked 
 _AT_NODE = 0.02  # of a cubic: a width as near to a node as this is the node's
 _BETA = 0.1  # nearly straight between widths
 _SETTINGS = {
-    "speed_mm_s": "speed",
+    "brush": "brush",
     "order": "order",
     "passes": "passes",
     "reload": "reload",
-    "brush": "brush",
+    "speed_mm_s": "speed",
 }
 
 
@@ -151,12 +150,12 @@ def _outline(stroke, height_mm: float) -> str:
 
 
 def _settings(stroke) -> str:
-    said = json.loads(stroke.settings)
-    named = {_SETTINGS[key]: value for key, value in said.items() if key in _SETTINGS}
+    named = {name: getattr(stroke.settings, key) for key, name in _SETTINGS.items()}
     words = {True: "yes", False: "no"}
     return "".join(
         f" data-brushsvg-{name}={_quoted(words[value] if isinstance(value, bool) else f'{value}')}"
         for name, value in named.items()
+        if value is not None
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error
-from .marks_svg import BAND, BOTH, EDGE, MISSES, MISSING, SPILT, check_picture, known_colour
+from .marks_svg import BAND, BOTH, EDGE, MISSING, OVERLAP_COLOURS, SPILT, check_picture, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -25,11 +25,9 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def marks_png(
-    marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None, unreached=()
-) -> bytes:
+def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None, blank=()) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
-    with a legend; unreached: rings of what no stroke reaches, outlined."""
+    with a legend; blank: rings of what of shapes stays blank, outlined."""
     check_picture(marks, sheet_mm, colours)
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
@@ -46,7 +44,7 @@ def marks_png(
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
-    for ring in unreached:
+    for ring in blank:
         at = (np.asarray(ring) * (1, -1) + (0, sheet_mm[1])) * px_per_mm - 0.5
         fixed = np.round(at * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
         thick = max(round(EDGE * max(image.shape[:2])), 1)
@@ -69,7 +67,7 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
     _write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)
 
 
-def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
+def overlap_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
     """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
     common = np.minimum(wanted, painted)
     rows, columns = common.shape
@@ -81,7 +79,7 @@ def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
         page -= share[..., None] * (255.0 - np.array(_bgr(colour)))
     image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
     x = size
-    for colour, words in MISSES:
+    for colour, words in OVERLAP_COLOURS:
         image[rows + size // 2 : rows + 3 * size // 2, x : x + size] = _bgr(colour)
         x = _write(image, words, (x + 3 * size // 2, rows + 11 * size // 8), size, 400, TEXT) + 2 * size
     return _png(image)

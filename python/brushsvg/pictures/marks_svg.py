@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, need
 
 BAND = "#e0862b"  # where an edge lies with 95 %
-EDGE = 0.002  # of the sheet, how wide the line round what no stroke reaches is
+EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
 
 
 def marks_svg(
@@ -19,15 +19,17 @@ def marks_svg(
     sheet_mm: tuple[float, float],
     colours: list[str],
     title: str = "",
-    misses=(),
+    tracking_errors=(),
     made: str = "",
     band=None,
-    unreached=(),
+    blank=(),
+    seen_mm: float = 0.0,
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
-    legend; unreached: rings of what no stroke reaches, outlined.
+    marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: where their edges lie,
+    with a legend; blank: rings of what of shapes stays blank, outlined; seen_mm: no stroke is marked for a smaller
+    tracking error, whatever the tolerance.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -36,18 +38,20 @@ def marks_svg(
         f'viewBox="0 0 {width:g} {height:g}"' + (f" data-made={_quoted(made)}" if made else "") + ">",
         f"<title>{escape(_printable(title), quote=False)}</title>",
     ]
-    misses = misses or [None] * len(colours)
-    for trace, colour, miss in zip(marks.passes, colours, misses, strict=True):
+    tracking_errors = tracking_errors or [None] * len(colours)
+    for trace, colour, miss in zip(marks.passes, colours, tracking_errors, strict=True):
         if trace.outline_mm:
             stroke = _quoted(trace.stroke)
-            lines.append(f'<path data-stroke={stroke}{_missed(miss)} fill="{known_colour(colour)}" d="')
+            lines.append(
+                f'<path data-stroke={stroke}{_missed(miss, seen_mm)} fill="{known_colour(colour)}" d="'
+            )
             lines += [_path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
-    if unreached:
-        data = "".join(_path_data(ring, height) for ring in unreached)
+    if blank:
+        data = "".join(_path_data(ring, height) for ring in blank)
         wide = round(EDGE * max(width, height), 3)
         lines.append(
-            f'<path class="unreached" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
+            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
         )
     if band is not None:
         lines += _band(band, width, height)
@@ -86,11 +90,15 @@ def _band(band, width: float, height: float) -> list[str]:
 
 
 BOTH, MISSING, SPILT = "#b4b8c0", "#d1431f", "#2f6fd0"
-MISSES = ((BOTH, "painted as wanted"), (MISSING, "wanted, not painted"), (SPILT, "painted, not wanted"))
+OVERLAP_COLOURS = (
+    (BOTH, "painted as wanted"),
+    (MISSING, "wanted, not painted"),
+    (SPILT, "painted, not wanted"),
+)
 
 
-def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
-    """Where paint is missing and where there is too much of it, in the colours of MISSES, in millimetres of the sheet.
+def overlap_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
+    """Where paint is missing and where there is too much of it, in OVERLAP_COLOURS, in millimetres of the sheet.
 
     wanted, painted: rings of all that was drawn, and of all paint.
     """
@@ -112,7 +120,7 @@ def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title
         f'<path fill="{BOTH}" clip-path="url(#wanted)" d="{data["painted"]}"/>',
     ]
     x = size
-    for colour, words in MISSES:
+    for colour, words in OVERLAP_COLOURS:
         lines.append(
             f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>'
         )
@@ -124,10 +132,11 @@ def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _missed(miss) -> str:
+def _missed(miss, seen_mm: float) -> str:
     if miss is None:
         return ""
-    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * (not miss.within_tolerance)
+    is_missed = not miss.within_tolerance and miss.largest_mm > seen_mm
+    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * is_missed
 
 
 def known_colour(colour: str) -> str:

@@ -32,7 +32,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
         options = replace(work.options, compensation="constant", lag_mm=lag_mm)
         done = _core.compensate(
-            within_reach(work.strokes, work.brush)[0],
+            within_reach(work.strokes, work.brush, "clamp")[0],
             work.brush,
             work.plan.sheet_mm,
             "constant",
@@ -43,7 +43,10 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
         painted = _core.coverage(_core.simulate(done.plan, work.brush), work.brush, window, px_per_mm)
         overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
         if overlap > most:
-            best, most = replace(work, plan=done.plan, misses=tuple(done.misses), options=options), overlap
+            best, most = (
+                replace(work, plan=done.plan, tracking_errors=tuple(done.misses), options=options),
+                overlap,
+            )
     return best
 
 
@@ -52,8 +55,11 @@ def advice(work: Work) -> str:
     options = work.options
     if not work.drawn or options.layout.width_mm is not None:
         return ""
+    is_filled = options.wide == "passes" or any(stroke.origin.lane > 1 for stroke in work.strokes)
+    if options.wide == "auto" and not is_filled:
+        options = replace(options, wide="clamp")  # strokes are tried alone, and shapes are filled whole
     made = _trial(work.brush, options)
-    if options.wide == "passes":
+    if is_filled:
         size = size_advice.best_letter_size(work.drawn, work.brush, made)
     else:
         size = size_advice.best_size(work.drawn, work.brush, made, _quick_trial(work.brush, options))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .. import _core
+from ..brush.confidence import law_band
 from ..errors import Error
 from ..evaluation import report
 from ..evaluation.uncertainty import uncertainty
@@ -10,7 +13,7 @@ from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads
 from ..machine.writer import time_s, whole_program
 from ..pictures.animation import animation
-from ..pictures.marks_svg import marks_svg, misses_svg
+from ..pictures.marks_svg import marks_svg, overlap_svg
 from ..pictures.timeline import timeline
 from .preparation import Work
 
@@ -33,31 +36,47 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
-    bare = [ring for piece in work.unreached for ring in piece.rings]
+    bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
         made = f"{work.plan.brush}{how}"
-        text = marks_svg(marks, work.plan.sheet_mm, colours, work.title, work.misses, made, band, bare)
+        text = marks_svg(
+            marks,
+            work.plan.sheet_mm,
+            colours,
+            work.title,
+            work.tracking_errors,
+            made,
+            band,
+            bare,
+            _seen_mm(work.brush),
+        )
         return text.encode()
     from ..pictures import marks_png  # brings OpenCV, which the others do not need
 
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
 
 
-def misses_picture(suffix: str, work: Work, marks) -> bytes:
+def _seen_mm(brush) -> float:
+    """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares."""
+    known = law_band(brush, "lag", np.array([brush.paint_depth_mm]))
+    return 0.0 if known is None else 0.25 * float(known[0][0])
+
+
+def overlap_picture(suffix: str, work: Work, marks) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
     outlines. Error for a plan, which does not say what was wanted."""
     if work.strokes is None:
         raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
     if suffix == ".svg":
         wanted = report.wanted_rings(work.strokes)
-        return misses_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
     from ..pictures import marks_png
 
     px_per_mm = min(20.0, marks_png.PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
     wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
-    return marks_png.misses_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
+    return marks_png.overlap_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
 
 
 def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:
@@ -111,7 +130,7 @@ def reported(
         warnings=tuple(known),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
-        sure=uncertainty(work.plan, work.brush, marks),
+        confidence=uncertainty(work.plan, work.brush, marks),
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
     )

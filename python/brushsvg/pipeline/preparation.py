@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from .. import _core, drawing
 from ..brush.library import find_brush
@@ -19,8 +20,8 @@ from ..machine.program import Job
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.extraction import strokes as strokes_of
-from ..strokes.unreached import notices as unreached_notices
-from ..strokes.unreached import unreached
+from ..strokes.unreached import missed, unreached
+from ..strokes.unreached import notices as blank_notices
 from ..strokes.width_limits import within_reach
 from .json_files import read_plan
 
@@ -39,7 +40,7 @@ class Options:
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
-    wide: str = "clamp"  # outlines wider than the brush: "clamp", "passes", "refuse"
+    wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
 
@@ -52,20 +53,21 @@ class Options:
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
-    misses: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
+    tracking_errors: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
     """
 
     title: str
     brush: object
     plan: object
     strokes: list | None
-    misses: tuple
+    tracking_errors: tuple
     options: Options
     notices: tuple[Notice, ...]
     refused: tuple[Notice, ...] = ()
     left_out: tuple = ()  # the strokes that were refused, as they were wanted
     drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
+    missed: tuple = ()  # pieces that strokes reach and the mark does not
 
 
 def prepare(
@@ -97,30 +99,35 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
-    plan, misses, moved = done.plan, done.misses, [False] * len(painted)
+    plan, tracking_errors, moved = done.plan, done.misses, [False] * len(painted)
     if options.compensation == "refined":
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
-        plan.passes, misses, moved = better.passes, better.misses, better.moved
+        plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _with_speeds(plan, strokes)
-    notices = [*design.notices, *notices, *_widths(done.warnings, options.layout.width_mm is None)]
+    told = _widths(painted, brush, done.warnings, options.layout.width_mm is None)
+    notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
-    notices += unreached_notices(bare)
+    notices += blank_notices(bare)
+    blank = []
     if options.compensation in ("closed", "refined"):
-        notices += _misses(painted, misses, moved, brush, options.tolerance_mm)
+        blank = missed(drawn, painted, _core.simulate(plan, brush).passes, bare, brush)
+        notices += blank_notices(blank, is_reached=True)
+        notices += _tracking_notices(painted, tracking_errors, moved, brush, options.tolerance_mm)
     return Work(
         design.title,
         brush,
         plan,
         strokes,
-        tuple(misses),
+        tuple(tracking_errors),
         options,
         tuple(notices),
         tuple(refused),
         tuple(left_out),
         drawn,
         tuple(bare),
+        tuple(blank),
     )
 
 
@@ -164,27 +171,53 @@ def _sorted_out(painted, wanted, step):
         try:
             step(pair[:1])
         except Error as error:
-            refused.append(replace(error.notice(pair[0].id), code=error.code or "stroke-refused"))
+            refused.append(error.notice(pair[0].id))
             left_out.append(pair[1])
         else:
             sound.append(pair)
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
-def _widths(warnings, may_advise: bool) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored."""
+def _widths(painted, brush, warnings, may_advise: bool) -> list[Notice]:
+    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
+    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them."""
     advice = "--width MM gives all strokes one width" if may_advise else ""
-    return [
-        Notice(where, said, code="depth-not-measured", advice=advice)
-        if where
-        else Notice(where, said, code="widths-ignored")
-        for where, said in warnings
+    laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
+    ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
+    measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
+    thin = {stroke.id: stroke for stroke in painted if measured and _thins_out(stroke, brush, *measured)}
+    is_end = [each.code == "depth-not-measured" and each.where in thin for each in warnings]
+    told = [
+        replace(each, advice=advice) if each.code == "depth-not-measured" else each
+        for each, end in zip(warnings, is_end, strict=True)
+        if not end
     ]
+    ends = [thin[each.where] for each, end in zip(warnings, is_end, strict=True) if end]
+    if ends:
+        least = min(half for stroke in ends for _, half in stroke.half_width)
+        count = "1 stroke begins or ends" if len(ends) == 1 else f"{len(ends)} strokes begin or end"
+        sentence = (
+            f"{count} at less depth, from {brush.depth_for_half_width(least, ''):.2g} mm on, than the "
+            f"{measured[0]:g} mm from which on brush {brush.name} was measured"
+        )
+        told.append(Notice("", sentence, code="ends-not-measured"))
+    return told
+
+
+def _thins_out(stroke, brush, least_mm: float, greatest_mm: float) -> bool:
+    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide."""
+    half = max(half for _, half in stroke.half_width)
+    if stroke.closed or brush.depth_for_half_width(half, stroke.id) > greatest_mm:
+        return False
+    length_mm = _core.flatten(stroke, 0.1)[-1, 2]
+    end = min(2 * half / max(length_mm, 1e-9), 0.5)
+    inside = np.interp(np.linspace(end, 1 - end, 101), *np.array(stroke.half_width).T)
+    return bool((inside >= brush.half_width(least_mm)).all())
 
 
 def _with_speeds(plan, strokes):
     """The plan with the speeds that the drawing's settings ask for."""
-    speeds = [json.loads(stroke.settings).get("speed_mm_s") for stroke in strokes]
+    speeds = [stroke.settings.speed_mm_s for stroke in strokes]
     if any(speeds):
         for a_pass, speed in zip(plan.passes, speeds, strict=True):
             a_pass.speed_mm_s = speed or a_pass.speed_mm_s
@@ -192,7 +225,7 @@ def _with_speeds(plan, strokes):
 
 
 def _other_brushes(strokes, brush) -> list[Notice]:
-    asked = ((stroke.id, json.loads(stroke.settings).get("brush", brush.name)) for stroke in strokes)
+    asked = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
     return [
         Notice(
             name,
@@ -204,10 +237,10 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
+def _tracking_notices(painted, tracking_errors, moved, brush, tolerance_mm: float) -> list[Notice]:
     """Tracking errors above their bound: moved, as refinement does on purpose, where it is beside the stroke."""
     found = []
-    for stroke, miss, is_moved in zip(painted, misses, moved, strict=True):
+    for stroke, miss, is_moved in zip(painted, tracking_errors, moved, strict=True):
         half_mm = brush.half_width(brush.paint_depth_mm)
         if brush.width_follows_depth():
             half_mm = max(half for _, half in stroke.half_width)
@@ -265,5 +298,5 @@ def nearest_first(work: Work) -> Work:
     was = work.plan
     plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
     strokes = None if work.strokes is None else [work.strokes[k] for k in order]
-    misses = tuple(work.misses[k] for k in order) if work.misses else ()
-    return replace(work, plan=plan, strokes=strokes, misses=misses)
+    tracking_errors = tuple(work.tracking_errors[k] for k in order) if work.tracking_errors else ()
+    return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 
 import numpy as np
 
@@ -18,7 +17,7 @@ def nearest_first(passes) -> list[int]:
 
 def _groups(passes) -> list[list[int]]:
     """Numbers of passes that follow each other in one layer with the same wish for an order."""
-    wishes = [(a_pass.layer, json.loads(a_pass.settings).get("order", 0)) for a_pass in passes]
+    wishes = [(a_pass.layer, a_pass.settings.order or 0) for a_pass in passes]
     numbers = range(len(passes))
     return [list(group) for _, group in itertools.groupby(numbers, key=wishes.__getitem__)]
 

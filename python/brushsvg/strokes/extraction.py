@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -47,11 +46,7 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
         try:
             lines = _lines(element, paths_as)
         except Error as beyond:
-            notices.append(
-                Notice(
-                    element.id or "filled", f"{beyond}: left out", code=beyond.code or "outline-too-complex"
-                )
-            )
+            notices.append(Notice(element.id or "filled", f"{beyond}: left out", code=beyond.code))
             continue
         if lines:
             found.append((element, lines))
@@ -130,9 +125,9 @@ def _drawn(element: Element, subpath: SubPath) -> _Line:
 
 
 def _of_element(element: Element, name: str, lines: list[_Line]):
-    from .._core import Stroke, StrokeId
+    from .._core import Settings, Stroke, StrokeId
 
-    settings = json.dumps(element.settings, sort_keys=True)
+    settings = Settings(**element.settings)
     for part, line in zip(_parts(len(lines)), lines, strict=True):
         for repeat in range(1, element.settings.get("passes", 1) + 1):
             stroke = Stroke(

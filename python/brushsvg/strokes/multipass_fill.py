@@ -3,14 +3,14 @@ their outlines."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 
 from .. import _core
 from .contour_fill import contour_passes, painted, region, unpainted
-from .offset_passes import Line, clamped, passes_beside
+from .offset_passes import Line, clamped, offset_passes
 
 # More of the shape covered along its outline is worth the direction of writing, which middle lines have.
 _BETTER = 0.01
@@ -28,6 +28,12 @@ class Filling:
     meant: dict[int, tuple[Line, list[np.ndarray]]]
     unpainted: float
     gap_mm: float
+    at_nearest: float = 1.0
+
+    @property
+    def helps(self) -> bool:
+        """Whether it covers more than the same strokes at the nearest width."""
+        return 1 - self.unpainted > self.at_nearest + _BETTER
 
     @property
     def shows(self) -> bool:
@@ -54,16 +60,19 @@ def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> 
 
 def _filling(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> Filling:
     beside = {
-        k: [clamped(stroke, least, greatest), *passes_beside(stroke, greatest)] for k, stroke in wide.items()
+        k: [clamped(stroke, least, greatest), *offset_passes(stroke, greatest)] for k, stroke in wide.items()
     }
     meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
-    along_middles = _tried(shape, beside, meant, narrow)
+    left = unpainted(shape, [*narrow, *(lines[0] for lines in beside.values())])
+    at_nearest = 1 - left.area / shape.area
+    along_middles = replace(_tried(shape, beside, meant, narrow), at_nearest=at_nearest)
     if not (lines := contour_passes(shape, list(wide.values()), narrow, least, greatest)):
         return along_middles
     first, *others = wide
     part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
     passes = {first: lines, **{k: [] for k in others}}
     along_outline = _tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow)
+    along_outline = replace(along_outline, at_nearest=at_nearest)
     return along_outline if _is_better(along_outline, along_middles) else along_middles
 
 

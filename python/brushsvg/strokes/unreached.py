@@ -1,4 +1,5 @@
-"""What of a filled shape no stroke reaches: limbs that got none, and what a brush too narrow leaves."""
+"""What of a filled shape stays blank: limbs that got no stroke, what a brush too narrow leaves, and what a mark misses
+of its stroke, as at blunt ends, where it begins pointed."""
 
 from __future__ import annotations
 
@@ -14,12 +15,14 @@ LEAST_SHARE = 0.01  # of its shape
 # are told where they are limbs, and not where they are corners.
 _CORNER = 0.69
 _LIMB_SHARE = 0.8  # of a disc in it, beyond: see skeleton.LEAST_SHARE
+MISSED_SHARE = 0.03  # of its shape, beside which strokes run: pointed beginnings leave some of every letter
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
+_PX_PER_MM, _SIDE_PX = 6.0, 4000  # for a first look: a piece wider than twice _EDGE_MM is several pixels wide
 
 
 @dataclass(frozen=True)
-class Unreached:
+class Blank:
     """A connected piece of an element's shape: at_mm (x, y) lies in it; share of the shape; rings [mm]."""
 
     element: str
@@ -28,7 +31,7 @@ class Unreached:
     rings: list[np.ndarray]
 
 
-def unreached(drawn: list, painted: list, brush) -> list[Unreached]:
+def unreached(drawn: list, painted: list, brush) -> list[Blank]:
     """Pieces that discs of the painted strokes' widths leave of the shapes that were drawn, the largest of each element
     first. Elements filled in several passes are left out: their notice says what is left.
 
@@ -52,7 +55,7 @@ def unreached(drawn: list, painted: list, brush) -> list[Unreached]:
     ]
 
 
-def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list[Unreached]:
+def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list[Blank]:
     """Of one element; without shapely where the strokes leave too little."""
     discs = _core.unite(
         [ring for stroke in strokes for ring in _core.wanted_outline(_bare(stroke), _SWEPT_MM)]
@@ -69,26 +72,96 @@ def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list
     left = shapely.difference(region(rings), region(discs)).buffer(-_EDGE_MM).buffer(_EDGE_MM)
     limbs = None
     found = []
-    for piece in sorted(shapely.get_parts(left), key=lambda piece: -piece.area):
-        if piece.area <= least or shapely.maximum_inscribed_circle(piece, 0.02).length < finest:
-            continue
+    for piece in _large(left, least, finest):
         if piece.area <= _CORNER * greatest**2:
             limbs = _limbs(rings) if limbs is None else limbs
             if not shapely.intersects_xy(piece, *limbs.T).any():
                 continue
-        x, y = shapely.maximum_inscribed_circle(piece, 0.02).coords[0]
-        outlines = [
-            np.array(ring.coords)[:-1]
-            for one in shapely.get_parts(shapely.orient_polygons(piece))
-            for ring in (one.exterior, *one.interiors)
-        ]
-        found.append(Unreached(element, (x, y), piece.area / whole, outlines))
+        found.append(_blank(element, piece, whole))
     return found
 
 
-def notices(found: list[Unreached]) -> list[Notice]:
-    """One for each element: where its largest piece lies, and the share of all of them."""
-    by_element: dict[str, list[Unreached]] = {}
+def missed(drawn: list, painted: list, traces: list, known: list[Blank], brush) -> list[Blank]:
+    """Pieces of shapes that strokes reach and their marks do not, the largest of each element first.
+
+    drawn: as for `unreached`, which found the known pieces; traces: marks of the painted strokes, of each one.
+    """
+    shapes: dict[str, list] = {}
+    for stroke in drawn:
+        if stroke.origin.repeat == 1 and stroke.wanted_mm:
+            shapes.setdefault(stroke.origin.element, []).append(stroke)
+    on_shapes: dict[str, list] = {element: [] for element in shapes}
+    for stroke, trace in zip(painted, traces, strict=True):
+        if stroke.origin.element in on_shapes:
+            on_shapes[stroke.origin.element].append(trace)
+    found = []
+    for element, strokes in shapes.items():
+        marks = _core.Marks()
+        marks.passes = on_shapes[element]
+        if _may_miss(strokes, marks, brush):
+            found += _missed(element, strokes, marks, known, brush)
+    return found
+
+
+def _may_miss(strokes: list, marks, brush) -> bool:
+    """A first look in pixels, which takes a tenth of the time of outlines."""
+    points = np.vstack([ring for stroke in strokes for ring in stroke.wanted_mm])
+    low, size = points.min(axis=0), np.ptp(points, axis=0) + 1.0
+    window, px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
+    wanted = _core.wanted_coverage(strokes, window, px_per_mm) > 0.5
+    blank = wanted & (_core.coverage(marks, brush, window, px_per_mm) < 0.5)
+    if px_per_mm == _PX_PER_MM:
+        blank = _all_or_any(_all_or_any(blank, np.logical_and), np.logical_or)
+    return blank.sum() > 0.8 * MISSED_SHARE * wanted.sum()
+
+
+def _all_or_any(mask: np.ndarray, rule) -> np.ndarray:
+    """Of each pixel and its eight neighbours, all or any."""
+    for axis in (0, 1):
+        mask = rule(rule(mask, np.roll(mask, 1, axis)), np.roll(mask, -1, axis))
+    return mask
+
+
+def _missed(element: str, strokes: list, marks, known: list[Blank], brush) -> list[Blank]:
+    import shapely
+
+    from .contour_fill import region
+
+    _core.trace_outlines(marks, brush)
+    shape = region(_core.unite([ring for stroke in strokes for ring in stroke.wanted_mm]))
+    told = [region(piece.rings) for piece in known if piece.element == element]
+    left = shapely.difference(shape, shapely.union_all([region(marks.outline_mm), *told]))
+    left = left.buffer(-_EDGE_MM).buffer(_EDGE_MM)
+    large = _large(left, MISSED_SHARE * shape.area, _finest(brush))
+    return [_blank(element, piece, shape.area) for piece in large]
+
+
+def _large(left, least: float, finest: float) -> list:
+    """Pieces that are large enough to be told, the largest first."""
+    import shapely
+
+    return [
+        piece
+        for piece in sorted(shapely.get_parts(left), key=lambda piece: -piece.area)
+        if piece.area > least and shapely.maximum_inscribed_circle(piece, 0.02).length >= finest
+    ]
+
+
+def _blank(element: str, piece, whole_mm2: float) -> Blank:
+    import shapely
+
+    x, y = shapely.maximum_inscribed_circle(piece, 0.02).coords[0]
+    outlines = [
+        np.array(ring.coords)[:-1]
+        for one in shapely.get_parts(shapely.orient_polygons(piece))
+        for ring in (one.exterior, *one.interiors)
+    ]
+    return Blank(element, (x, y), piece.area / whole_mm2, outlines)
+
+
+def notices(found: list[Blank], is_reached: bool = False) -> list[Notice]:
+    """One for each element: where its largest piece lies, and the share of all of them. is_reached: by a stroke."""
+    by_element: dict[str, list[Blank]] = {}
     for piece in found:
         by_element.setdefault(piece.element, []).append(piece)
     told = []
@@ -98,8 +171,12 @@ def notices(found: list[Unreached]) -> list[Notice]:
         where = f"near x {x:.1f}, y {y:.1f} mm"
         if len(pieces) > 1:
             where = f"in {len(pieces)} pieces, the largest {where}"
-        sentence = f"no stroke reaches {share:.2g} % of its shape, {where}"
-        told.append(Notice(element, sentence, code="unreached"))
+        if is_reached:
+            said = f"the mark leaves {share:.2g} % of its shape blank, {where}"
+            told.append(Notice(element, said, code="mark-misses"))
+        else:
+            said = f"no stroke reaches {share:.2g} % of its shape, {where}"
+            told.append(Notice(element, said, code="unreached"))
     return told
 
 

@@ -9,18 +9,23 @@ from ..drawing.design import Notice
 from ..errors import Error, need
 from .offset_passes import clamped
 
-WIDE = ("clamp", "passes", "refuse")
+WIDE = ("auto", "clamp", "passes", "refuse")
+# At the nearest width discs paint so much of a shape, or passes are taken for it.
+ENOUGH = 0.8
+# Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
+_WORTH_PASSES = 1 / 0.95
 
 
-def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list, list[Notice]]:
+def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, list[Notice]]:
     """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
 
     Only strokes that carry an outline are changed: widths that were drawn as such are refused when the plan is made.
     wide: "clamp", the nearest width; "passes", several passes, called id, id~2, id~3 ..., which fill the shape that is
-    wider than the brush and stay in it; "refuse", Error naming stroke, width and range.
+    wider than the brush and stay in it; "auto", passes for shapes of which discs of the nearest widths paint less than
+    0.8, where passes paint more; "refuse", Error naming stroke, width and range.
     """
     need(brush, _core.Brush, "a brush")
-    need(wide, str, "clamp, passes or refuse")
+    need(wide, str, "auto, clamp, passes or refuse")
     for stroke in strokes:
         need(stroke, _core.Stroke, "a stroke")
     if not brush.width_follows_depth():
@@ -33,8 +38,9 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
             sentence = f"width {2 * worst:.3g} mm of its outline is outside the range {reach}"
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
-    wider = [k for k, found in beyond.items() if found and found[1] > greatest]
-    filled = _filled(strokes, wider, least, greatest) if wide == "passes" and wider else {}
+    least_wide = greatest if wide == "passes" else greatest * _WORTH_PASSES
+    wider = [k for k, found in beyond.items() if found and found[1] > least_wide]
+    filled, fillable = _filled(strokes, wider, least, greatest, wide) if wider else ({}, set())
     painted, wanted, notices = [], [], []
     for k, stroke in enumerate(strokes):
         made, meant, how = filled.get(k) or ([stroke], [stroke], "")
@@ -48,7 +54,7 @@ def within_reach(strokes: list, brush, wide: str = "clamp") -> tuple[list, list,
                     f"{count} {2 * worst:.3g} mm, outside the range {reach}: {how}",
                     code="width-out-of-reach",
                     about="wider" if worst > greatest else "narrower",
-                    advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
+                    advice="--wide passes paints more of it" if k in fillable else "",
                 )
             )
         painted += made
@@ -68,12 +74,20 @@ def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
     return f"{off.sum()} of {len(off)} widths of its outline, up to", worst
 
 
-def _filled(strokes: list, wider: list[int], least: float, greatest: float) -> dict[int, tuple]:
-    """For each stroke that is wider than the brush (passes, what they should become, how in words)."""
+def _filled(
+    strokes: list, wider: list[int], least: float, greatest: float, wide: str
+) -> tuple[dict[int, tuple], set[int]]:
+    """For each stroke to paint in passes (these, what they should become, how in words); and the strokes of which
+    passes would paint more, if they were asked for."""
     from .multipass_fill import fillings  # with shapely, which is slow to load
 
-    done = {}
+    done: dict[int, tuple] = {}
+    fillable: set[int] = set()
     for filling in fillings(strokes, wider, least, greatest):
+        is_lacking = wide == "auto" and filling.at_nearest < ENOUGH
+        if wide != "passes" and not (is_lacking and filling.helps):
+            fillable |= set(filling.passes) if filling.helps else set()
+            continue
         first = min(filling.passes)
         left_over = _left_over(filling)
         for k in filling.passes:
@@ -83,8 +97,13 @@ def _filled(strokes: list, wider: list[int], least: float, greatest: float) -> d
                 line, rings = filling.meant[k]
                 meant = [_like(strokes[k], line), *passes[1:]]
                 meant[0].wanted_mm = rings
-            done[k] = (passes, meant, _how(passes) + left_over * (k == first))
-    return done
+            how = _how(passes) + left_over * (k == first)
+            if is_lacking:
+                how += f", since the nearest width would paint {filling.at_nearest:.0%} of the shape".replace(
+                    "%", " %"
+                )
+            done[k] = (passes, meant, how)
+    return done, fillable
 
 
 def _how(passes: list) -> str:

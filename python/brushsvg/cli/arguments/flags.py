@@ -96,8 +96,9 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
 def add_wide(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--wide",
-        choices=("clamp", "passes", "refuse"),
-        help="shapes wider than the brush: its greatest width, several passes, or refuse; default: clamp",
+        choices=("auto", "clamp", "passes", "refuse"),
+        help="shapes wider than the brush: its greatest width, several passes, or refuse; default: auto, passes where "
+        "its greatest width paints less than 0.8 of a shape",
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 
 from ..._core import remarks, write_brush
-from ...errors import Notice
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
 from .outputs import check_places, suffix_of, write
@@ -43,7 +42,7 @@ def calibrate_file(args) -> None:
             more = told(read)
             if args.picture:
                 files[args.picture] = read_picture(read, made)
-    warn(args.output, [Notice(*each) for each in remarks(made.brush)])
+    warn(args.output, remarks(made.brush))
     write(args, files, more=more)
     tell(report(made))
 

@@ -9,7 +9,7 @@ from .entity_walk import Walk
 from .file import open_dxf
 from .linetypes import Dashes
 from .placement import anchored, in_range, with_margin
-from .polylines import chained, element_of
+from .polylines import anew, chained, element_of
 from .units import unit_of
 
 _FLAT_MM = 1e-3
@@ -36,7 +36,7 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         sentence = f"the drawing is not flat: heights from {lowest:.6g} to {highest:.6g} mm are left out"
         notices.append(Notice("z", sentence, code="dxf-not-flat"))
     dashes = Dashes()
-    elements = [dashes.cut(element_of(piece), piece.pen) for piece in chained(pieces)]
+    elements = [dashes.cut(element_of(piece), piece.pen, anew(piece)) for piece in chained(pieces)]
     notices += dashes.notices
     sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else with_margin(elements)
     return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())

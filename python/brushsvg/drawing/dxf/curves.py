@@ -20,12 +20,14 @@ _FLAT = ezdxf.math.OCS()
 class Curve:
     """One line: cubics (n, 4, 3) end to end; widths: (n, 2), at the start and end of each, None if none are drawn.
 
-    A width of 0 is drawn with the entity's line weight.
+    A width of 0 is drawn with the entity's line weight. anew: (n,) where a line type's pattern begins anew, None if it
+    runs on from end to end.
     """
 
     cubics: np.ndarray
     closed: bool = False
     widths: np.ndarray | None = None
+    anew: np.ndarray | None = None
 
 
 def curves(entity, tolerance: float) -> list[Curve] | None:
@@ -86,7 +88,8 @@ def _lwpolyline(entity, tolerance: float) -> list[Curve]:
     rows = np.array(entity.get_points("xybse"), dtype=float).reshape(-1, 5)
     if entity.dxf.hasattr("const_width") and not rows[:, 3:].any():  # widths of its own go first
         rows[:, 3:] = entity.dxf.const_width
-    return _polyline_2d(rows, entity.closed, entity.ocs(), entity.dxf.elevation, tolerance)
+    runs_on = bool(entity.dxf.flags & _PLINEGEN)
+    return _polyline_2d(rows, entity.closed, entity.ocs(), entity.dxf.elevation, tolerance, runs_on)
 
 
 def _polyline(entity, tolerance: float) -> list[Curve] | None:
@@ -116,10 +119,16 @@ def _polyline(entity, tolerance: float) -> list[Curve] | None:
     if not rows:
         return []
     elevation = entity.dxf.elevation.z if entity.dxf.hasattr("elevation") else vertices[0].dxf.location.z
-    return _polyline_2d(np.array(rows), entity.is_closed, entity.ocs(), elevation, tolerance)
+    runs_on = bool(entity.dxf.flags & _PLINEGEN)
+    return _polyline_2d(np.array(rows), entity.is_closed, entity.ocs(), elevation, tolerance, runs_on)
 
 
-def _polyline_2d(rows: np.ndarray, closed: bool, ocs, elevation: float, tolerance: float) -> list[Curve]:
+_PLINEGEN = 128  # of a polyline's flags: dashes run on over its vertices
+
+
+def _polyline_2d(
+    rows: np.ndarray, closed: bool, ocs, elevation: float, tolerance: float, runs_on: bool = True
+) -> list[Curve]:
     """rows: x, y, bulge, start and end width of each vertex; those of the last one count if it is closed."""
     if not len(rows):
         return []
@@ -134,13 +143,14 @@ def _polyline_2d(rows: np.ndarray, closed: bool, ocs, elevation: float, toleranc
         pieces[k] = _bulge(p[k], q[k], rows[k, 2], tolerance)
     flat = np.concatenate(pieces)
     cubics = _world(np.stack((flat.real, flat.imag, np.full(flat.shape, float(elevation))), axis=-1), ocs)
+    anew = None if runs_on else np.concatenate([np.arange(len(piece)) == 0 for piece in pieces])
     if not rows[:count, 3:].any():
-        return [Curve(joined(cubics), closed)]
+        return [Curve(joined(cubics), closed, anew=anew)]
     drawn = []
     for piece, ends in zip(pieces, rows[:count, 3:], strict=True):
         at = np.linspace(*ends, len(piece) + 1)
         drawn.append(np.column_stack((at[:-1], at[1:])))
-    return [Curve(joined(cubics), closed, np.concatenate(drawn))]
+    return [Curve(joined(cubics), closed, np.concatenate(drawn), anew)]
 
 
 def _bulge(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray:

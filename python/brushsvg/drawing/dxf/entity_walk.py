@@ -282,7 +282,7 @@ class Walk:
                 sentence = "its widths are outside the range [0, 1e6] mm: left out"
                 self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
-            found.append(Curve(cubics, line.closed, widths))
+            found.append(Curve(cubics, line.closed, widths, line.anew))
         if not found:
             self._note(name, "it has no geometry: left out", pen.layer, code="geometry-empty")
             return

@@ -14,6 +14,17 @@ _MOST_NOTICES = 5
 _NUMBER = ezdxf.audit.AuditError.INVALID_FLOATING_POINT_VALUE
 
 
+_UNSEEN = {  # repairs of what ties the parts of a file together, and of what is not painted
+    ezdxf.audit.AuditError[name]
+    for name in """CREATED_MISSING_OBJECT GROUP_ENTITIES_IN_DIFFERENT_LAYOUTS INVALID_CREASE_VALUE_COUNT
+    INVALID_DICTIONARY_ENTRY INVALID_DIMSTYLE INVALID_ENTITY_HANDLE INVALID_GROUP_ENTITIES INVALID_OWNER_HANDLE
+    INVALID_TABLE_HANDLE INVALID_TRANSPARENCY MISSING_PERSISTENT_REACTOR MISSING_REQUIRED_SEQEND
+    ORPHANED_PAPER_SPACE_BLOCK_RECORD_ENTITY REMOVED_INVALID_DXF_OBJECT REMOVE_EMPTY_GROUP
+    UNDEFINED_DIMENSION_STYLE""".split()
+    if name in ezdxf.audit.AuditError.__members__
+}
+
+
 class _Auditor(ezdxf.audit.Auditor):
     def check_block_reference_cycles(self) -> None:
         """Left out: it walks every path through nested blocks. We count while we unfold them."""
@@ -22,6 +33,21 @@ class _Auditor(ezdxf.audit.Auditor):
         """What is drawn is kept even if it is broken, so that the walk can name it."""
         if not isinstance(entity, ezdxf.entities.DXFGraphic):
             super().trash(entity)
+        elif self.fixes and str(entity) in self.fixes[-1].message:  # "removed"
+            self.fixes.pop()
+
+    def repairs(self) -> list[Notice]:
+        """A notice for each repair that may change what is painted; those of one kind are told as one."""
+        return [
+            Notice(
+                str(fix.entity or "file"),
+                f"repaired: {shown(fix.message).rstrip('.')}",
+                code="dxf-repaired",
+                about=str(fix.code),
+            )
+            for fix in self.fixes
+            if fix.code not in _UNSEEN
+        ]
 
 
 def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
@@ -41,7 +67,8 @@ def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
         raise Error(f"the DXF is damaged beyond repair: {reason(problem)}", code="dxf-damaged") from None
     except Exception:  # whatever ezdxf meets in bytes that anyone may have written
         raise Error("the DXF is damaged beyond repair, or cut short", code="dxf-damaged") from None
-    return document, notices + _some([("file", error.message) for error in auditor.errors], damaged=False)
+    problems = _some([("file", error.message) for error in auditor.errors], damaged=False)
+    return document, notices + problems + auditor.repairs()
 
 
 def _binary(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:

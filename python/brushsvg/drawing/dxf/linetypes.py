@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from ...errors import Error
 from ...geometry.arc_length import knots
-from ..design import Element, Notice
+from ..design import Element, Notice, SubPath
 from ..svg.dashes import dashed
 from .lineweights import Pen
 
 _MOST_DASHES = 100_000
+_MEETS_MM = 1e-6  # what rounding leaves between the end of a line and that of its last dash
 
 
 class Dashes:
@@ -21,13 +24,14 @@ class Dashes:
         self.notices: list[Notice] = []
         self._left = _MOST_DASHES
 
-    def cut(self, element: Element, pen: Pen) -> Element:
-        """The element with each dash a sub-path. Error if there are too many."""
+    def cut(self, element: Element, pen: Pen, anew: list[np.ndarray]) -> Element:
+        """The element with each dash a sub-path. anew: for each sub-path the cubics with which, beside the first, the
+        pattern begins. Error if there are too many."""
         if pen.line_type is None or element.fill_rule:
             return element
         pattern = [length * pen.line_scale for length in pen.line_type.pattern_mm]
-        lengths = [float(knots(subpath.cubics)[:, -1].sum()) for subpath in element.subpaths]
-        if not any(lengths):
+        lengths = [knots(subpath.cubics)[:, -1] for subpath in element.subpaths]
+        if not any(length.any() for length in lengths):
             return element
         if not 0 < sum(pattern) < math.inf:
             unread = Notice(
@@ -48,13 +52,14 @@ class Dashes:
                 )
             )
             return element
-        pieces = []
-        for subpath, length in zip(element.subpaths, lengths, strict=True):
-            if length < sum(pattern):  # CAD programs draw it unbroken
+        pieces: list[SubPath] = []
+        for subpath, begins, length in zip(element.subpaths, anew, lengths, strict=True):
+            runs = np.split(np.arange(len(length)), begins)
+            if all(length[run].sum() < sum(pattern) for run in runs):  # CAD programs draw it unbroken
                 pieces.append(subpath)
                 continue
             try:
-                pieces += dashed(subpath, pattern, 0.0, self._left - len(pieces))
+                pieces += self._in_dashes(subpath, runs, length, pattern, self._left - len(pieces))
             except Error as error:
                 raise Error(str(error), where=element.id, code=error.code) from None
         self._left -= len(pieces)
@@ -62,3 +67,27 @@ class Dashes:
             sentence = f"it is dashed: {len(pieces)} strokes, one for each dash"
             self.notices.append(Notice(element.id, sentence, layer=element.layer, code="dashed"))
         return replace(element, subpaths=tuple(pieces))
+
+    def _in_dashes(self, subpath: SubPath, runs, length: np.ndarray, pattern, most: int) -> list[SubPath]:
+        """Each run of cubics in dashes of its own, of which two that meet at a corner are one."""
+        if len(runs) == 1:
+            return dashed(subpath, pattern, 0.0, most)
+        found: list[np.ndarray] = []
+        for run in runs:
+            part = SubPath(subpath.cubics[run])
+            dashes = (
+                [part] if length[run].sum() < sum(pattern) else dashed(part, pattern, 0.0, most - len(found))
+            )
+            pieces = [dash.cubics for dash in dashes]
+            if found and pieces and _meet(found[-1], pieces[0]):
+                pieces[0] = np.concatenate((found.pop(), pieces[0]))
+            found += pieces
+        if subpath.closed and len(found) > 1 and _meet(found[-1], found[0]):
+            found[0] = np.concatenate((found.pop(), found[0]))
+        return [SubPath(cubics) for cubics in found]
+
+
+def _meet(first: np.ndarray, second: np.ndarray) -> bool:
+    """Whether one dash, which is no dot, goes on in another one."""
+    is_long = all(np.abs(cubics - cubics[:1, :1]).max() > _MEETS_MM for cubics in (first, second))
+    return is_long and math.dist(first[-1, 3], second[0, 0]) <= _MEETS_MM

@@ -69,15 +69,39 @@ def element_of(piece: Piece) -> Element:
     return Element(piece.id, subpaths, width_mm, piece.pen.colour, piece.pen.layer, fill_rule=piece.fill_rule)
 
 
-def _subpath(curve: Curve, default_mm: float) -> SubPath:
-    cubics, widths = curve.cubics[..., :2], curve.widths
-    if widths is not None:
-        widths = np.where((widths == 0).all(axis=1, keepdims=True), default_mm, widths)
+def anew(piece: Piece) -> list[np.ndarray]:
+    """For each sub-path of the piece's element the cubics, but for the first, with which a line type's pattern begins
+    anew."""
+    found = []
+    for curve in piece.curves:
+        cubics, _ = _with_its_end(curve)
+        begins = np.zeros(len(cubics), dtype=bool)
+        if curve.anew is not None:
+            begins = np.append(curve.anew, [True] * (len(cubics) - len(curve.anew)))
+        found.append(np.flatnonzero(begins[_real(cubics)][1:]) + 1)
+    return found
+
+
+def _with_its_end(curve: Curve) -> tuple[np.ndarray, float]:
+    """Its cubics, closed if it is, and how far its ends are apart as drawn."""
+    cubics = curve.cubics[..., :2]
     gap = math.dist(cubics[0, 0], cubics[-1, 3])
     if curve.closed and gap > _GAP_MM:
         cubics = np.concatenate((cubics, straight([cubics[-1, 3], cubics[0, 0]])))
-        widths = None if widths is None else np.concatenate((widths, widths[-1:, 1:].repeat(2, axis=1)))
-    real = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) >= _NOTHING_MM
+    return cubics, gap
+
+
+def _real(cubics: np.ndarray) -> np.ndarray:
+    return np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) >= _NOTHING_MM
+
+
+def _subpath(curve: Curve, default_mm: float) -> SubPath:
+    (cubics, gap), widths = _with_its_end(curve), curve.widths
+    if widths is not None:
+        widths = np.where((widths == 0).all(axis=1, keepdims=True), default_mm, widths)
+        if len(widths) < len(cubics):
+            widths = np.concatenate((widths, widths[-1:, 1:].repeat(2, axis=1)))
+    real = _real(cubics)
     if not real.any():
         point = np.repeat(cubics[:1, :1], 4, axis=1)
         return SubPath(point, widths=None if widths is None else np.array([[0.0, widths.max()]]))

@@ -108,5 +108,5 @@ _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),
     "compensation": ("compensation", _one_of("none", "constant", "closed", "refined")),
     "tolerance": ("tolerance", _tolerance_mm),
-    "wide": ("wide", _one_of("clamp", "passes", "refuse")),
+    "wide": ("wide", _one_of("auto", "clamp", "passes", "refuse")),
 }

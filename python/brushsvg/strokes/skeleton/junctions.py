@@ -14,6 +14,9 @@ from ...geometry.polylines import length
 CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
 STRAIGHTEST_RAD = np.radians(60)
+# A neck is where an arm leaves narrower than so much of the widest disc and is wider farther on. Two arms between which
+# all others have one are one line up to a greater turn: the stem of an a and its foot, beside which the bowl comes in.
+NECK, STRAIGHTEST_THICK_RAD = 0.6, np.radians(120)
 # What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of
 # 90 degrees 0.21. More is the end of a stem, which a line that cuts the corner would leave bare.
 STEM_END = 0.3
@@ -141,13 +144,23 @@ def _join(crossing: Crossing) -> None:
     """Pairs of arms, the straightest first; none at the end of a stem."""
     if crossing.is_corner and crossing.dropped > STEM_END:
         return
+    narrow = NECK * crossing.discs[:, 2].max()
+    thick = [arm for arm in crossing.arms if arm.line[arm.out, 2] >= narrow]
+    necks = [arm for arm in crossing.arms if arm.line[arm.out, 2] < narrow <= arm.line[arm.out :, 2].max()]
+    is_beside = len(thick) == 2 and necks and len(necks) + 2 == len(crossing.arms)
+    if is_beside and _turn_across(*thick) < STRAIGHTEST_THICK_RAD:
+        thick[0].mate, thick[1].mate = thick[1], thick[0]
     turns = []
     for a, b in combinations(crossing.arms[:MOST_ARMS], 2):
-        across = b.line[b.out, :2] - a.line[a.out, :2]
-        turns.append((_turn(-a.direction, across) + _turn(across, b.direction), len(turns), a, b))
+        turns.append((_turn_across(a, b), len(turns), a, b))
     for turn, _, a, b in sorted(turns, key=lambda each: each[:2]):
         if turn < STRAIGHTEST_RAD and a.mate is None and b.mate is None:
             a.mate, b.mate = b, a
+
+
+def _turn_across(a: Arm, b: Arm) -> float:
+    across = b.line[b.out, :2] - a.line[a.out, :2]
+    return _turn(-a.direction, across) + _turn(across, b.direction)
 
 
 def _turn(u, v) -> float:

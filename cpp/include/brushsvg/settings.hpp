@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace brushsvg {
+
+/// What a drawing says of an element to brushsvg itself (docs/drawings.md), carried from there to the plan. What it
+/// does not say is empty.
+struct Settings {
+    std::optional<std::string> brush;
+    std::optional<std::string> kind;  ///< of a stroke of the calibration chart
+    std::optional<int> order;
+    std::optional<int> passes;  ///< how often it is painted
+    std::optional<bool> reload;
+    std::optional<bool> skip;
+    std::optional<double> speed_mm_s;
+    std::optional<double> width_mm;
+    std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
+};
+
+/// each(key, value) of all known keys, in the order of the alphabet, in which they are written.
+template <class OneSettings, class Each>
+void each_setting(OneSettings& settings, Each&& each) {
+    each("brush", settings.brush);
+    each("kind", settings.kind);
+    each("order", settings.order);
+    each("passes", settings.passes);
+    each("reload", settings.reload);
+    each("skip", settings.skip);
+    each("speed_mm_s", settings.speed_mm_s);
+    each("width_mm", settings.width_mm);
+}
+
+}  // namespace brushsvg

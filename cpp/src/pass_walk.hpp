@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
+#include "brushsvg/plan.hpp"
+
+namespace brushsvg {
+
+/// A stretch of the TCP's way, straight, part of the way above the paper: depths below 0 are heights.
+template <class T>
+struct AboveStretch {
+    Vec2<T> from, to;
+    T depth_from, depth_to;
+};
+
+/// The TCP's way in a pass, stretch by stretch, on any scalar: where it is above the paper, meets it and draws on it.
+/// deeper_mm: how much deeper than -z the brush is pressed. Called, with i the pose before and shares of the move from
+/// there to the next one:
+///
+///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move, where it is set down or not
+///     to.touch(i, at, tcp)                set down
+///     to.move(motion, i, begin, end)      on the paper: a Move, or an ArcMove
+///     to.is_done()                        whether to stop
+///
+/// A pass that begins below the paper's surface is set down on the spot, if it is not `down` already, and one that ends
+/// there is lifted on the spot: moves from 0 to 0 of what follows the pose.
+template <class T, class To>
+void walk_pass(const Poses& poses, const std::vector<Arc>& arcs, const T& deeper_mm, bool down, To& to) {
+    using Index = Eigen::Index;
+    const Index last = poses.rows() - 1;
+    const T none(0.0), whole(1.0);
+    const auto place = [&](Index i) -> Vec2<double> { return poses.row(i).head<2>().transpose(); };
+    const auto tcp = [&](Index i) -> Vec2<T> { return place(i).template cast<T>(); };
+    const auto depth = [&](Index i) { return T(deeper_mm - poses(i, 2)); };
+    if (!down && value_of(depth(0)) >= 0.0) {
+        to.touch(0, none, tcp(0));
+        if (value_of(depth(0)) > 0.0) to.move(Move<T>(tcp(0), tcp(0), none, depth(0)), 0, none, none);
+    }
+    auto arc = arcs.begin();
+    for (Index i = 0; i < last && !to.is_done(); ++i) {
+        while (arc != arcs.end() && arc->last <= i) ++arc;
+        const Vec2<T> a = tcp(i), b = tcp(i + 1);
+        const T da = depth(i), db = depth(i + 1);
+        const bool on_paper = value_of(da) >= 0.0, stays = value_of(db) >= 0.0;
+        if (on_paper && stays) {
+            if (arc != arcs.end() && arc->first <= i)
+                to.move(arc_between<T>(a, b, T(turn_between(*arc, place(i), place(i + 1))), da), i, none, whole);
+            else
+                to.move(Move<T>(a, b, da, db), i, none, whole);
+        } else if (!on_paper && !stays) {
+            to.above(i, AboveStretch<T>{a, b, da, db}, whole, false);
+        } else {
+            const T crossing = da / (da - db);
+            const Vec2<T> c = a + crossing * (b - a);
+            if (stays) {
+                to.above(i, AboveStretch<T>{a, b, da, db}, crossing, true);
+                to.touch(i, crossing, c);
+                if (value_of(db) > 0.0) to.move(Move<T>(c, b, none, db), i, crossing, whole);
+            } else {
+                if (value_of(crossing) > 0.0) to.move(Move<T>(a, c, da, none), i, none, crossing);
+                to.above(i, AboveStretch<T>{a, b, da, db}, whole, false);
+            }
+        }
+    }
+    if (!to.is_done() && value_of(depth(last)) > 0.0)
+        to.move(Move<T>(tcp(last), tcp(last), depth(last), none), last, none, none);
+}
+
+}  // namespace brushsvg

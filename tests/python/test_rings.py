@@ -1,0 +1,61 @@
+"""Lists and rings from Python, before anything is computed with them."""
+
+import numpy as np
+import pytest
+
+from brushsvg import Error, _core, area, coverage, find_brush, overlap, unite
+
+SQUARE = np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])
+
+
+class Endless:
+    """A list of a length that fits nowhere; who asks for one of its entries has begun to copy it."""
+
+    def __init__(self, length):
+        self.length, self.asked = length, 0
+
+    def __len__(self):
+        return self.length
+
+    def __getitem__(self, index):
+        self.asked += 1
+        raise IndexError
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda some: _core.compensate(some, find_brush("round-6"), (9, 9)),
+        area,
+        unite,
+        lambda some: overlap([SQUARE], some),
+        lambda some: coverage(some, (0, 0, 9, 9), 1.0),
+        lambda some: _core.Stroke("a", [[0.0] * 8], half_width=some),
+        lambda some: _core.Plan("b", "", (9, 9), some),
+    ],
+)
+def test_a_list_longer_than_any_is_refused_before_it_is_copied(call):
+    some = Endless(10_000_001)
+    with pytest.raises(Error) as refused:
+        call(some)
+    assert (refused.value.code, refused.value.value, some.asked) == ("list-too-long", 10_000_001, 0)
+    assert tuple(refused.value.range) == (0, 10_000_000)
+    with pytest.raises(Error):
+        call(range(10**9))
+
+
+def test_rings_that_run_clockwise_are_refused_not_lost():
+    turned = SQUARE[::-1]
+    assert overlap([SQUARE], [SQUARE]) == 1
+    for call in (
+        lambda: overlap([SQUARE], [turned]),
+        lambda: overlap([turned], [turned]),
+        lambda: unite([turned]),
+        lambda: _core.intersect([turned], [SQUARE]),
+        lambda: _core.coverage_of_pieces([turned], (0, 0, 4, 4), 1.0),
+    ):
+        with pytest.raises(Error) as refused:
+            call()
+        assert (refused.value.code, refused.value.value) == ("outline-clockwise", -16)
+    assert area([turned]) == -16
+    assert coverage([turned], (0, 0, 4, 4), 1.0).min() == 1
