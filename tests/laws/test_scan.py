@@ -137,6 +137,19 @@ def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
         assert abs(mean) < most_mm and rms < 0.09, (stroke, mean, rms)
 
 
+def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
+    """Blur takes from the middle of a narrow mark, too: half way up to what is left there once lay 0.05 mm outside."""
+    marks = dict(painted_marks())
+    for stroke, width in (("auxiliary-1", 0.7), ("straight-1", 0.9)):
+        left, bottom, right, top = shape(marks[stroke]).bounds
+        x, y = (left + right) / 2, (bottom + top) / 2
+        marks[stroke] = [photograph.box(x - 8, y - width / 2, x + 8, y + width / 2)]
+    camera = replace(SMALL, blur_px=1.5, size_px=(1150, 1580))
+    found = read(photograph.exposed(painted_sheet(marks.values()), camera))
+    for stroke in ("auxiliary-1", "straight-1", "straight-4", "reference-1"):
+        assert abs(off_mm(found.marks.outlines_mm[stroke], marks[stroke])[0]) < 0.02, stroke
+
+
 def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
     marks = dict(painted_marks())
     boxes = {stroke.id: shapely.box(*stroke.box_mm) for stroke in a5().strokes}

@@ -29,6 +29,8 @@ LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
 RIM_MM = 2.0  # along the sheet's edges, where the table and shadows show
 LEAST_LENGTH = 0.3  # of its box, that a mark is long at least: less is a splash where a stroke is missing
+CLEAR_MM = 0.5  # within a mark's edge, from where on blur takes nothing away
+MOST_BLURRED = 1.3  # times as much paint a narrow mark may have as it shows
 EDGE_MM = 0.8  # beside a mark, where its edge is looked for
 STEP_MM, OVER_MM = 0.1, 0.2  # points of an outline, and over how much of it each is a mean: pixels make steps
 
@@ -177,10 +179,11 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
     cut = (second > SPLIT * areas) & (second > SPLIT_MM2 * fine**2)
     _refuse_covered(shares, areas, kept & cut, rooms, fine)
     _refuse_elsewhere(kept[part], flat, rooms)
+    usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
     for number, room in enumerate(rooms, 1):
         own = kept & np.where(cut, shares[:, number] > LEAST_MM2 * fine**2, home == number)
-        rings = _outlines(paint, part, owner, own, cut, number, stats, fine, flat.sheet_mm[1])
+        rings = _outlines(paint, part, owner, own, cut, number, stats, fine, flat.sheet_mm[1], usual)
         if rings and _long(rings) > LEAST_LENGTH * _long([np.reshape(room.box_mm, (2, 2))]):
             outlines[room.stroke] = rings
         else:
@@ -249,7 +252,7 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, rooms: list[Room]) -> Non
         )
 
 
-def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, height_mm: float) -> list:
+def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, height_mm: float, usual) -> list:
     parts = np.flatnonzero(own)
     if not len(parts):
         return []
@@ -261,8 +264,7 @@ def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, hei
     seen, here = part[rows, columns], owner[rows, columns] == number
     mine = own[seen] & (here | ~cut[seen])
     amount = paint[rows, columns]
-    core = cv2.erode(np.uint8(mine), None, iterations=max(1, round(0.15 * fine))) == 1
-    level = 0.5 * float(np.median(amount[core]) if core.any() else np.quantile(amount[mine], 0.8))
+    level = 0.5 * _amount_of(amount, mine, usual, fine)
     reach = max(1, round(EDGE_MM * fine))
     ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
     near = cv2.dilate(np.uint8(mine), ellipse) == 1
@@ -273,6 +275,17 @@ def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, hei
     sizes = [_area(ring) for ring in rings]
     least = BLOT * max(sizes, default=0.0)
     return [_even(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]
+
+
+def _amount_of(amount: np.ndarray, mine: np.ndarray, usual: float, fine: float) -> float:
+    """How much paint a mark has where blur takes none of it; a narrow one, without such a place, what is usual as far
+    as that can be: half way of less lies outside of its edge."""
+    broad = cv2.erode(np.uint8(mine), None, iterations=max(1, round(CLEAR_MM * fine))) == 1
+    if broad.sum() > 0.1 * mine.sum():
+        return float(np.median(amount[broad]))
+    core = cv2.erode(np.uint8(mine), None, iterations=1) == 1
+    own = float(np.quantile(amount[core if core.any() else mine], 0.8))
+    return float(np.clip(usual, own, MOST_BLURRED * own))
 
 
 def _long(rings: list[np.ndarray]) -> float:
