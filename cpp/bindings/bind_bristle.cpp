@@ -8,7 +8,8 @@ void bind_bristle(py::module_& m) {
         "bristle_coefficients",
         [](const std::string& end) {
             if (end != "third_derivative" && end != "shear_free")
-                throw Error("the sliding end is \"third_derivative\" or \"shear_free\", not \"" + end + "\"");
+                throw Error("choice-unknown",
+                            "the sliding end is \"third_derivative\" or \"shear_free\", not \"" + end + "\"");
             return bristle_coefficients(end == "shear_free" ? SlidingEnd::shear_free : SlidingEnd::third_derivative);
         },
         py::arg("sliding_end"),

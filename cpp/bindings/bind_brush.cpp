@@ -44,9 +44,9 @@ Set a law, the footprints, the range of depths or the covariance as a whole: eac
     m.def(
         "remarks",
         [](const Brush& brush) {
-            std::vector<std::pair<std::string, std::string>> out;
-            for (const auto& w : brushsvg::remarks(brush)) out.emplace_back(w.where, w.sentence);
+            py::list out;
+            for (const auto& each : brushsvg::remarks(brush)) out.append(notice(each, each.sentence));
             return out;
         },
-        py::arg("brush"), "What is odd about an admissible brush: [(law, sentence)].");
+        py::arg("brush"), "What is odd about an admissible brush: notices about its laws.");
 }

@@ -27,21 +27,23 @@ Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::Co
             return closed_form(options);
         }
     if (method != "refined")
-        throw brushsvg::Error("compensation is none, constant, closed or refined, not \"" + method + "\"");
+        throw brushsvg::Error("choice-unknown",
+                              "compensation is none, constant, closed or refined, not \"" + method + "\"");
 #ifdef BRUSHSVG_FIT
     const brushsvg::fit::RefineOptions refining{options.tolerance_mm, options.speed_mm_s, sheet_mm};
     return [&brush, refining](const brushsvg::Stroke& stroke) {
         return brushsvg::fit::refine(stroke, brush, refining).plan;
     };
 #else
-    throw brushsvg::Error("this build of brushsvg has no refined compensation: it was made without Ceres");
+    throw brushsvg::Error("package-missing",
+                          "this build of brushsvg has no refined compensation: it was made without Ceres");
 #endif
 }
 
 struct Compensated {
     brushsvg::Plan plan;
     std::vector<brushsvg::TrackingError> misses;
-    std::vector<std::pair<std::string, std::string>> warnings;
+    std::vector<brushsvg::Warning> warnings;
 };
 
 }  // namespace
@@ -59,10 +61,15 @@ too sharp for the lever.)")
         .def_readonly("mean_mm", &TrackingError::mean_mm)
         .def_readonly("within_tolerance", &TrackingError::within_tolerance)
         .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place);
-    py::class_<Compensated>(m, "Compensated", "A plan, what each pass still misses, and warnings [(stroke, sentence)].")
+    py::class_<Compensated>(m, "Compensated",
+                            "A plan, what each pass still misses, and warnings, notices about strokes.")
         .def_readonly("plan", &Compensated::plan)
         .def_property_readonly("misses", parts(&Compensated::misses))
-        .def_property_readonly("warnings", frozen_copy(&Compensated::warnings));
+        .def_property_readonly("warnings", [](const Compensated& done) {
+            py::tuple out(done.warnings.size());
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] = notice(done.warnings[i]);
+            return out;
+        });
     m.def(
         "compensate",
         [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,
@@ -80,14 +87,15 @@ too sharp for the lever.)")
             out.plan.brush_sha256 = brush.sha256;
             out.plan.sheet_mm = sheet_mm;
             if (!brush.width_follows_depth())
-                out.warnings.emplace_back("", "brush " + brush.name + " has one width: drawn widths are ignored");
+                out.warnings.push_back(
+                    Warning{"widths-ignored", "", "brush " + brush.name + " has one width: drawn widths are ignored"});
             std::vector<CompensatedPass> done(strokes.size());
             constexpr std::size_t at_once = 8;  // or Ctrl-C waits too long
             in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) { done[i] = way(strokes[i]); });
             for (CompensatedPass& one : done) {
                 out.plan.passes.push_back(std::move(one.pass));
                 out.misses.push_back(one.miss);
-                for (auto& w : one.warnings) out.warnings.emplace_back(w.where, w.sentence);
+                for (Warning& each : one.warnings) out.warnings.push_back(std::move(each));
             }
             return out;
         },

@@ -11,7 +11,7 @@ void bind_region(py::module_& m) {
         "fill",
         [](const Rings& outlines, const std::string& rule) {
             if (rule != "nonzero" && rule != "evenodd")
-                throw Error("the fill rule is nonzero or evenodd, not \"" + rule + "\"");
+                throw Error("choice-unknown", "the fill rule is nonzero or evenodd, not \"" + rule + "\"");
             return fill(outlines, rule == "nonzero" ? FillRule::nonzero : FillRule::evenodd);
         },
         py::arg("outlines"), py::arg("rule") = "nonzero", unlocked,

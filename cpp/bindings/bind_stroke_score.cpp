@@ -19,7 +19,8 @@ be measured; worst: a WorstPlace.)")
     m.def(
         "verdicts",
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
-            if (painted.size() != wanted.size()) throw Error("a stroke is needed for each pass of marks");
+            if (painted.size() != wanted.size())
+                throw Error("sizes-differ", "a stroke is needed for each pass of marks");
             std::vector<StrokeScore> found(painted.size());
             in_parallel_chunks(found.size(), 64, py::none(),
                                [&](std::size_t i) { found[i] = stroke_score(painted[i], wanted[i], brush); });

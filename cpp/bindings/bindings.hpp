@@ -7,10 +7,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
 #include "parallel.hpp"
 
 namespace py = pybind11;
@@ -90,6 +92,12 @@ auto replace(Value Owner::* member) {
         py::detail::keep_alive_impl(owner,
                                     py::capsule(before.release(), [](void* p) { delete static_cast<Value*>(p); }));
     };
+}
+
+/// A warning as Python tells it. `about`: alike are only those that are about the same.
+inline py::object notice(const brushsvg::Warning& warning, const std::string& about = "") {
+    return py::module_::import("brushsvg.errors")
+        .attr("Notice")(warning.where, warning.sentence, py::arg("code") = warning.code, py::arg("about") = about);
 }
 
 /// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which `progress(done, n)` is called

@@ -12,7 +12,7 @@ PYBIND11_MODULE(_core, m) {
         } catch (const brushsvg::Error& e) {
             const py::object type = py::module_::import("brushsvg.errors").attr("Error");
             const py::object error = type(e.what(), py::arg("where") = e.where(), py::arg("value") = e.value(),
-                                          py::arg("range") = e.range());
+                                          py::arg("range") = e.range(), py::arg("code") = e.code());
             PyErr_SetObject(type.ptr(), error.ptr());
         }
     });

@@ -34,11 +34,11 @@ Profile read_profile(Field field) {
     Profile profile;
     const Field coefficients = fields.take("coefficients");
     profile.coefficients = numbers(coefficients);
-    if (profile.coefficients.empty()) coefficients.refuse("coefficients must hold at least one number");
+    if (profile.coefficients.empty()) coefficients.refuse("law-terms", "coefficients must hold at least one number");
     if (const auto floor = fields.find("floor")) profile.floor = number(*floor);
     if (const auto slope = fields.find("floor_slope")) {
         profile.floor_slope = number(*slope);
-        if (!std::isfinite(profile.floor)) slope->refuse("floor_slope needs a floor beside it");
+        if (!std::isfinite(profile.floor)) slope->refuse("key-missing", "floor_slope needs a floor beside it");
     }
     if (const auto calibrated = fields.find("calibrated_mm")) profile.calibrated_mm = interval(*calibrated);
     if (const auto source = fields.find("source")) profile.source = text(*source);
@@ -46,15 +46,17 @@ Profile read_profile(Field field) {
     if (const auto half = fields.find("half_interval_95")) {
         profile.half_interval_95 = numbers(*half);
         if (profile.half_interval_95.size() != profile.coefficients.size()) {
-            half->refuse("half_interval_95 must hold " + std::to_string(profile.coefficients.size()) +
-                         " numbers, one per coefficient, not " + std::to_string(profile.half_interval_95.size()));
+            half->refuse("sizes-differ", "half_interval_95 must hold " + std::to_string(profile.coefficients.size()) +
+                                             " numbers, one per coefficient, not " +
+                                             std::to_string(profile.half_interval_95.size()));
         }
     }
     if (const auto rmse = fields.find("rmse_mm")) profile.rmse_mm = number(*rmse);
     if (const auto freedom = fields.find("degrees_of_freedom")) {
         profile.degrees_of_freedom = number(*freedom);
         if (!(*profile.degrees_of_freedom >= 1.0 && *profile.degrees_of_freedom <= kMostFreedom))
-            throw Error("degrees_of_freedom must lie within [1, 1e9], not be " + in_words(*profile.degrees_of_freedom),
+            throw Error("out-of-range",
+                        "degrees_of_freedom must lie within [1, 1e9], not be " + in_words(*profile.degrees_of_freedom),
                         freedom->path, *profile.degrees_of_freedom, std::array<double, 2>{1.0, kMostFreedom});
     }
     profile.extra = fields.extra();
@@ -67,12 +69,14 @@ std::vector<std::vector<double>> read_covariance(Field field, std::size_t size) 
     for (const Field& row : members(std::move(field))) {
         matrix.push_back(numbers(row));
         if (matrix.back().size() != size) {
-            row.refuse("a row of covariance must hold " + std::to_string(size) + " numbers, one per coefficient, not " +
-                       std::to_string(matrix.back().size()));
+            row.refuse("covariance-invalid", "a row of covariance must hold " + std::to_string(size) +
+                                                 " numbers, one per coefficient, not " +
+                                                 std::to_string(matrix.back().size()));
         }
     }
     if (matrix.size() != size) {
-        throw Error("covariance must have " + std::to_string(size) + " rows, one per coefficient, not " +
+        throw Error("covariance-invalid",
+                    "covariance must have " + std::to_string(size) + " rows, one per coefficient, not " +
                         std::to_string(matrix.size()),
                     path);
     }
@@ -89,13 +93,14 @@ std::vector<Footprint> read_outlines(Field field, Eigen::Index& vertex_count, Js
         const Field outline = fields.take("outline_mm");
         Footprint footprint{positive(depth), points(outline)};
         if (!outlines.empty() && footprint.depth_mm <= outlines.back().depth_mm) {
-            throw Error("depths must ascend from outline to outline", depth.path, footprint.depth_mm);
+            throw Error("not-ascending", "depths must ascend from outline to outline", depth.path, footprint.depth_mm);
         }
-        if (footprint.outline_mm.rows() < 3) outline.refuse("an outline must have at least three points");
+        if (footprint.outline_mm.rows() < 3)
+            outline.refuse("footprint-invalid", "an outline must have at least three points");
         if (vertex_count == 0) vertex_count = footprint.outline_mm.rows();
         if (footprint.outline_mm.rows() != vertex_count) {
-            outline.refuse("the outline has " + std::to_string(footprint.outline_mm.rows()) +
-                           " points where the first one has " + std::to_string(vertex_count));
+            outline.refuse("footprint-invalid", "the outline has " + std::to_string(footprint.outline_mm.rows()) +
+                                                    " points where the first one has " + std::to_string(vertex_count));
         }
         outlines.push_back(std::move(footprint));
         if (!fields.rest().empty()) {
@@ -114,7 +119,8 @@ FootprintTable read_footprints(Field field, Json& notes) {
     Json dragged_notes = Json::array();
     Json pressed_notes = Json::array();
     table.dragged = read_outlines(fields.take("dragged"), vertex_count, dragged_notes);
-    if (table.dragged.empty()) throw Error("dragged must hold at least one outline", "footprints.dragged");
+    if (table.dragged.empty())
+        throw Error("footprint-invalid", "dragged must hold at least one outline", "footprints.dragged");
     if (auto pressed = fields.find("pressed")) {
         table.pressed = read_outlines(std::move(*pressed), vertex_count, pressed_notes);
     }
@@ -224,7 +230,8 @@ Brush read_brush(const std::string& text) {
 std::string write_brush(const Brush& brush) {
     Json extra = parse_object(brush.extra, "extra", kBrushKeys);
     Json notes = extra.value("footprints", Json::object());
-    if (!notes.is_object()) throw Error("footprints must be an object, not " + in_words(notes), "extra.footprints");
+    if (!notes.is_object())
+        throw Error("wrong-type", "footprints must be an object, not " + in_words(notes), "extra.footprints");
     extra.erase("footprints");
 
     std::string out = std::string("{\n  \"format\": \"") + kFormat + "\",\n  \"version\": 1,\n  \"name\": ";

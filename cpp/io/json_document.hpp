@@ -65,13 +65,13 @@ class Watcher {
             case Event::array_start:
                 // Printing nested values recurses; no file of ours is deeper than seven.
                 if (levels_.size() == 100)
-                    throw Error("the file is nested deeper than 100 levels", levels_.front().key);
+                    throw Error("not-json", "the file is nested deeper than 100 levels", levels_.front().key);
                 levels_.push_back({event == Event::array_start, 0, {}, {}});
                 return true;
             case Event::key:
                 levels_.back().key = parsed.get_ref<const std::string&>();
                 if (!levels_.back().keys.insert(levels_.back().key).second) {
-                    throw Error("the key " + levels_.back().key + " stands twice in one object", path());
+                    throw Error("key-twice", "the key " + levels_.back().key + " stands twice in one object", path());
                 }
                 return true;
             case Event::object_end:
@@ -119,13 +119,15 @@ Matrix PassRows::of_pass(std::size_t pass, const Field& left, const std::string&
     const std::vector<double>& flat = pass < values.size() ? values[pass] : none;
     const std::size_t count = flat.size() / width;
     if (!left.value.is_array()) {
-        left.refuse(left.name() + " must be an array of rows of " + shape + ", not " + in_words(left.value));
+        left.refuse("wrong-type",
+                    left.name() + " must be an array of rows of " + shape + ", not " + in_words(left.value));
     }
     if (!left.value.empty()) {
         const Json& fault = left.value[0];
         const std::string path = left.path + "[" + std::to_string(count) + "]";
         if (fault.is_array() && fault.size() == width) require_numbers(fault, path);
-        throw Error("each row of " + left.name() + " must be " + shape + ", not " + in_words(fault) +
+        throw Error("wrong-type",
+                    "each row of " + left.name() + " must be " + shape + ", not " + in_words(fault) +
                         (fault.is_array() ? " of " + std::to_string(fault.size()) : ""),
                     path);
     }
@@ -158,19 +160,22 @@ inline Fields parse_document(const std::string& text, const std::string& format,
         document = watcher.parse(text);
     } catch (const Json::parse_error& fault) {
         throw Error(
+            "not-json",
             "the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " + reason_of(fault.what()),
             watcher.path());
     } catch (const Json::out_of_range& fault) {  // 1e400
-        throw Error("the file holds a number that is too large to be finite", watcher.path());
+        throw Error("not-finite", "the file holds a number that is too large to be finite", watcher.path());
     }
     Fields fields(Field{std::move(document), ""});
     const Field found = fields.take("format");
     if (io::text(found) != format) {
-        found.refuse("the file calls itself " + found.value.dump() + ", where \"" + format + "\" is needed");
+        found.refuse("format-unknown",
+                     "the file calls itself " + found.value.dump() + ", where \"" + format + "\" is needed");
     }
     const Field version = fields.take("version");
     if (number(version) != 1.0) {
-        throw Error("version " + version.value.dump() + " of " + format + " is not known; this program reads version 1",
+        throw Error("version-unknown",
+                    "version " + version.value.dump() + " of " + format + " is not known; this program reads version 1",
                     version.path, number(version));
     }
     return fields;
@@ -185,9 +190,11 @@ inline Json parse_object(const std::string& text, const std::string& path, const
     } catch (const Json::exception&) {
         object = nullptr;
     }
-    if (!object.is_object()) throw Error(Field{nullptr, path}.name() + " must be the text of a JSON object", path);
+    if (!object.is_object())
+        throw Error("not-json", Field{nullptr, path}.name() + " must be the text of a JSON object", path);
     for (const auto& [key, value] : object.items()) {
-        if (own_keys.count(key) > 0) throw Error("the key " + key + " may not be among the unknown keys", path);
+        if (own_keys.count(key) > 0)
+            throw Error("key-twice", "the key " + key + " may not be among the unknown keys", path);
     }
     return object;
 }

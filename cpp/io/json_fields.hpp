@@ -23,7 +23,7 @@ struct Field {
     Json value;
     std::string path;
 
-    [[noreturn]] void refuse(const std::string& sentence) const { throw Error(sentence, path); }
+    [[noreturn]] void refuse(const char* code, const std::string& sentence) const { throw Error(code, sentence, path); }
     /// "coefficients": what a sentence calls this value.
     std::string name() const { return path.empty() ? "the file" : path.substr(path.find_last_of('.') + 1); }
 };
@@ -46,33 +46,37 @@ inline std::string in_words(const Json& value) {
 }
 
 inline double number(const Field& field) {
-    if (!field.value.is_number()) field.refuse(field.name() + " must be a number, not " + in_words(field.value));
+    if (!field.value.is_number())
+        field.refuse("wrong-type", field.name() + " must be a number, not " + in_words(field.value));
     return field.value.get<double>();
 }
 
 inline double positive(const Field& field) {
     const double value = number(field);
     if (!(value > 0.0)) {
-        throw Error(field.name() + " must be greater than 0, not " + in_words(field.value), field.path, value);
+        throw Error("out-of-range", field.name() + " must be greater than 0, not " + in_words(field.value), field.path,
+                    value);
     }
     return value;
 }
 
 inline std::string text(const Field& field) {
-    if (!field.value.is_string()) field.refuse(field.name() + " must be a string, not " + in_words(field.value));
+    if (!field.value.is_string())
+        field.refuse("wrong-type", field.name() + " must be a string, not " + in_words(field.value));
     return field.value.get<std::string>();
 }
 
 inline bool truth(const Field& field) {
     if (!field.value.is_boolean()) {
-        field.refuse(field.name() + " must be true or false, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be true or false, not " + in_words(field.value));
     }
     return field.value.get<bool>();
 }
 
 /// Members of an array as fields of their own, with the index in their path.
 inline std::vector<Field> members(Field field) {
-    if (!field.value.is_array()) field.refuse(field.name() + " must be an array, not " + in_words(field.value));
+    if (!field.value.is_array())
+        field.refuse("wrong-type", field.name() + " must be an array, not " + in_words(field.value));
     std::vector<Field> fields;
     fields.reserve(field.value.size());
     for (std::size_t i = 0; i < field.value.size(); ++i) {
@@ -91,7 +95,7 @@ inline void require_numbers(const Json& row, const std::string& path) {
 
 inline std::vector<double> numbers(const Field& field) {
     if (!field.value.is_array()) {
-        field.refuse(field.name() + " must be an array of numbers, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be an array of numbers, not " + in_words(field.value));
     }
     require_numbers(field.value, field.path);
     return field.value.get<std::vector<double>>();
@@ -100,7 +104,7 @@ inline std::vector<double> numbers(const Field& field) {
 inline std::array<double, 2> pair(const Field& field) {
     const std::vector<double> values = numbers(field);
     if (values.size() != 2) {
-        field.refuse(field.name() + " must hold two numbers, not " + std::to_string(values.size()));
+        field.refuse("wrong-type", field.name() + " must hold two numbers, not " + std::to_string(values.size()));
     }
     return {values[0], values[1]};
 }
@@ -108,7 +112,7 @@ inline std::array<double, 2> pair(const Field& field) {
 /// [least, greatest].
 inline std::array<double, 2> interval(const Field& field) {
     const std::array<double, 2> ends = pair(field);
-    if (ends[0] > ends[1]) field.refuse(field.name() + " must name the smaller number first");
+    if (ends[0] > ends[1]) field.refuse("not-ascending", field.name() + " must name the smaller number first");
     return ends;
 }
 
@@ -119,21 +123,22 @@ inline void require_coordinates(const Ring& ring, const std::string& path) {
     for (Eigen::Index i = 0; i < ring.rows(); ++i)
         for (const double mm : {ring(i, 0), ring(i, 1)})
             if (!(std::abs(mm) <= kFarthestMm))
-                throw Error("a coordinate of " + Json(mm).dump() + " mm is outside [-1e6, 1e6] mm",
+                throw Error("geometry-out-of-range",
+                            "a coordinate of " + Json(mm).dump() + " mm is outside [-1e6, 1e6] mm",
                             path + "[" + std::to_string(i) + "]", mm, std::array<double, 2>{-kFarthestMm, kFarthestMm});
 }
 
 /// [[x, y], ...]
 inline Ring points(const Field& field) {
     if (!field.value.is_array()) {
-        field.refuse(field.name() + " must be an array of points [x, y], not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be an array of points [x, y], not " + in_words(field.value));
     }
     Ring ring(static_cast<Eigen::Index>(field.value.size()), 2);
     for (std::size_t i = 0; i < field.value.size(); ++i) {
         const Json& point = field.value[i];
         const auto path = [&] { return field.path + "[" + std::to_string(i) + "]"; };
         if (!point.is_array() || point.size() != 2) {
-            throw Error("a point must be two numbers [x, y], not " + in_words(point), path());
+            throw Error("wrong-type", "a point must be two numbers [x, y], not " + in_words(point), path());
         }
         if (!point[0].is_number() || !point[1].is_number()) require_numbers(point, path());
         ring.row(static_cast<Eigen::Index>(i)) << point[0].get<double>(), point[1].get<double>();
@@ -147,7 +152,7 @@ class Fields {
  public:
     explicit Fields(Field object) : object_(std::move(object)) {
         if (!object_.value.is_object()) {
-            object_.refuse(object_.name() + " must be an object, not " + in_words(object_.value));
+            object_.refuse("wrong-type", object_.name() + " must be an object, not " + in_words(object_.value));
         }
     }
 
@@ -161,7 +166,7 @@ class Fields {
 
     Field take(const std::string& key) {
         std::optional<Field> field = find(key);
-        if (!field) throw Error("the key " + key + " is missing", path_of(key));
+        if (!field) throw Error("key-missing", "the key " + key + " is missing", path_of(key));
         return std::move(*field);
     }
 

@@ -17,7 +17,8 @@
 namespace brushsvg::io {
 
 inline void refuse_not_finite(double value, const std::string& what) {
-    if (!std::isfinite(value)) throw Error(what + " is not a finite number and cannot be written", what, value);
+    if (!std::isfinite(value))
+        throw Error("not-finite", what + " is not a finite number and cannot be written", what, value);
 }
 
 /// The shortest plain decimal that reads back to the same double: no exponent, no -0.
@@ -58,7 +59,7 @@ inline void append_string(std::string& out, const std::string& text, const std::
     try {
         out += Json(text).dump();
     } catch (const Json::exception&) {
-        throw Error("the text is not valid UTF-8", path);
+        throw Error("not-text", "the text is not valid UTF-8", path);
     }
 }
 

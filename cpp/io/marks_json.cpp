@@ -15,7 +15,8 @@ constexpr const char* kFormat = "brushsvg/marks";
 void require_parallel(const PassMarks& pass, const std::string& path) {
     const auto require = [&](const char* key, std::size_t rows) {
         if (rows == pass.pose.size()) return;
-        throw Error(std::string(key) + " of stroke " + pass.stroke + " has " + std::to_string(rows) +
+        throw Error("sizes-differ",
+                    std::string(key) + " of stroke " + pass.stroke + " has " + std::to_string(rows) +
                         " rows where pose has " + std::to_string(pass.pose.size()),
                     path + "." + key);
     };
@@ -28,7 +29,8 @@ void require_parallel(const PassMarks& pass, const std::string& path) {
 void require_within(const std::vector<double>& values, const std::string& path, double least, double greatest) {
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!(values[i] >= least && values[i] <= greatest))
-            throw Error("the number " + in_words(values[i]) + " is outside [" + in_words(least) + ", " +
+            throw Error("out-of-range",
+                        "the number " + in_words(values[i]) + " is outside [" + in_words(least) + ", " +
                             in_words(greatest) + "]",
                         path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
 }

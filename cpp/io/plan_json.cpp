@@ -20,25 +20,29 @@ const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s"
 /// paper still counts as on it.
 void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
     const auto where = [&](Eigen::Index i) { return path + ".poses_mm[" + std::to_string(i) + "]"; };
-    if (pass.poses_mm.rows() == 0) throw Error("stroke " + pass.stroke.name() + " has no poses", path + ".poses_mm");
+    if (pass.poses_mm.rows() == 0)
+        throw Error("pass-empty", "stroke " + pass.stroke.name() + " has no poses", path + ".poses_mm");
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         const auto sentence = [&](const std::string& fault) {
             return "pose " + std::to_string(i) + " of stroke " + pass.stroke.name() + " " + fault;
         };
-        if (!pass.poses_mm.row(i).allFinite()) throw Error(sentence("is not finite"), where(i));
+        if (!pass.poses_mm.row(i).allFinite()) throw Error("not-finite", sentence("is not finite"), where(i));
         const double largest_mm = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
         if (largest_mm > kLargestMm) {
-            throw Error(sentence("has a coordinate of " + in_words(largest_mm) + " mm, outside [-1e6, 1e6] mm"),
+            throw Error("geometry-out-of-range",
+                        sentence("has a coordinate of " + in_words(largest_mm) + " mm, outside [-1e6, 1e6] mm"),
                         where(i), largest_mm, std::array<double, 2>{-kLargestMm, kLargestMm});
         }
         const double z_mm = pass.poses_mm(i, 2);
         if (z_mm > slack_mm) {
-            throw Error(sentence("has z = " + in_words(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
+            throw Error("above-paper",
+                        sentence("has z = " + in_words(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
                         z_mm, std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
         }
     }
     if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kLargestMm)) {
-        throw Error("speed_mm_s of stroke " + pass.stroke.name() + " must be " +
+        throw Error("out-of-range",
+                    "speed_mm_s of stroke " + pass.stroke.name() + " must be " +
                         (pass.speed_mm_s > kLargestMm ? "at most 1e6" : "greater than 0") + ", not " +
                         in_words(pass.speed_mm_s),
                     path + ".speed_mm_s", pass.speed_mm_s);
@@ -49,8 +53,8 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
 void require_sound(const std::array<double, 2>& sheet_mm) {
     for (const double side_mm : sheet_mm) {
         if (side_mm > 0.0 && side_mm <= kLargestMm) continue;
-        throw Error("both sides of the sheet must lie within (0, 1e6] mm, not be " + in_words(side_mm), "sheet_mm",
-                    side_mm, std::array<double, 2>{0.0, kLargestMm});
+        throw Error("out-of-range", "both sides of the sheet must lie within (0, 1e6] mm, not be " + in_words(side_mm),
+                    "sheet_mm", side_mm, std::array<double, 2>{0.0, kLargestMm});
     }
 }
 
@@ -58,12 +62,14 @@ void require_sound(const std::array<double, 2>& sheet_mm) {
 Arc read_arc(const Field& field) {
     const std::vector<double> row = numbers(field);
     if (row.size() != 5) {
-        field.refuse("an arc must be five numbers [first pose, last pose, centre x, centre y, 1 or -1], not " +
-                     std::to_string(row.size()));
+        field.refuse("wrong-type",
+                     "an arc must be five numbers [first pose, last pose, centre x, centre y, 1 or -1], not " +
+                         std::to_string(row.size()));
     }
     for (const int k : {0, 1, 4}) {
         if (row[k] == std::floor(row[k]) && std::abs(row[k]) <= 1e9) continue;
-        throw Error("pose numbers and the direction of an arc must be whole numbers, not " + in_words(row[k]),
+        throw Error("wrong-type",
+                    "pose numbers and the direction of an arc must be whole numbers, not " + in_words(row[k]),
                     field.path + "[" + std::to_string(k) + "]", row[k]);
     }
     return {static_cast<std::int64_t>(row[0]),

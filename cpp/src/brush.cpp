@@ -61,6 +61,7 @@ void check_lag(const Brush& brush) {
             const double d = lo + (hi - lo) * i / 100, e = brush.tip_to_widest(d) - brush.tip_gap(d);
             if (!(std::abs(e) <= kRigidLeverMm))
                 throw Error(
+                    "pen-off-centre",
                     format("the lag is zero, so the mark has no heading, but at depth %.2f mm it is widest %.2f "
                            "mm away from where it touches",
                            d, e),
@@ -70,14 +71,16 @@ void check_lag(const Brush& brush) {
     }
     const Least worst = least(brush.lag, lo, hi);
     if (worst.value < 0.0)
-        throw Error(format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths %.2f and ",
+        throw Error("law-negative",
+                    format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths %.2f and ",
                            worst.value, worst.depth, lo) +
                         format("%.2f mm", hi),
                     "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
     // zero at depth 0 alone is admissible: the lever grows out of nothing
     const Least inside = least(brush.lag, lo + 1e-3 * (hi - lo), hi);
     if (!(inside.value > 0.0))
-        throw Error(format("the lag is zero at depth %.2f mm but not everywhere: a brush lags over its whole range, a "
+        throw Error("law-zero",
+                    format("the lag is zero at depth %.2f mm but not everywhere: a brush lags over its whole range, a "
                            "rigid pen nowhere",
                            inside.depth),
                     "lag", 0.0, std::array<double, 2>{0.0, INFINITY});
@@ -87,37 +90,41 @@ void check_rising(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     double before = brush.half_width(lo);
     if (before < 0.0)
-        throw Error(format("the half width is %.3f mm at depth %.2f mm; it must not be negative", before, lo),
+        throw Error("law-negative",
+                    format("the half width is %.3f mm at depth %.2f mm; it must not be negative", before, lo),
                     "half_width");
     constexpr int n = 1000;
     for (int i = 1; i <= n; ++i) {
         const double d = lo + (hi - lo) * i / n, now = brush.half_width(d);
         if (now < before - 1e-9)
-            throw Error(format("the half width falls at depth %.2f mm; it must not fall as the brush is pressed", d),
+            throw Error("width-falls",
+                        format("the half width falls at depth %.2f mm; it must not fall as the brush is pressed", d),
                         "half_width", d, brush.depth_range_mm);
         before = now;
     }
-    if (!(before > 0.0)) throw Error("the half width is zero over the whole depth range", "half_width");
+    if (!(before > 0.0)) throw Error("law-zero", "the half width is zero over the whole depth range", "half_width");
 }
 
 void check_range(const Profile& law, double lo, double hi, const char* where) {
     for (int i = 0; i <= 100; ++i) {
         const double d = lo + (hi - lo) * i / 100, value = law(d);
         if (!(std::abs(value) <= kLargestLawMm))
-            throw Error(format("the law says %.4g mm at depth %.2f mm; no more than %.0f mm is taken for true", value,
+            throw Error("out-of-range",
+                        format("the law says %.4g mm at depth %.2f mm; no more than %.0f mm is taken for true", value,
                                d, kLargestLawMm),
                         where, value, std::array<double, 2>{-kLargestLawMm, kLargestLawMm});
     }
     if (const auto& measured = law.calibrated_mm;
         measured && !((*measured)[0] < (*measured)[1] && (*measured)[0] < hi && (*measured)[1] > lo))
         throw Error(
+            "out-of-range",
             format("it was measured in [%.4g, %.4g] mm, which must rise and meet the depth range [%.4g, %.4g] mm",
                    (*measured)[0], (*measured)[1], lo, hi),
             where);
     const auto& half = law.half_interval_95;
     if (std::any_of(half.begin(), half.end(), [](double value) { return !(value >= 0.0); }) ||
         (law.rmse_mm && !(*law.rmse_mm >= 0.0)))
-        throw Error("an interval or rmse_mm is negative", where);
+        throw Error("out-of-range", "an interval or rmse_mm is negative", where);
 }
 
 /// Symmetric, positive semi-definite within rounding, and no law less sure than it may be large.
@@ -129,47 +136,52 @@ void check_covariance(const Brush& brush) {
         const std::vector<double>& row = brush.covariance[std::size_t(i)];
         if (Eigen::Index(row.size()) != n)
             throw Error(
+                "covariance-invalid",
                 format("a row of covariance holds %.0f numbers, its columns %.0f", double(row.size()), double(n)),
                 "covariance");
         c.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
     }
-    if (!c.allFinite()) throw Error("a number is not finite", "covariance");
+    if (!c.allFinite()) throw Error("not-finite", "a number is not finite", "covariance");
     const Eigen::VectorXd least = c.diagonal().cwiseMax(1e-24).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd correlation = least.asDiagonal() * c * least.asDiagonal();
     for (Eigen::Index i = 0; i < n; ++i) {
         const std::string here = "covariance[" + std::to_string(i) + "]";
         if (correlation(i, i) < -kRounding)
-            throw Error(format("the variance %.4g must not be negative", c(i, i)), here + "[" + std::to_string(i) + "]",
-                        c(i, i), std::array<double, 2>{0.0, INFINITY});
+            throw Error("covariance-invalid", format("the variance %.4g must not be negative", c(i, i)),
+                        here + "[" + std::to_string(i) + "]", c(i, i), std::array<double, 2>{0.0, INFINITY});
         for (Eigen::Index j = 0; j < i; ++j)
             if (!(std::abs(correlation(i, j) - correlation(j, i)) <= kRounding))
                 throw Error(
+                    "covariance-invalid",
                     format("%.4g differs from %.4g on the other side: a covariance is symmetric", c(i, j), c(j, i)),
                     here + "[" + std::to_string(j) + "]");
     }
     const Eigen::MatrixXd raised = correlation + kRounding * Eigen::MatrixXd::Identity(n, n);
     if (raised.llt().info() != Eigen::Success)
         throw Error(
+            "covariance-invalid",
             "some sum of the coefficients would have a negative variance: a covariance is positive semi-definite",
             "covariance");
     Eigen::Index first = 0;
     for (const auto& [law, where] : laws(brush)) {
         const Eigen::Index count = Eigen::Index(law->coefficients.size());
-        if (first + count > n) throw Error("covariance must have one row per coefficient", "covariance");
+        if (first + count > n)
+            throw Error("covariance-invalid", "covariance must have one row per coefficient", "covariance");
         for (double depth : {brush.depth_range_mm[0], brush.depth_range_mm[1]}) {
             Eigen::VectorXd powers = Eigen::VectorXd::Ones(count);
             for (Eigen::Index i = 1; i < count; ++i) powers[i] = powers[i - 1] * depth;
             const double sure = deviations_of_95(law->degrees_of_freedom) *
                                 std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
             if (!(sure <= kLargestLawMm))
-                throw Error(format("by the covariance the law is known to +- %.3g mm at depth %.2f mm; no more than "
+                throw Error("out-of-range",
+                            format("by the covariance the law is known to +- %.3g mm at depth %.2f mm; no more than "
                                    "%.0f mm is taken for true",
                                    sure, depth, kLargestLawMm),
                             where, sure, std::array<double, 2>{0.0, kLargestLawMm});
         }
         first += count;
     }
-    if (first != n) throw Error("covariance must have one row per coefficient", "covariance");
+    if (first != n) throw Error("covariance-invalid", "covariance must have one row per coefficient", "covariance");
 }
 
 bool crosses_itself(const Ring& p) {
@@ -190,6 +202,7 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
     double depth_before = 0.0;
     if (shapes.size() > kMostOutlines)
         throw Error(
+            "footprint-invalid",
             format("there are %.0f outlines; at most %.0f are read", double(shapes.size()), double(kMostOutlines)),
             where);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -197,41 +210,50 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
         const std::string here = where + "[" + std::to_string(i) + "]";
         const double d = shape.depth_mm;
         if (!(d <= kLargestLawMm) || !(d > depth_before))
-            throw Error(format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm", d,
+            throw Error("not-ascending",
+                        format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm", d,
                                depth_before),
                         here, d);
         depth_before = d;
-        if (!shape.outline_mm.allFinite()) throw Error("the outline has a coordinate that is not finite", here);
+        if (!shape.outline_mm.allFinite())
+            throw Error("not-finite", "the outline has a coordinate that is not finite", here);
         const double largest = shape.outline_mm.size() > 0 ? shape.outline_mm.cwiseAbs().maxCoeff() : 0.0;
         if (!(largest <= kLargestLawMm))
-            throw Error(format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
+            throw Error("out-of-range",
+                        format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
                                kLargestLawMm),
                         here, largest, std::array<double, 2>{0.0, kLargestLawMm});
         if (shape.outline_mm.rows() > kMostVertices)
-            throw Error(format("the outline has %.0f vertices; at most %.0f are read", double(shape.outline_mm.rows()),
+            throw Error("footprint-invalid",
+                        format("the outline has %.0f vertices; at most %.0f are read", double(shape.outline_mm.rows()),
                                double(kMostVertices)),
                         here);
-        if (shape.outline_mm.rows() < 3) throw Error("the outline needs at least 3 vertices", here);
+        if (shape.outline_mm.rows() < 3)
+            throw Error("footprint-invalid", "the outline needs at least 3 vertices", here);
         if (shape.outline_mm.rows() != brush.footprints.vertex_count())
-            throw Error(format("the outline has %.0f vertices where the first one has %.0f; all depths need the same",
+            throw Error("footprint-invalid",
+                        format("the outline has %.0f vertices where the first one has %.0f; all depths need the same",
                                double(shape.outline_mm.rows()), double(brush.footprints.vertex_count())),
                         here);
         if (shape.outline_mm.row(0).norm() > 1e-9)
-            throw Error("the outline's first vertex is not the tip at (0, 0)", here);
-        if (!(signed_area(shape.outline_mm) > 0.0)) throw Error("the outline does not run counter-clockwise", here);
-        if (crosses_itself(shape.outline_mm)) throw Error("the outline crosses itself", here);
+            throw Error("footprint-invalid", "the outline's first vertex is not the tip at (0, 0)", here);
+        if (!(signed_area(shape.outline_mm) > 0.0))
+            throw Error("footprint-invalid", "the outline does not run counter-clockwise", here);
+        if (crosses_itself(shape.outline_mm)) throw Error("footprint-invalid", "the outline crosses itself", here);
         if (d > brush.depth_range_mm[1]) continue;
         const WidestSection seen = widest_section(shape.outline_mm);
         // several sections may be equally wide: the law must lie on one of them
         const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
         if (std::abs(seen.half_width_mm - h_law) > kLawAgainstOutlineMm)
             throw Error(
+                "footprint-against-law",
                 format("at depth %.2f mm the outline is %.2f mm wide on each side but half_width says %.2f mm; they "
                        "must agree to 0.5 mm",
                        d, seen.half_width_mm, h_law),
                 here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
         if (std::abs(seen.from_tip_mm - x_law) > kLawAgainstOutlineMm)
             throw Error(
+                "footprint-against-law",
                 format("at depth %.2f mm the outline is widest %.2f mm from the tip but tip_to_widest says %.2f mm; "
                        "they must agree to 0.5 mm",
                        d, seen.from_tip_mm, x_law),
@@ -260,7 +282,8 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
     const auto [narrow, wide] = half_width_range_mm();
     const double rounding = 1e-9 * wide;  // a width that came through text and units
     if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding) || !(half_width_mm > 0.0))
-        throw Error(format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
+        throw Error("width-out-of-reach",
+                    format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
                            2.0 * wide) +
                         " that brush " + name + " can paint",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
@@ -279,37 +302,42 @@ void check(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     if (brush.name.empty() ||
         std::any_of(brush.name.begin(), brush.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
-        throw Error("the name must be one line of text", "name");
+        throw Error("name-invalid", "the name must be one line of text", "name");
     if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kDeepestMm))
-        throw Error(format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
+        throw Error("out-of-range",
+                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
                     "depth_range_mm");
     for (const auto& [profile, where] : laws(brush)) {
-        if (profile->coefficients.empty()) throw Error("the law has no coefficients", where);
+        if (profile->coefficients.empty()) throw Error("law-terms", "the law has no coefficients", where);
         if (int(profile->coefficients.size()) > kMaxLawDegree + 1)
             throw Error(
+                "law-terms",
                 format("the law has %.0f coefficients; at most 9 are read", double(profile->coefficients.size())),
                 where);
         for (double c : profile->coefficients)
-            if (!std::isfinite(c)) throw Error("a coefficient is not finite", where);
+            if (!std::isfinite(c)) throw Error("not-finite", "a coefficient is not finite", where);
         check_range(*profile, lo, hi, where);
     }
     check_covariance(brush);
     check_lag(brush);
     check_rising(brush);
-    if (brush.footprints.dragged.empty()) throw Error("there is no outline", "footprints.dragged");
+    if (brush.footprints.dragged.empty()) throw Error("footprint-invalid", "there is no outline", "footprints.dragged");
     check_shapes(brush, brush.footprints.dragged, "footprints.dragged");
     check_shapes(brush, brush.footprints.pressed, "footprints.pressed");
     if (!(brush.max_speed_mm_s >= kSpeeds[0] && brush.max_speed_mm_s <= kSpeeds[1]))
-        throw Error(format("the speed limit %.3g mm/s is outside the range [%.2f, %.0f] mm/s", brush.max_speed_mm_s,
+        throw Error("out-of-range",
+                    format("the speed limit %.3g mm/s is outside the range [%.2f, %.0f] mm/s", brush.max_speed_mm_s,
                            kSpeeds[0], kSpeeds[1]),
                     "max_speed_mm_s", brush.max_speed_mm_s, kSpeeds);
     const double paints = brush.paint_depth_mm;
     if (!brush.width_follows_depth() && !(paints > 0.0))
-        throw Error(format("the painting depth %.2f mm must be greater than 0, for the width does not follow the depth",
+        throw Error("out-of-range",
+                    format("the painting depth %.2f mm must be greater than 0, for the width does not follow the depth",
                            paints),
                     "paint_depth_mm", paints, brush.depth_range_mm);
     if (!(paints == 0.0 || (paints >= lo && paints <= hi)))
-        throw Error(format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", paints, lo, hi),
+        throw Error("out-of-range",
+                    format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", paints, lo, hi),
                     "paint_depth_mm", paints, brush.depth_range_mm);
 }
 
@@ -317,9 +345,10 @@ std::vector<Warning> remarks(const Brush& brush) {
     std::vector<Warning> out;
     const auto [lo, hi] = brush.depth_range_mm;
     for (const auto& [profile, where] : laws(brush)) {
-        if (profile->assumed) out.push_back({where, "the law is assumed, not measured"});
+        if (profile->assumed) out.push_back(Warning{"law-assumed", where, "the law is assumed, not measured"});
         if (profile->calibrated_mm && ((*profile->calibrated_mm)[0] > lo || (*profile->calibrated_mm)[1] < hi))
-            out.push_back({where, format("the law was measured between depths %.2f and %.2f mm, the brush may be used ",
+            out.push_back(Warning{"depth-not-measured", where,
+                                  format("the law was measured between depths %.2f and %.2f mm, the brush may be used ",
                                          (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1]) +
                                       format("from %.2f to %.2f mm", lo, hi)});
     }
@@ -331,22 +360,27 @@ std::vector<Warning> remarks(const Brush& brush) {
             gap = gap && brush.tip_gap(d) >= 0.0;
         }
         if (!falls)
-            out.push_back({"lag",
-                           "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
-                           "so the brush is pressed down on the spot before it runs"});
-        if (!gap) out.push_back({"tip_gap", "the centre of friction lies outside the footprint at some depths"});
+            out.push_back(
+                Warning{"pressed-on-the-spot", "lag",
+                        "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
+                        "so the brush is pressed down on the spot before it runs"});
+        if (!gap)
+            out.push_back(Warning{"contact-outside-footprint", "tip_gap",
+                                  "the centre of friction lies outside the footprint at some depths"});
         const double shorter = least(brush.lag, lo, hi).value - brush.lag(lo);
         if (shorter < -kOddMm)
-            out.push_back({"lag", format("the lag is up to %.2f mm shorter than at depth %.2f mm: bristles that are "
+            out.push_back(Warning{"law-falls", "lag",
+                                  format("the lag is up to %.2f mm shorter than at depth %.2f mm: bristles that are "
                                          "pressed deeper usually trail farther",
                                          -shorter, lo)});
         for (const Footprint& shape : brush.footprints.dragged) {
             if (shape.outline_mm.rows() == 0) continue;
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
             if (!(shape.depth_mm <= hi && contact > front + kOddMm)) continue;
-            out.push_back({"tip_gap", format("at depth %.2f mm the centre of friction lies %.2f mm from the tip, "
-                                             "beyond the footprint, which is %.2f mm long",
-                                             shape.depth_mm, contact, front)});
+            out.push_back(Warning{"contact-outside-footprint", "tip_gap",
+                                  format("at depth %.2f mm the centre of friction lies %.2f mm from the tip, "
+                                         "beyond the footprint, which is %.2f mm long",
+                                         shape.depth_mm, contact, front)});
             break;
         }
     }
@@ -354,17 +388,19 @@ std::vector<Warning> remarks(const Brush& brush) {
         const double largest = std::max(std::abs((*profile)(lo)), std::abs((*profile)(hi)));
         if (profile->rmse_mm && *profile->rmse_mm > kPoorFit * largest)
             out.push_back(
-                {where, format("what was measured scatters by %.2f mm about a law of at most %.2f mm: measure "
+                Warning{"law-scatters", where,
+                        format("what was measured scatters by %.2f mm about a law of at most %.2f mm: measure "
                                "again, or more often",
                                *profile->rmse_mm, largest)});
     }
     if (!brush.width_follows_depth())
-        out.push_back(
-            {"half_width", format("the width does not depend on depth: drawn widths are ignored and every stroke is "
-                                  "%.2f mm wide",
-                                  2.0 * brush.half_width(hi))});
+        out.push_back(Warning{"widths-ignored", "half_width",
+                              format("the width does not depend on depth: drawn widths are ignored and every stroke is "
+                                     "%.2f mm wide",
+                                     2.0 * brush.half_width(hi))});
     if (brush.footprints.pressed.empty())
-        out.push_back({"footprints.pressed", "no outline for a brush pressed straight down: the dragged one is used"});
+        out.push_back(Warning{"footprint-assumed", "footprints.pressed",
+                              "no outline for a brush pressed straight down: the dragged one is used"});
     return out;
 }
 

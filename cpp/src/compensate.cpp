@@ -276,7 +276,7 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
     char text[200];
     std::snprintf(text, sizeof text, "depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
                   least < lo - 1e-9 ? least : greatest, lo, hi);
-    warnings.push_back({stroke.id, text + brush.name + " was measured"});
+    warnings.push_back(Warning{"depth-not-measured", stroke.id, text + brush.name + " was measured"});
 }
 
 constexpr double kLongestLagMm = 1000.0;  // no brush is longer
@@ -308,10 +308,10 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
     require_usable(brush);
     require_tolerance(options.tolerance_mm, stroke.id);
     if (options.lag_mm && !(*options.lag_mm >= 0.0 && *options.lag_mm <= kLongestLagMm))
-        throw Error("the lag is not within [0, 1000] mm", stroke.id, *options.lag_mm,
+        throw Error("out-of-range", "the lag is not within [0, 1000] mm", stroke.id, *options.lag_mm,
                     std::array<double, 2>{0.0, kLongestLagMm});
     if (!(options.speed_mm_s > 0.0) || std::isinf(options.speed_mm_s))
-        throw Error("the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
+        throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
     const Line line(stroke, brush);
     CompensatedPass result;
     warn(stroke, brush, result.warnings);

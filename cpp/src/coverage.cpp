@@ -28,7 +28,7 @@ std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm)
           std::abs(window.x_mm) <= kFarthestMm && std::abs(window.y_mm) <= kFarthestMm)) {
         char text[120];
         std::snprintf(text, sizeof text, "a picture of %.0f x %.0f px cannot be made", w, h);
-        throw Error(text);
+        throw Error("picture-size", text);
     }
     return {Eigen::Index(w), Eigen::Index(h)};
 }
@@ -36,7 +36,7 @@ std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm)
 void require_finite(const Rings& rings) {
     for (const Ring& ring : rings)
         if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestMm))
-            throw Error("a ring has a coordinate that is not finite, or beyond 1e7 mm");
+            throw Error("geometry-out-of-range", "a ring has a coordinate that is not finite, or beyond 1e7 mm");
 }
 
 /// Union of horizontal spans on sub-scanlines, in pixels, then coverage.

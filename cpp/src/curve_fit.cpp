@@ -180,7 +180,7 @@ void few(const std::vector<WidthKnot>& all, std::size_t first, std::size_t last,
 
 FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
     if (line.rows() > 0 && !(line.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
-        throw Error("the line has a number that is not finite, or beyond 1e6 mm");
+        throw Error("geometry-out-of-range", "the line has a number that is not finite, or beyond 1e6 mm");
     require_tolerance(tolerance_mm);
     FittedLine result;
     Points points;

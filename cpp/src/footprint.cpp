@@ -12,7 +12,7 @@ namespace {
 void add_blend(const std::vector<Footprint>& shapes, double depth, double weight, Ring& sum) {
     const auto needed = [&](const Footprint& shape) -> const Ring& {
         if (shape.outline_mm.rows() != sum.rows())
-            throw Error("all outlines of a footprint need as many vertices as the first one");
+            throw Error("footprint-invalid", "all outlines of a footprint need as many vertices as the first one");
         return shape.outline_mm;
     };
     const auto above = std::lower_bound(shapes.begin(), shapes.end(), depth,
@@ -35,7 +35,7 @@ double cross(const Ring& p, Eigen::Index a, Eigen::Index b, Eigen::Index c) {
 }  // namespace
 
 Ring footprint_at(const FootprintTable& table, double depth_mm, double pull) {
-    if (table.dragged.empty()) throw Error("the footprint has no outline", "footprints.dragged");
+    if (table.dragged.empty()) throw Error("footprint-invalid", "the footprint has no outline", "footprints.dragged");
     Ring outline = Ring::Zero(table.vertex_count(), 2);
     const bool pressed = !table.pressed.empty() && pull < 1.0;
     add_blend(table.dragged, depth_mm, pressed ? pull : 1.0, outline);

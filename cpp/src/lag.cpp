@@ -43,7 +43,7 @@ double bound_of_derivative(std::vector<double> c, int order, double lo, double h
 }  // namespace
 
 LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign) {
-    if (pieces.empty()) throw Error("a law without pieces says nothing: the depth range is empty");
+    if (pieces.empty()) throw Error("law-terms", "a law without pieces says nothing: the depth range is empty");
     LagLaw<double> law;
     law.rigid = true;
     for (const PolynomialPiece& from : pieces) {
@@ -51,11 +51,12 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
         while (c.size() > 1 && c.back() == 0.0) c.pop_back();
         if (c.empty()) c.push_back(0.0);
         for (double& x : c) {
-            if (!std::isfinite(x)) throw Error("a coefficient of a law is not finite", "", x);
+            if (!std::isfinite(x)) throw Error("not-finite", "a coefficient of a law is not finite", "", x);
             x *= sign;
         }
         if (int(c.size()) > kMaxLawDegree + 1)
-            throw Error("a law of degree " + std::to_string(c.size() - 1) + " is beyond the greatest degree, 8");
+            throw Error("law-terms",
+                        "a law of degree " + std::to_string(c.size() - 1) + " is beyond the greatest degree, 8");
         LawPiece<double> piece;
         piece.lo = from.lo;
         piece.hi = from.hi;

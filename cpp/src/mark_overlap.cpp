@@ -143,7 +143,7 @@ MarkOverlap mark_overlap(const std::vector<PassMarks>& painted, const std::vecto
 
 CommonArea common_area(const MarkOverlap& seen) {
     if (seen.wanted.rows() != seen.painted.rows() || seen.wanted.cols() != seen.painted.cols())
-        throw Error("paint and drawing are pictures of different sizes");
+        throw Error("sizes-differ", "paint and drawing are pictures of different sizes");
     const double mm2 = 1.0 / (seen.px_per_mm * seen.px_per_mm);
     double common = 0.0, together = 0.0;
     for (Eigen::Index row = 0; row < seen.wanted.rows(); ++row) {  // a row's sum is exact enough in single precision

@@ -122,13 +122,15 @@ Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* 
 
 std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintLoadOptions& options) {
     if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
-        throw Error("paint must last for more than twice the backtrack", pass.stroke, options.every_mm);
+        throw Error("load-too-short", "paint must last for more than twice the backtrack", pass.stroke,
+                    options.every_mm);
     require_usable(brush);
     if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     const auto refuse_often = [&](double loads) {
         if (!(loads <= kMostLoads))
-            throw Error("paint that lasts so short would have to be fetched more than 1000 times in one stroke",
+            throw Error("load-too-short",
+                        "paint that lasts so short would have to be fetched more than 1000 times in one stroke",
                         pass.stroke, options.every_mm);
     };
     refuse_often(path_lengths(pass.poses_mm).back() / options.every_mm);

@@ -32,7 +32,7 @@ double turn_between(const Arc& arc, const Vector2d& from_mm, const Vector2d& to_
 void check_arc(const Pass& pass, std::size_t k, const std::string& where) {
     const Arc& arc = pass.arcs[k];
     const auto refuse = [&](const std::string& fault, auto... value_and_range) {
-        throw Error("arc " + std::to_string(k) + " of stroke " + pass.stroke.name() + " " + fault, where,
+        throw Error("arc-invalid", "arc " + std::to_string(k) + " of stroke " + pass.stroke.name() + " " + fault, where,
                     value_and_range...);
     };
     const long long first = arc.first, last = arc.last, poses = pass.poses_mm.rows();

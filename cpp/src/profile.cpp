@@ -23,7 +23,8 @@ std::vector<double> real_roots(const std::vector<double>& coefficients, double l
     std::vector<double> c = coefficients;
     while (!c.empty() && c.back() == 0.0) c.pop_back();
     if (c.size() < 2) return {};
-    if (c.size() > kMostTerms) throw Error("a polynomial of more than 64 terms is not solved", "", double(c.size()));
+    if (c.size() > kMostTerms)
+        throw Error("law-terms", "a polynomial of more than 64 terms is not solved", "", double(c.size()));
     // between the roots of its derivative a polynomial is monotone
     std::vector<double> slope(c.size() - 1);
     for (std::size_t i = 1; i < c.size(); ++i) slope[i - 1] = double(i) * c[i];

@@ -39,7 +39,8 @@ Polygon to_polygon(const Ring& ring) {
     points.reserve(ring.rows());
     for (Eigen::Index i = 0; i < ring.rows(); ++i) {
         const double x = ring(i, 0) * kUnitsPerMm, y = ring(i, 1) * kUnitsPerMm;
-        if (!(std::abs(x) < 2e9 && std::abs(y) < 2e9)) throw Error("a ring reaches beyond 20 m");
+        if (!(std::abs(x) < 2e9 && std::abs(y) < 2e9))
+            throw Error("geometry-out-of-range", "a ring reaches beyond 20 m");
         points.emplace_back(int(std::lround(x)), int(std::lround(y)));
     }
     Polygon polygon;
@@ -100,7 +101,7 @@ double area_of(const Set& set) {
 }
 
 void require_finite(const Ring& ring) {
-    if (!ring.allFinite()) throw Error("a ring has a coordinate that is not finite");
+    if (!ring.allFinite()) throw Error("not-finite", "a ring has a coordinate that is not finite");
 }
 
 /// Numbers of the points that are corners of their convex hull, counter-clockwise.
@@ -233,7 +234,9 @@ Set in_an_odd_number(const Rings& outlines) {
     std::vector<Set> level;
     for (const Ring& ring : outlines) {
         std::optional<Set> alone = wound_oddly({ring}, kMostTurns);
-        if (!alone) throw Error("an outline runs more than " + std::to_string(kMostTurns) + " times round a point");
+        if (!alone)
+            throw Error("outline-too-complex",
+                        "an outline runs more than " + std::to_string(kMostTurns) + " times round a point");
         level.push_back(std::move(*alone));
     }
     while (level.size() > 1) {

@@ -233,7 +233,8 @@ class Tracer {
     void add(double t, const Vec2<double>& q, double depth, const LagState<double>& state, double pull) {
         checkpoint();
         if (out_.pose.size() >= most_rows_)
-            throw Error("the mark of the pass takes more than " + std::to_string(most_rows_) +
+            throw Error("tolerance-too-fine",
+                        "the mark of the pass takes more than " + std::to_string(most_rows_) +
                             " rows: it is too large for the tolerance",
                         out_.stroke, tolerance_);
         out_.pose.push_back(pose_ + scale_ * t);
@@ -264,20 +265,22 @@ class Tracer {
 void refuse_bad_poses(const Pass& pass, const Brush& brush) {
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         if (!pass.poses_mm.row(i).allFinite())
-            throw Error("pose " + std::to_string(i) + " has a coordinate that is not finite", pass.stroke);
+            throw Error("not-finite", "pose " + std::to_string(i) + " has a coordinate that is not finite",
+                        pass.stroke);
         const double largest = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
         if (largest > kLargestMm) {
             char text[120];
             std::snprintf(text, sizeof text, "pose %ld lies at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
                           largest);
-            throw Error(text, pass.stroke, largest, std::array<double, 2>{-kLargestMm, kLargestMm});
+            throw Error("geometry-out-of-range", text, pass.stroke, largest,
+                        std::array<double, 2>{-kLargestMm, kLargestMm});
         }
         const double depth = -pass.poses_mm(i, 2);
         if (depth > brush.depth_range_mm[1] + 1e-9) {
             char text[200];
             std::snprintf(text, sizeof text, "depth %.3f mm of pose %ld is outside the range [%.1f, %.1f] mm of brush ",
                           depth, long(i), brush.depth_range_mm[0], brush.depth_range_mm[1]);
-            throw Error(text + brush.name, pass.stroke, depth, brush.depth_range_mm);
+            throw Error("depth-out-of-range", text + brush.name, pass.stroke, depth, brush.depth_range_mm);
         }
     }
 }

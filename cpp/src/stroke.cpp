@@ -19,7 +19,8 @@ using Eigen::Vector2d;
 
 void require_cubic(const Cubics& c, Index i) {
     if (i < 0 || i >= c.rows())
-        throw Error("the middle line has no cubic " + std::to_string(i) + " of " + std::to_string(c.rows()), "",
+        throw Error("out-of-range",
+                    "the middle line has no cubic " + std::to_string(i) + " of " + std::to_string(c.rows()), "",
                     double(i));
 }
 
@@ -74,7 +75,7 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
 
 double half_width_at(const Stroke& stroke, double fraction) {
     const auto& knots = stroke.half_width;
-    if (knots.empty()) throw Error("the stroke has no width", stroke.id);
+    if (knots.empty()) throw Error("stroke-empty", "the stroke has no width", stroke.id);
     const auto above = std::upper_bound(knots.begin(), knots.end(), fraction,
                                         [](double f, const WidthKnot& knot) { return f < knot.at; });
     if (above == knots.begin()) return knots.front().half_width_mm;
@@ -85,23 +86,27 @@ double half_width_at(const Stroke& stroke, double fraction) {
 }
 
 void check(const Stroke& stroke) {
-    if (stroke.middle_mm.rows() == 0) throw Error("the stroke has no middle line", stroke.id);
-    if (!stroke.middle_mm.allFinite()) throw Error("the middle line has a coordinate that is not finite", stroke.id);
+    if (stroke.middle_mm.rows() == 0) throw Error("stroke-empty", "the stroke has no middle line", stroke.id);
+    if (!stroke.middle_mm.allFinite())
+        throw Error("not-finite", "the middle line has a coordinate that is not finite", stroke.id);
     const double largest = stroke.middle_mm.cwiseAbs().maxCoeff();
     if (largest > 1e6)
-        throw Error("the middle line reaches beyond 1e6 mm", stroke.id, largest, std::array<double, 2>{-1e6, 1e6});
-    if (stroke.half_width.empty()) throw Error("the stroke has no width", stroke.id);
+        throw Error("geometry-out-of-range", "the middle line reaches beyond 1e6 mm", stroke.id, largest,
+                    std::array<double, 2>{-1e6, 1e6});
+    if (stroke.half_width.empty()) throw Error("stroke-empty", "the stroke has no width", stroke.id);
     double before = -1.0;
     for (const WidthKnot& knot : stroke.half_width) {
         if (!(std::abs(knot.at) <= 1e6) || !(knot.half_width_mm >= 0.0 && knot.half_width_mm <= 1e6))
-            throw Error("a width along the stroke is negative, not finite or beyond 1e6 mm", stroke.id,
+            throw Error("out-of-range", "a width along the stroke is negative, not finite or beyond 1e6 mm", stroke.id,
                         knot.half_width_mm);
-        if (knot.at < before) throw Error("the widths along the stroke are not in ascending order", stroke.id, knot.at);
+        if (knot.at < before)
+            throw Error("not-ascending", "the widths along the stroke are not in ascending order", stroke.id, knot.at);
         before = knot.at;
     }
     for (const Ring& ring : stroke.wanted_mm)
         if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
-            throw Error("the wanted outline has a coordinate that is not finite or beyond 1e6 mm", stroke.id);
+            throw Error("geometry-out-of-range",
+                        "the wanted outline has a coordinate that is not finite or beyond 1e6 mm", stroke.id);
 }
 
 namespace {

@@ -71,9 +71,9 @@ double median_half_width(const MiddlePolyline& line) {
 WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
     const Index height = seen.wanted.rows(), width = seen.wanted.cols();
     if (height == 0 || width == 0 || seen.painted.rows() != height || seen.painted.cols() != width)
-        throw Error("paint and drawing are pictures of different sizes, or empty");
+        throw Error("sizes-differ", "paint and drawing are pictures of different sizes, or empty");
     if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= 1e15))
-        throw Error("the square in which the worst place is looked for has no size", "", size_mm);
+        throw Error("out-of-range", "the square in which the worst place is looked for has no size", "", size_mm);
     const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocks)), Index(1),
                                    std::min(height, width));  // what is left over at the edges is paper
     const Index rows = height / block, columns = width / block;
@@ -113,7 +113,7 @@ WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
 double width_across(const Coverage& shares, const MarkOverlap& seen, const Vector2d& at_mm, const Vector2d& direction,
                     double reach_mm) {
     if (!at_mm.allFinite() || !direction.allFinite() || std::isnan(reach_mm) || !(seen.px_per_mm > 0.0))
-        throw Error("the place of a width or the picture's scale is not finite");
+        throw Error("not-finite", "the place of a width or the picture's scale is not finite");
     const double step_mm = 1.0 / seen.px_per_mm;
     const Vector2d across = step_mm * Vector2d(-direction.y(), direction.x());
     const auto share = [&](int k) { return share_at(shares, seen, at_mm + double(k) * across); };

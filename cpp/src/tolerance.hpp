@@ -16,7 +16,7 @@ inline void require_tolerance(double tolerance_mm, const std::string& where = ""
     if (tolerance_mm >= kTolerancesMm[0] && tolerance_mm <= kTolerancesMm[1]) return;
     char text[120];
     std::snprintf(text, sizeof text, "the tolerance of %.4g mm is outside the range [1e-8, 1000] mm", tolerance_mm);
-    throw Error(text, where, tolerance_mm, kTolerancesMm);
+    throw Error("out-of-range", text, where, tolerance_mm, kTolerancesMm);
 }
 
 }  // namespace brushsvg

@@ -14,7 +14,7 @@ inline void require_within(double value, const std::array<double, 2>& range, con
     if (value >= range[0] && value <= range[1]) return;
     char text[80];
     std::snprintf(text, sizeof text, ", %.4g, is outside the range [%.4g, %.4g]", value, range[0], range[1]);
-    throw Error(what + text, where, value, range);
+    throw Error("out-of-range", what + text, where, value, range);
 }
 
 }  // namespace brushsvg

@@ -17,7 +17,7 @@ PREFIX = "data-brushsvg-"
 OWN = {  # what brushsvg does where the document says nothing
     "brush": "round-6",
     "compensation": "closed",
-    "cell": "linuxcnc-3axis, for URScript ur5e",
+    "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3",
     "wide": "auto",
     "tolerance": "0.05mm",
 }

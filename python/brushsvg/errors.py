@@ -17,7 +17,7 @@ class Error(ValueError):
     where: the element, stroke or key it concerns, "" if none.
     value, range: the offending number and (least, greatest), None where there are none.
     file: the file it is about, None where only the caller knows.
-    code: of what kind it is, "" where the C++ library refuses, which has no codes.
+    code: of what kind it is.
     advice: what helps who types commands, "" where the sentence says it all: other programs word it their own way.
     """
 
@@ -55,7 +55,7 @@ class Notice:
 
     where: the element, stroke or key, "" if none. damaged: the geometry itself is broken and was read up to the error;
     convert refuses it unless lenient. layer: where the element lies, None for what concerns the whole drawing.
-    code: of what kind it is, "" where the C++ library warns, which has no codes. about: what of that kind, where alike
+    code: of what kind it is. about: what of that kind, where alike
     are only those of the same: a CSS property, a kind of element. advice: what to type, see Error.
     """
 

@@ -11,7 +11,7 @@ MOST_ALIKE = 3  # of a kind, told one by one
 MOST_NAMED = 4  # whose sentence is the very same: a brush has as many laws
 
 
-def folded(notices: Iterable[Notice]) -> list[Notice]:
+def summarized(notices: Iterable[Notice]) -> list[Notice]:
     """The notices in the order in which each kind comes first; the rest of a kind is counted."""
     kinds: dict[tuple, list[Notice]] = {}
     for notice in notices:

@@ -28,7 +28,7 @@ Error refusal_of(Act act) {
         return error;
     }
     FAIL("it was not refused");
-    return Error("");
+    return Error("", "");
 }
 
 const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name": "flat", "depth_range_mm": [0, 4],

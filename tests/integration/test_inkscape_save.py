@@ -46,12 +46,12 @@ def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, entry):
     assert saved.read_bytes() == (tmp_path / f"typed.{extension}").read_bytes()
 
 
-@pytest.mark.parametrize("cell", sorted(set(cell_names()) - {"jaka-zu3"}))
+@pytest.mark.parametrize("cell", cell_names())
 def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     extension = POSTS[find_cell(cell).language].extensions[0]
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved{extension}"
     drawing.write_text(SOUND)
-    entry = "urscript" if extension == ".script" else "gcode"
+    entry = {".script": "urscript", ".jks": "jaka"}.get(extension, "gcode")
     plugin.set(**{f"save.{entry}__cell": cell})
     try:
         plugin.save(drawing, saved)

@@ -1,11 +1,15 @@
 """One photograph makes a brush: a chart painted by a brush that nobody knows, in small steps by another simulator, with
 faults of paint and sheet, photographed by a camera of its own kind. Its lag comes back."""
 
+import re
+from functools import cache
+from types import SimpleNamespace
+
 import numpy as np
 import painter
 import photograph
 import pytest
-from photograph import BLUE, Camera
+from photograph import BLUE, INK, Camera
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -15,7 +19,10 @@ from brushsvg import find_brush  # noqa: E402
 from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
+from brushsvg.calibration.from_marks import _refuse_many  # noqa: E402
+from brushsvg.calibration.stray_marks import strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
+from brushsvg.errors import Error  # noqa: E402
 
 TRUTH = painter.TrueBrush(
     10.0, np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005]), 1.6, 0.9
@@ -24,18 +31,37 @@ FAULTS = painter.Faults(noise=0.05, noise_length=0.5, displacement=0.3, placemen
 DEPTHS = np.linspace(1, 10, 10)
 
 
+CAMERA = Camera(size_px=(1500, 2050), shadow=0.3)
+
+
+@cache
+def printed():
+    return chart(find_brush("round-6"), (148.0, 210.0), "few")
+
+
+@cache
+def marks():
+    """Rings by stroke."""
+    strokes = [(one.stroke, np.array(one.poses_mm)) for one in printed().plan.passes]
+    painted = painter.paint(np.random.default_rng(4), TRUTH, strokes, FAULTS)
+    return {stroke: rings for stroke, _, rings in painted.marks}
+
+
+def photo_of(painted, *things):
+    """things: rings and their colour, that lie on the paint."""
+    sheet = photograph.page(printed())
+    for rings in painted.values():
+        sheet.paint(rings, BLUE)
+    for ring, colour in things:
+        sheet.paint([ring], colour)
+    return photograph.photograph(sheet, CAMERA)
+
+
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory):
     folder = tmp_path_factory.mktemp("desk")
-    made = chart(find_brush("round-6"), (148.0, 210.0), "few")
-    strokes = [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
-    painted = painter.paint(np.random.default_rng(4), TRUTH, strokes, FAULTS)
-    sheet = photograph.page(made)
-    for _, _, rings in painted.marks:
-        sheet.paint(rings, BLUE)
-    camera = Camera(size_px=(1500, 2050), shadow=0.3)
-    (folder / "photo.jpg").write_bytes(photograph.photograph(sheet, camera))
-    (folder / "chart.json").write_text(write_chart(made))
+    (folder / "photo.jpg").write_bytes(photo_of(marks()))
+    (folder / "chart.json").write_text(write_chart(printed()))
     return folder
 
 
@@ -55,3 +81,66 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
         assert np.mean(np.abs(values - truth) < band) > 0.7, (law, values - truth, band)
     assert off["lag"] < 0.03 and off["half_width"] < 0.03, off
     assert (desk / "read.png").stat().st_size > 10_000
+
+
+def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, capsys):
+    """The fit masks the points of such marks; it once gave the brush without a word of it."""
+    coin = np.vstack(marks()["straight-3"]).mean(axis=0) + np.array([0.0, 2.5])
+    turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    disc = coin + 3.0 * np.column_stack([np.cos(turn), np.sin(turn)])
+    moved = marks() | {"arc-3": [ring + np.array([2.0, 1.0]) for ring in marks()["arc-3"]]}
+    photo, out = tmp_path / "photo.jpg", tmp_path / "own.json"
+    photo.write_bytes(photo_of(moved, (disc, INK)))
+    (tmp_path / "chart.json").write_text(write_chart(printed()))
+    words = ["calibrate", str(photo), "--chart", str(tmp_path / "chart.json"), "-o", str(out)]
+    assert main(words) == 0
+    told = capsys.readouterr()
+    named = [line for line in told.err.splitlines() if "left out" in line]
+    assert len(named) == 2 and "straight-3: its outline is off by 0." in named[0]
+    aside = re.search(r"arc-3: its mark lies (\d\.\d) mm aside \(\+(\d\.\d), \+(\d\.\d)\)", named[1])
+    assert [float(number) for number in aside.groups()] == pytest.approx([2.2, 2.0, 1.0], abs=0.4)
+    for line, stroke in zip(named, ("straight-3", "arc-3"), strict=True):
+        places = re.search(
+            r"found in (.*?), expected in (.*?) mm; it is left out: 2 other marks", line
+        ).groups()
+        found, expected = (np.array(re.findall(r"-?\d+\.\d", place), float) for place in places)
+        assert found.shape == expected.shape == (4,)
+        assert 1.5 < np.abs(found - expected).max() < 3.5, stroke
+    assert "left out, not being where or what the other marks say: straight-3, arc-3" in told.out
+    off = [abs(find_brush(out).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]
+    assert max(off) < 0.03, off
+
+
+def fitted(count, astray):
+    """Marks displaced at random; astray: number of one and by what."""
+    rng = np.random.default_rng(1)
+    rows = [
+        SimpleNamespace(
+            displacement_mm=rng.normal(0, 0.2, 2), rms_mm=0.05, distance_mm=rng.normal(0, 0.05, 99)
+        )
+        for _ in range(count)
+    ]
+    for k, by in astray.items():
+        rows[k].displacement_mm = rows[k].displacement_mm + by
+    return SimpleNamespace(marks=rows, noise_mm=0.05)
+
+
+def test_a_mark_is_held_against_the_others_alone():
+    fit = fitted(24, {3: np.array([1.9, 0.0]), 9: np.array([0.0, -9.0])})
+    found = strays(list("abcdefghijklmnopqrstuvwx"), fit)
+    assert [stray.mark for stray in found] == ["d", "j"] and all(stray.is_displaced for stray in found)
+    assert found[0].spread_mm == pytest.approx(0.2, abs=0.06)
+    assert not strays(list("abcdefghijklmnopqrstuvwx"), fitted(24, {}))
+    fit = fitted(24, {})
+    fit.marks[5].rms_mm, fit.marks[5].distance_mm = 0.3, np.append(np.zeros(90), np.full(10, 0.9))
+    assert [stray.mark for stray in strays(list("abcdefghijklmnopqrstuvwx"), fit)] == ["f"]
+    assert not strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four tell nothing of one"
+
+
+def test_many_marks_astray_are_refused():
+    some = [SimpleNamespace(mark=SimpleNamespace(stroke=f"arc-{k}")) for k in range(6)]
+    painted = SimpleNamespace(marks=[None] * 25)
+    _refuse_many(tuple(some[:5]), painted)
+    with pytest.raises(Error, match=r"6 of 25 marks .* the range is \[0, 5\]: arc-0, arc-1") as refusal:
+        _refuse_many(tuple(some), painted)
+    assert refusal.value.code == "marks-outlying"

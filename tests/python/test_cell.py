@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnostics import agrees, refused
 
 from brushsvg.errors import Error
 from brushsvg.machine.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
@@ -20,66 +21,70 @@ def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
     cell = find_cell(name)
     assert cell.name == name
     assert write_cell(cell) == (SHIPPED / f"{name}.toml").read_text(encoding="utf-8")
-    assert (cell.language in POSTS) == (name != "jaka-zu3")
+    assert cell.language in POSTS
     assert cell.paper.example == (cell.tool is not None), "a robot's paper must be taught"
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "where", "words"),
+    ("old", "new", "where", "said"),
     [
-        ("press_mm_s = 8.0", "", "speeds.press_mm_s", "lacks the key speeds.press_mm_s"),
-        ("press_mm_s = 8.0", "press_mm_s = 8.0\npress = 3", "speeds.press", "known here: travel_mm_s"),
-        ("press_mm_s = 8.0", 'press_mm_s = "8"', "speeds.press_mm_s", "must be a finite number, not 8"),
-        ("press_mm_s = 8.0", "press_mm_s = nan", "speeds.press_mm_s", "finite number, not nan"),
-        ("press_mm_s = 8.0", "press_mm_s = true", "speeds.press_mm_s", "finite number, not True"),
-        ("press_mm_s = 8.0", "press_mm_s = 0", "speeds.press_mm_s", "0 is outside the range [0.01, 5000]"),
+        ("press_mm_s = 8.0", "", "speeds.press_mm_s", "key-missing"),
+        ("press_mm_s = 8.0", "press_mm_s = 8.0\npress = 3", "speeds.press", "key-unknown travel_mm_s"),
+        ("press_mm_s = 8.0", 'press_mm_s = "8"', "speeds.press_mm_s", "wrong-type 8"),
+        ("press_mm_s = 8.0", "press_mm_s = nan", "speeds.press_mm_s", "wrong-type nan"),
+        ("press_mm_s = 8.0", "press_mm_s = true", "speeds.press_mm_s", "wrong-type True"),
+        ("press_mm_s = 8.0", "press_mm_s = 0", "speeds.press_mm_s", "out-of-range 0 0.01 5000"),
         (
             "press_mm_s = 8.0",
             f"press_mm_s = 1{'0' * 400}",
             "speeds.press_mm_s",
-            "0 is outside the range [0.01, 5000]",
+            "out-of-range 0.01 5000",
         ),
-        ("decimals = 4", f"decimals = -1{'0' * 400}", "decimals", "0 is outside the range [3, 6]"),
-        ("decimals = 4", f"decimals = 1{'0' * 5000}", "", "not TOML"),
-        ("decimals = 4", "decimals = 4.0", "decimals", "a whole number"),
-        ("decimals = 4", "decimals = 9", "decimals", "9 is outside the range [3, 6]"),
-        ("safe_mm = 10.0", "safe_mm = 0.5", "heights.clearance_mm", "must not be above safe_mm 0.5"),
-        ("lowest_mm = -20.0", "lowest_mm = 20", "heights.lowest_mm", "outside the range [-200, -0.01]"),
-        ("margin_mm = 30.0", "margin_mm = -1", "workspace.margin_mm", "outside the range [0, 10000]"),
+        ("decimals = 4", f"decimals = -1{'0' * 400}", "decimals", "out-of-range 3 6"),
+        ("decimals = 4", f"decimals = 1{'0' * 5000}", "", "not-toml"),
+        ("decimals = 4", "decimals = 4.0", "decimals", "wrong-type"),
+        ("decimals = 4", "decimals = 9", "decimals", "out-of-range 9 3 6"),
+        ("safe_mm = 10.0", "safe_mm = 0.5", "heights.clearance_mm", "cell-heights safe_mm 0.5"),
+        ("lowest_mm = -20.0", "lowest_mm = 20", "heights.lowest_mm", "out-of-range -200 -0.01"),
+        ("margin_mm = 30.0", "margin_mm = -1", "workspace.margin_mm", "out-of-range 0 10000"),
         (
             "margin_mm = 30.0",
             "margin_mm = 30.0\nreach_mm = [9, 2]",
             "workspace.reach_mm",
-            "below the greatest",
+            "cell-workspace",
         ),
-        ("margin_mm = 30.0", "margin_mm = 3\nbox_mm = [[0, 0, 0]]", "workspace.box_mm", "must be 2 rows"),
-        ("margin_mm = 30.0", "margin_mm = 3\nbox_mm = [[0, 0, 0], [1, 1]]", "workspace.box_mm", "3 numbers"),
+        ("margin_mm = 30.0", "margin_mm = 3\nbox_mm = [[0, 0, 0]]", "workspace.box_mm", "wrong-type 2"),
+        (
+            "margin_mm = 30.0",
+            "margin_mm = 3\nbox_mm = [[0, 0, 0], [1, 1]]",
+            "workspace.box_mm",
+            "wrong-type 3",
+        ),
         (
             "margin_mm = 30.0",
             "margin_mm = 3\nbox_mm = [[0, 5, 0], [1, 1, 1]]",
             "workspace.box_mm",
-            "lower one",
+            "cell-workspace",
         ),
-        ('name = "linuxcnc-3axis"', 'name = "a\\nb"', "name", "one line of text"),
-        ("[speeds]", "[speed]", "speeds", "lacks the table speeds"),
-        ("[workspace]", "[[workspace]]", "workspace", "must be a table"),
-        ("version = 1", "version = 2", "version", "version 2 of the cell file is not known"),
-        ('format = "brushsvg/cell"', "", "format", "is not a cell"),
-        ("decimals = 4", "decimals = ", "", "not TOML"),
+        ('name = "linuxcnc-3axis"', 'name = "a\\nb"', "name", "wrong-type"),
+        ("[speeds]", "[speed]", "speeds", "key-missing"),
+        ("[workspace]", "[[workspace]]", "workspace", "wrong-type"),
+        ("version = 1", "version = 2", "version", "version-unknown 2"),
+        ('format = "brushsvg/cell"', "", "format", "format-unknown"),
+        ("decimals = 4", "decimals = ", "", "not-toml"),
         (
             "[paper]",
             "[paper]\nrotation_deg = [3, 0, 0]",
             "paper",
-            "leans 3.00 degrees, outside the range [0, 2]",
+            "paper-tilted 3.00 0 2",
         ),
-        ("[paper]", "[paper]\ntaught_mm = [[0, 0, 0]]", "paper.taught_mm", "1 points were taught"),
+        ("[paper]", "[paper]\ntaught_mm = [[0, 0, 0]]", "paper.taught_mm", "paper-taught 1"),
     ],
 )
-def test_a_faulty_cell_is_refused_by_key(old, new, where, words):
+def test_a_faulty_cell_is_refused_by_key(old, new, where, said):
     assert old in TEXT
-    with pytest.raises(Error) as refusal:
+    with refused(said, where):
         parse_cell(TEXT.replace(old, new))
-    assert (refusal.value.where, words in str(refusal.value)) == (where, True), str(refusal.value)
 
 
 FULL = replace(
@@ -107,27 +112,26 @@ FULL = replace(
 
 
 @pytest.mark.parametrize(
-    ("station", "words"),
+    ("station", "said"),
     [
         (
             Station("ink", (1.0, 2.0), depth_mm=25.0),
-            "the tip goes to -25 mm in the paint, below lowest_mm -20",
+            "cell-station -25 lowest_mm -20",
         ),
         (
             Station("ink", (1.0, 2.0), surface_mm=5.0, depth_mm=2.0),
-            "rim_mm 0 is outside the range [5, 18] mm",
+            "cell-station rim_mm 0 5 18",
         ),
         (
             Station("ink", (1.0, 2.0), depth_mm=2.0, wipe_mm=((0.0, 0.0, -3.0),)),
-            "a wipe at -3 mm is outside the range [0, 20]",
+            "cell-station -3 0 20",
         ),
-        (Station("ink", (1.0, 2.0), by_hand=True), "a servo's brush falls while the program waits"),
+        (Station("ink", (1.0, 2.0), by_hand=True), "cell-station servo"),
     ],
 )
-def test_a_station_that_the_tool_cannot_visit_is_refused(station, words):
-    with pytest.raises(Error) as refusal:
+def test_a_station_that_the_tool_cannot_visit_is_refused(station, said):
+    with refused(said):
         parse_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
-    assert words in str(refusal.value)
 
 
 def test_what_is_written_is_read_back():
@@ -135,63 +139,62 @@ def test_what_is_written_is_read_back():
 
 
 @pytest.mark.parametrize(
-    ("change", "where", "words"),
+    ("change", "where", "said"),
     [
-        ({"reload": None}, "reload", "stations need a table reload"),
-        ({"stations": ()}, "reload", "no station to reload at"),
-        ({"reload": Reload("hourly")}, "reload.when", "'hourly' is none of length, stroke, layer"),
-        ({"reload": Reload("stroke", wash="tea")}, "reload.wash", "there is no station 'tea'"),
-        ({"stations": (FULL.stations[0], FULL.stations[0])}, "station 2", "'ink' is given twice"),
-        ({"stations": (Station("ink", (1.0, 2.0)),)}, "station 1", "depth_mm 0 takes no paint"),
+        ({"reload": None}, "reload", "cell-reload"),
+        ({"stations": ()}, "reload", "cell-reload"),
+        ({"reload": Reload("hourly")}, "reload.when", "cell-reload 'hourly'"),
+        ({"reload": Reload("stroke", wash="tea")}, "reload.wash", "cell-reload 'tea'"),
+        ({"stations": (FULL.stations[0], FULL.stations[0])}, "station 2", "name-taken 'ink'"),
+        ({"stations": (Station("ink", (1.0, 2.0)),)}, "station 1", "cell-station depth_mm 0"),
         (
             {"stations": (Station("ink", (1.0, 2.0), depth_mm=5.0, rim_mm=19.0),)},
             "station 1",
-            "rim_mm 19 is outside the range [0, 18] mm",
+            "cell-station rim_mm 19 0 18",
         ),
-        ({"servo": Servo(((0.0, 1.0), (0.0, 2.0)))}, "servo.table", "steadily rising or falling"),
-        ({"servo": Servo(((0.0, 1.0), (9.0, 2.0)))}, "servo.table", "must hold lowest_mm -20 and safe_mm 20"),
-        ({"servo": Servo(((-30.0, -1.0), (30.0, 2.0)))}, "servo.table", "value -1 is below 0"),
+        ({"servo": Servo(((0.0, 1.0), (0.0, 2.0)))}, "servo.table", "servo-table"),
+        ({"servo": Servo(((0.0, 1.0), (9.0, 2.0)))}, "servo.table", "servo-table lowest_mm -20 safe_mm 20"),
+        ({"servo": Servo(((-30.0, -1.0), (30.0, 2.0)))}, "servo.table", "servo-table -1 0"),
         (
             {"servo": Servo(((-30.0, 0.0), (30.0, 50.0)))},
             "servo.table",
-            "one value changes the height by 1.2 mm, outside the range [0, 0.5] mm",
+            "servo-coarse 1.2 0 0.5",
         ),
         (
             {"stations": (replace(FULL.stations[0], colours=("red",)),)},
             "station 1",
-            "'red' is not written as #rr",
+            "colour-invalid 'red'",
         ),
-        ({"reload": Reload("length", 10.0, 5.0)}, "reload.every_mm", "more than twice backtrack_mm 5"),
-        ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "99000 is outside the range [-2000, 2000]"),
+        ({"reload": Reload("length", 10.0, 5.0)}, "reload.every_mm", "cell-reload backtrack_mm 5"),
+        ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "out-of-range 99000 -2000 2000"),
     ],
 )
-def test_what_no_single_key_tells_is_refused_too(change, where, words):
-    with pytest.raises(Error) as refusal:
+def test_what_no_single_key_tells_is_refused_too(change, where, said):
+    with refused(said, where):
         parse_cell(write_cell(replace(FULL, **change)))
-    assert (refusal.value.where, words in str(refusal.value)) == (where, True), str(refusal.value)
 
 
 @pytest.mark.parametrize(
-    ("workspace", "words"),
+    ("workspace", "said"),
     [
         (
             {"box_mm": ((-450.0, -850.0, 50.0), (450.0, -200.0, 500.0))},
-            "has z below 50 mm, outside the range [50, 500]",
+            "sheet-out-of-reach 'z below 50' 50 500",
         ),
-        ({"box_mm": ((-450.0, -850.0, -50.0), (450.0, -700.0, 500.0))}, "has y above -700 mm"),
+        ({"box_mm": ((-450.0, -850.0, -50.0), (450.0, -700.0, 500.0))}, "sheet-out-of-reach 'y above -700'"),
         (
             {"box_mm": ((-450.0, -850.0, -50.0), (450.0, -200.0, 30.0))},
-            "at height 20 mm the whole sheet has z above 30",
+            "sheet-out-of-reach 20 'z above 30'",
         ),
-        ({"reach_mm": (10.0, 150.0)}, "mm and more from the robot's origin, outside the range [10, 150] mm"),
-        ({"reach_mm": (1500.0, 1600.0)}, "lies at most 8"),
+        ({"reach_mm": (10.0, 150.0)}, "sheet-out-of-reach 201 10 150"),
+        ({"reach_mm": (1500.0, 1600.0)}, "sheet-out-of-reach 816 1500 1600"),
     ],
 )
-def test_a_cell_that_reaches_no_paper_is_told(workspace, words):
+def test_a_cell_that_reaches_no_paper_is_told(workspace, said):
     cell = find_cell("ur5e")
     assert out_of_reach(cell) == []
-    ((key, sentence),) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
-    assert key == f"workspace.{next(iter(workspace))}" and words in sentence, sentence
+    (told,) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
+    assert told.where == f"workspace.{next(iter(workspace))}" and agrees(told, said), told
 
 
 @pytest.mark.slow
@@ -226,27 +229,27 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
 
 
 @pytest.mark.parametrize(
-    ("table", "change", "words"),
+    ("table", "change", "said"),
     [
-        ("heights", {"safe_mm": 1.0, "clearance_mm": 0.5}, "1 is outside the usual range [2, 200]"),
-        ("heights", {"lowest_mm": -120.0}, "-120 is outside the usual range [-50, -0.5]"),
-        ("speeds", {"travel_mm_s": 4000.0}, "4000 is outside the usual range [1, 1000]"),
-        ("speeds", {"paint_mm_s": 0.1}, "0.1 is outside the usual range [1, 500]"),
-        ("speeds", {"acceleration_mm_s2": 40000.0}, "outside the usual range [10, 10000]"),
-        ("tool", {"tcp_mm": (0.0, 0.0, 1800.0)}, "the tip is 1800 mm from the flange"),
+        ("heights", {"safe_mm": 1.0, "clearance_mm": 0.5}, "unusual-value 1 2 200"),
+        ("heights", {"lowest_mm": -120.0}, "unusual-value -120 -50 -0.5"),
+        ("speeds", {"travel_mm_s": 4000.0}, "unusual-value 4000 1 1000"),
+        ("speeds", {"paint_mm_s": 0.1}, "unusual-value 0.1 1 500"),
+        ("speeds", {"acceleration_mm_s2": 40000.0}, "unusual-value 10 10000"),
+        ("tool", {"tcp_mm": (0.0, 0.0, 1800.0)}, "unusual-value 1800"),
         (
             "workspace",
             {"box_mm": ((-100.0, -850.0, -50.0), (450.0, -200.0, 500.0))},
-            "lower left corner the tool goes",
+            "out-of-box",
         ),
-        ("workspace", {"reach_mm": (200.0, 600.0)}, "lower left corner the tool goes 668"),
+        ("workspace", {"reach_mm": (200.0, 600.0)}, "out-of-reach 668.3 200 600"),
     ],
 )
-def test_what_is_odd_is_remarked_on(table, change, words):
+def test_what_is_odd_is_remarked_on(table, change, said):
     cell = replace(find_cell("ur5e"), paper=replace(find_cell("ur5e").paper, example=False))
     assert remarks(cell) == []
-    ((key, sentence),) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
-    assert key.startswith(table) and words in sentence, sentence
+    (told,) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
+    assert told.where.startswith(table) and agrees(told, said), told
 
 
 @pytest.mark.parametrize("name", cell_names())
@@ -284,28 +287,27 @@ def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
     level = "taught_mm = [[10, 5, 0], [110, 15, 0], [0, 105, 0]]"
     assert parse_cell(text.replace("[paper]", f"[paper]\n{level}")).paper.taught_mm
     for z in ("[110, 15, 0.5]", "[110, 15, -0.1]"):
-        with pytest.raises(Error, match="it must lie level, at z 0") as refusal:
+        with refused("paper-tilted 0") as refusal:
             parse_cell(text.replace("[paper]", f"[paper]\n{level.replace('[110, 15, 0]', z)}"))
         assert refusal.value.where == "paper"
-    with pytest.raises(Error, match="it must lie level, at z 0"):
+    with refused("paper-tilted 0"):
         parse_cell(text.replace("[paper]", "[paper]\norigin_mm = [0, 0, 1]"))
 
 
 @pytest.mark.parametrize(
-    ("points", "words"),
+    ("points", "said"),
     [
-        ([(0, 0, 0), (5, 0, 0), (0, 99, 0)], "the second point lies 5.0 mm from the first"),
-        ([(0, 0, 0), (99, 0, 0), (99, 3, 0)], "3.0 mm beside the line of the other two"),
-        ([(0, 0, 0), (99, 0, 0), (0, 99, 0), (99, 99, 0.8)], "0.80 mm off the plane"),
-        ([(0, 0, 0), (99, 0, 0), (0, 99, 9)], "leans 5.19 degrees"),
-        ([(0, 0, 0), (0, 99, 0), (99, 0, 0)], "leans 180.00 degrees"),
+        ([(0, 0, 0), (5, 0, 0), (0, 99, 0)], "paper-taught 5.0"),
+        ([(0, 0, 0), (99, 0, 0), (99, 3, 0)], "paper-taught 3.0"),
+        ([(0, 0, 0), (99, 0, 0), (0, 99, 0), (99, 99, 0.8)], "paper-not-flat 0.80"),
+        ([(0, 0, 0), (99, 0, 0), (0, 99, 9)], "paper-tilted 5.19"),
+        ([(0, 0, 0), (0, 99, 0), (99, 0, 0)], "paper-tilted 180.00"),
     ],
 )
-def test_badly_taught_points_are_refused(points, words):
+def test_badly_taught_points_are_refused(points, said):
     cell = replace(find_cell(), paper=Paper(taught_mm=tuple(tuple(map(float, point)) for point in points)))
-    with pytest.raises(Error) as refusal:
+    with refused(said):
         parse_cell(write_cell(cell))
-    assert words in str(refusal.value)
 
 
 def test_right_angles_are_exact_and_tilt_is_the_normals():
@@ -328,6 +330,6 @@ def test_rotation_vectors_turn_as_the_matrix_does():
 def test_too_many_boxes_to_keep_out_of_are_told_by_their_number():
     box = [[0, 0, 0], [1, 1, 1]]
     text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {[box] * 1001}")
-    with pytest.raises(Error, match=r"workspace\.keep_out_mm has 1001 rows, more than 1000") as refusal:
+    with refused("out-of-range workspace.keep_out_mm 1001 1000") as refusal:
         parse_cell(text)
     assert refusal.value.code == "out-of-range"

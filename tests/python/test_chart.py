@@ -1,5 +1,6 @@
 """The calibration chart: marks that keep apart, markers that are found, a file that is read back."""
 
+import functools
 import itertools
 import json
 import re
@@ -23,6 +24,12 @@ from brushsvg.machine.posts import POSTS
 
 A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)
 PX_PER_MM = 8
+
+
+@functools.cache
+def small_chart():
+    """Nothing of it is changed by a test."""
+    return chart(find_brush("round-6"), A5)
 
 
 def marks_of(made, brush):
@@ -213,7 +220,7 @@ def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monk
 
 def test_a_file_of_before_is_read():
     """Four markers of another dictionary, no id, no bar, no labels."""
-    content = json.loads(write_chart(chart(find_brush("round-6"), A5)))
+    content = json.loads(write_chart(small_chart()))
     content = {key: value for key, value in content.items() if key not in ("id", "bar", "labels")}
     content["markers"] = [row | {"id": k} for k, row in enumerate(content["markers"][:4])]
     made = read_chart(json.dumps(content | {"dictionary": "DICT_4X4_50"}).encode())
@@ -277,7 +284,7 @@ def test_the_file_is_read_back():
     ],
 )
 def test_a_damaged_file_names_the_key(change, where, said):
-    content = json.loads(write_chart(chart(find_brush("round-6"), A5)))
+    content = json.loads(write_chart(small_chart()))
     with pytest.raises(Error, match=re.escape(said)) as refusal:
         read_chart(json.dumps(content | change).encode())
     assert refusal.value.where == where
@@ -329,6 +336,6 @@ def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys
 
 
 def test_same_chart_each_time():
-    texts = [write_chart(chart(find_brush("round-6"), A5)) for _ in range(2)]
+    texts = [write_chart(made) for made in (small_chart(), chart(find_brush("round-6"), A5))]
     assert len(set(texts)) == 1
     assert all(a != b for a, b in itertools.pairwise(read_chart(texts[0].encode()).strokes))

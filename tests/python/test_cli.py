@@ -687,9 +687,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         assert run(capsys, "cell", "show", name)[0] == 0
         status, out, err = run(capsys, "cell", "check", name)
         assert (status, out) == (0, f"{name}: cell {name} can be used\n")
-        assert bool(err) == (name in ("ur5e", "jaka-zu3")), (
-            "a robot's paper is an example, JAKA's language is missing"
-        )
+        assert bool(err) == (name in ("ur5e", "jaka-zu3")), "a robot's paper is an example"
     assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis", "--quiet") == (0, "", [])
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)

@@ -43,6 +43,8 @@ COMMANDS = [
     "calibrate MEASURED -o OUT.json",
     "scan PHOTO --chart CHART -o OUT.json",
     "calibrate PHOTO --chart CHART -o OUT.json",
+    "compare PHOTO a.svg -o OUT.json",
+    "compare PHOTO PLAN",
     "brush new OUT.json --lag 5 --widths WIDTHS",
     "brush show BRUSH",
     "brush check BRUSH",

@@ -40,7 +40,7 @@ def test_the_best_constant_lag_is_the_best_of_all(drawing):
         assert total(preparation.prepare(drawing, options)).overlap < there
     again = preparation.prepare(drawing, best.options)
     assert [p.poses_mm.tolist() for p in again.plan.passes] == [p.poses_mm.tolist() for p in best.plan.passes]
-    assert len(best.misses) == 2
+    assert len(best.tracking_errors) == 2
 
 
 def test_the_best_constant_lag_of_a_pen_is_none(drawing):

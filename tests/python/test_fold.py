@@ -1,55 +1,55 @@
 from brushsvg.errors import Notice
 from brushsvg.text_summary import MOST_ALIKE
-from brushsvg.text_summary import folded as folded_notices
+from brushsvg.text_summary import summarized as summarized_notices
 
 
 def notice(where, sentence, code="", **more):
     return Notice(where, sentence, code=code or sentence.split()[0], **more)
 
 
-def folded(told):
-    return [tuple(each) for each in folded_notices(notice(*each) for each in told)]
+def summarized(told):
+    return [tuple(each) for each in summarized_notices(notice(*each) for each in told)]
 
 
 def test_few_of_a_kind_stay_as_they_are():
     told = [(f"p{k}", f"width {k} mm is odd") for k in range(MOST_ALIKE)] + [("q", "it is dashed")]
-    assert folded(told) == told
+    assert summarized(told) == told
 
 
 def test_many_of_a_kind_are_counted_where_the_first_of_them_stood():
     told = [("a", "one thing")]
     told += [(f"p{k}", f"'p{k}' is 1.{k}e-0{k} mm off, x -{k}, range [0, {k}]", "off") for k in range(5)]
     told[3:3] = [("b", "another thing")]
-    assert folded(told) == [
+    assert summarized(told) == [
         ("a", "one thing"),
         ("p0 and 4 like it", "'p0' is 1.0e-00 mm off, x -0, range [0, 0]"),
         ("b", "another thing"),
     ]
-    assert folded([]) == []
+    assert summarized([]) == []
 
 
 def test_four_with_the_same_sentence_are_named():
     told = [(law, "measured to 4 mm") for law in ("lag", "tip_gap", "tip_to_widest", "half_width")]
-    assert folded(told) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]
-    assert folded([*told, ("fifth", "measured to 4 mm")]) == [("lag and 4 like it", "measured to 4 mm")]
-    assert folded([*told[:3], ("half_width", "measured to 5 mm")]) == [
+    assert summarized(told) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]
+    assert summarized([*told, ("fifth", "measured to 4 mm")]) == [("lag and 4 like it", "measured to 4 mm")]
+    assert summarized([*told[:3], ("half_width", "measured to 5 mm")]) == [
         ("lag and 3 like it", "measured to 4 mm")
     ]
 
 
 def test_a_kind_is_a_code_whatever_is_said():
     reworded = [notice(f"p{k}", "wide" if k % 2 else "too broad", "width") for k in range(5)]
-    (one,) = folded_notices(reworded)
+    (one,) = summarized_notices(reworded)
     assert (one.where, one.code) == ("p0 and 4 like it", "width")
-    assert len(folded_notices([*reworded, notice("q", "wide", "other")])) == 2
+    assert len(summarized_notices([*reworded, notice("q", "wide", "other")])) == 2
     other_property = [
         notice("r", "mask is not read", "css-unread", about=name) for name in ("mask", "clip-path") * 3
     ]
-    assert len(folded_notices(other_property)) == len(other_property)
+    assert len(summarized_notices(other_property)) == len(other_property)
     without_codes = [Notice(f"p{k}", f"{k} mm") for k in range(5)]
-    assert folded_notices(without_codes) == without_codes, "only what has a code is of a kind"
+    assert summarized_notices(without_codes) == without_codes, "only what has a code is of a kind"
 
 
 def test_many_that_concern_no_element_are_counted_in_the_sentence():
     told = [("", f"marker {k} cannot be seen", "marker") for k in range(5)]
-    assert folded(told) == [("", "marker 0 cannot be seen, and 4 like it")]
+    assert summarized(told) == [("", "marker 0 cannot be seen, and 4 like it")]

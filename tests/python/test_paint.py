@@ -78,11 +78,17 @@ def test_another_colour_is_washed_for():
 def test_a_resumed_job_begins_with_paint():
     plan = plan_of(*[(40, "#000000", "")] * 4)
     assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
-        ["black"],
+        [],
         [],
         ["black"],
         [],
     ]
+
+
+def test_what_is_not_painted_again_asks_for_no_paint():
+    plan = plan_of((40, "#00ff00", ""), (40, "#000000", ""))
+    cell = cell_with(Reload("stroke"), BLACK)
+    assert names(visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
 
 
 def test_a_colour_that_nobody_serves_is_refused():
@@ -242,6 +248,29 @@ def test_loads_are_no_plan():
             taken()
     with pytest.raises(AttributeError, match="loads"):
         visits(long_plan(brush), cell)
+
+
+def test_loads_that_were_written_as_a_plan_are_not_cut_again():
+    """Parts are longer than a load by what the brush comes back: as strokes they would be cut once more."""
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
+    loads = in_loads(long_plan(brush), brush, cell)
+    back = _core.read_plan(_core.write_plan(loads.as_plan()))
+    again = in_loads(back, brush, cell)
+    assert [a_pass.stroke for a_pass in again.loads] == [a_pass.stroke for a_pass in loads.loads]
+    assert again.strokes() == loads.strokes() == ["short", "long", "long", "long", "last"]
+    assert visits(again, cell) == visits(loads, cell)
+    for before, after in zip(loads.loads, again.loads, strict=True):
+        assert np.abs(before.poses_mm - after.poses_mm).max() <= 1e-7
+    shorter = in_loads(back, brush, cell_with(Reload("length", 30.0))).strokes()
+    assert shorter.count("long") == 3 and shorter.count("short") > 1
+    for passes in ([2, 1, 3], [2], [1, 0, 2], [1, 3]):
+        lost = _core.Plan(back.brush, "", back.sheet_mm, [back.passes[k] for k in passes])
+        with pytest.raises(Error, match="of a stroke stands where no load") as refused:
+            in_loads(lost, brush, cell)
+        assert refused.value.code == "load-out-of-order"
+    one = _core.Pass("one", back.passes[0].poses_mm, extra='{"load": "2"}')
+    with pytest.raises(Error, match="load must be a whole number, not '2'"):
+        in_loads(_core.Plan(back.brush, "", back.sheet_mm, [one]), brush, cell)
 
 
 def test_what_every_load_does_is_told_once_of_its_stroke():

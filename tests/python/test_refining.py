@@ -9,7 +9,7 @@ from programs import problems
 from brushsvg import _core, cli, compensate, find_brush, find_cell
 from brushsvg.machine.preflight import as_exact_as
 from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import Options, _misses, prepare
+from brushsvg.pipeline.preparation import Options, _tracking_notices, prepare
 from brushsvg.planning.refinement import towards_reach
 
 BRUSH = find_brush("round-6")
@@ -65,7 +65,7 @@ def test_a_refined_mark_beside_its_stroke_is_told_of(away_mm, is_told):
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
     miss = _core.miss_of(a_pass, stroke, BRUSH)
-    told = [bool(_misses([stroke], [miss], [moved], BRUSH, 0.05)) for moved in (False, True)]
+    told = [bool(_tracking_notices([stroke], [miss], [moved], BRUSH, 0.05)) for moved in (False, True)]
     assert told == is_told
 
 

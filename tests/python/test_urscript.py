@@ -48,7 +48,7 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
         for (name, poses), colour in zip_longest(strokes.items(), colours, fillvalue="")
     ]
     made = program(SimpleNamespace(sheet_mm=(100.0, 60.0), passes=passes), BRUSH, cell, header, Job(**job))
-    return "".join(text_of(POSTS["urscript"], made))
+    return "".join(text_of(POSTS[cell.language], made))
 
 
 def rows_of(robot, cell):

@@ -69,6 +69,27 @@ def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, lim
         assert status == 1 and any(re.search(told + words, line) for line in err), err
 
 
+LEFT = {
+    "keep_out_mm": (((-285.0, -40.0, 0.0), (-235.0, 40.0, 300.0)), ((0.0, 300.0, 0.0), (1.0, 301.0, 1.0)))
+}
+
+
+@pytest.mark.parametrize(("limits", "x_mm"), [(RING, 20), (POST, 20), (LEFT, 20), ({}, -20)])
+def test_of_a_job_that_is_resumed_only_what_is_left_is_asked(desk, capsys, limits, x_mm):
+    """The first stroke, the way from it and its paint may break any limit: the machine does not go there again."""
+    (desk / "mine.toml").write_text(write_cell(robot(**limits)))
+    (desk / "pair.svg").write_text(PAIR.replace("M20 100", f"M{x_mm} 100"))
+    words = ("convert", "pair.svg", "pair.script", "--cell", "mine.toml")
+    assert call(capsys, *words)[0] == 1
+    assert call(capsys, *words, "--from-stroke", "2")[0] == 0
+    assert call(capsys, "check", "pair.script", "pair.svg", "--cell", "mine.toml")[::2] == (0, [])
+    (desk / "pair.svg").write_text(PAIR.replace("h40", "h60"))
+    status, _, err = call(capsys, *words, "--from-stroke", "2")
+    assert status == 1 and all("right: " in line for line in err)
+    status, _, (line,) = call(capsys, *words, "--from-stroke", "3")
+    assert status == 1 and "stroke 3 is outside the range [1, 2] of this job" in line
+
+
 def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes(desk, capsys):
     """A clip between the first two lanes, lower than neither of them."""
     clip = robot(keep_out_mm=(((-300.0, 90.0, 30.0), (-200.0, 92.0, 45.0)),))

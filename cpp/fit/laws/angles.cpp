@@ -43,8 +43,9 @@ double rmse(const VectorXd& left) {
 FromAngles from_angles(const AngleSeries& series, Lines lines) {
     const std::size_t n = series.s_mm.size();
     if (series.alpha.size() != n || !(series.beta.empty() || series.beta.size() == n))
-        throw Error("there are " + std::to_string(n) + " distances and " + std::to_string(series.alpha.size()) +
-                    " angles; each distance needs its angles");
+        throw Error("sizes-differ", "there are " + std::to_string(n) + " distances and " +
+                                        std::to_string(series.alpha.size()) +
+                                        " angles; each distance needs its angles");
     if (!(series.alpha0 > 0.0 && series.alpha0 <= kGreatestAlpha0)) {
         const double degrees = series.alpha0 * 180.0 / M_PI;
         char text[200];
@@ -52,7 +53,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
                       "the first angle, %g degrees, is outside the range (0, 95]: beyond it the patch rests at first; "
                       "let the series begin at a reading within it, and count s from there",
                       degrees);
-        throw Error(text, "alpha0", degrees, std::array<double, 2>{0.0, 95.0});
+        throw Error("out-of-range", text, "alpha0", degrees, std::array<double, 2>{0.0, 95.0});
     }
     FromAngles out{0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0};
     std::vector<std::size_t> used;
@@ -66,7 +67,8 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
             ++out.left_out;
     }
     if (used.empty())
-        throw Error("no reading can be used: the angle must fall from the first one towards 0 as the brush is dragged");
+        throw Error("measurement-missing",
+                    "no reading can be used: the angle must fall from the first one towards 0 as the brush is dragged");
     const auto log_cot_half = [](double a) { return -std::log(std::tan(0.5 * a)); };
     const Eigen::Index m = Eigen::Index(used.size());
     VectorXd s(m), f(m);
@@ -86,8 +88,8 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     for (Eigen::Index i = 0; i < m; ++i) {
         const double a1 = series.alpha[used[i]], beta = series.beta[used[i]];
         if (!(beta > 0.0 && beta < M_PI))
-            throw Error("the direction of the tip's displacement must lie between 0 and 180 degrees", "beta",
-                        beta * 180.0 / M_PI);
+            throw Error("out-of-range", "the direction of the tip's displacement must lie between 0 and 180 degrees",
+                        "beta", beta * 180.0 / M_PI);
         integral[i] = out.lag_mm * (std::cos(a1) - std::cos(series.alpha0) +
                                     (std::sin(series.alpha0) - std::sin(a1)) / std::tan(beta));
     }

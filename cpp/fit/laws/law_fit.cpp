@@ -282,32 +282,35 @@ double variance(const VectorXd& residual, Index terms, int freedom, Norm norm) {
 void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::vector<double>& value,
                                   const LawShape& shape) {
     if (depth.size() != value.size())
-        throw Error("there are " + std::to_string(depth.size()) + " depths and " + std::to_string(value.size()) +
-                    " values; each value needs its depth");
+        throw Error("sizes-differ", "there are " + std::to_string(depth.size()) + " depths and " +
+                                        std::to_string(value.size()) + " values; each value needs its depth");
     for (std::size_t i = 0; i < depth.size(); ++i)
         if (!std::isfinite(depth[i]) || !std::isfinite(value[i]))
-            throw Error("value " + std::to_string(i + 1) + " or its depth is not a finite number");
+            throw Error("not-finite", "value " + std::to_string(i + 1) + " or its depth is not a finite number");
     for (std::size_t i = 0; i < depth.size(); ++i)
         for (const auto& [what, number] : {std::pair{"value ", value[i]}, std::pair{"the depth of value ", depth[i]}})
             require_within(number, {-kGreatest, kGreatest}, what + std::to_string(i + 1));
     if (shape.degree < 0 || shape.degree > kMaxLawDegree)
-        throw Error("a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
-    if (shape.degree == 0 && shape.through_zero) throw Error("a law of degree 0 through zero has nothing to fit");
+        throw Error("law-terms", "a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
+    if (shape.degree == 0 && shape.through_zero)
+        throw Error("law-terms", "a law of degree 0 through zero has nothing to fit");
     for (const double end : shape.range_mm)
         require_within(end, {-kGreatest, kGreatest}, "an end of the depths", "range_mm");
-    if (!(shape.range_mm[0] < shape.range_mm[1])) throw Error("the range of depths must rise", "range_mm");
+    if (!(shape.range_mm[0] < shape.range_mm[1]))
+        throw Error("not-ascending", "the range of depths must rise", "range_mm");
     require_within(shape.smoothing, {0.0, kGreatest}, "the smoothing", "smoothing");
     if (shape.floor != -std::numeric_limits<double>::infinity())
         require_within(shape.floor, {-kGreatest, kGreatest}, "the floor", "floor");
     if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
-        throw Error("a law with a floor cannot be held to a shape as well");
-    if (depth.empty() && shape.smoothing > 0.0) throw Error("there is no value to fit a law to");
+        throw Error("options-contradict", "a law with a floor cannot be held to a shape as well");
+    if (depth.empty() && shape.smoothing > 0.0) throw Error("measurement-missing", "there is no value to fit a law to");
     if (shape.smoothing > 0.0) return;  // which decides where the data leave it open
     const std::size_t terms = std::size_t(shape.degree) + (shape.through_zero ? 0 : 1);
     std::set<double> different(depth.begin(), depth.end());
     if (shape.through_zero) different.erase(0.0);
     if (different.size() < terms)
-        throw Error("a law of degree " + std::to_string(shape.degree) + " needs values at " + std::to_string(terms) +
+        throw Error("depths-too-few",
+                    "a law of degree " + std::to_string(shape.degree) + " needs values at " + std::to_string(terms) +
                         " different depths" + (shape.through_zero ? " other than 0" : "") + ", there are " +
                         std::to_string(different.size()) + ": measure at more depths, or ask for a lower degree",
                     "", double(different.size()));

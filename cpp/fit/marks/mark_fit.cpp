@@ -55,22 +55,22 @@ void refuse_laws(const MarkLaws& laws) {
 }
 
 void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    if (marks.empty()) throw Error("there is no painted mark");
+    if (marks.empty()) throw Error("measurement-missing", "there is no painted mark");
     for (const auto& [terms, name] : {std::pair{options.lag_terms, "lag"}, std::pair{options.tip_gap_terms, "tip_gap"},
                                       std::pair{options.half_width_terms, "half_width"}})
         if (terms < 1 || terms > 4)
-            throw Error(std::to_string(terms) + " numbers are outside the range [1, 4] for a law", name);
+            throw Error("law-terms", std::to_string(terms) + " numbers are outside the range [1, 4] for a law", name);
     refuse_options(options);
     double way = 0.0, around = 0.0;
     for (const PaintedMark& mark : marks) {
-        if (mark.poses_mm.rows() < 1) throw Error("the stroke needs poses", mark.stroke);
+        if (mark.poses_mm.rows() < 1) throw Error("pass-empty", "the stroke needs poses", mark.stroke);
         for (const double mm : mark.poses_mm.reshaped())
             require_within(mm, {-kLargestMm, kLargestMm}, "a coordinate of a pose", mark.stroke);
         if (mark.outline_mm.empty())
-            throw Error("the mark has no outline: leave out what was not painted", mark.stroke);
+            throw Error("mark-empty", "the mark has no outline: leave out what was not painted", mark.stroke);
         double area = 0.0;
         for (const Ring& ring : mark.outline_mm) {
-            if (ring.rows() < 3) throw Error("an outline needs three points or more", mark.stroke);
+            if (ring.rows() < 3) throw Error("geometry-damaged", "an outline needs three points or more", mark.stroke);
             for (const double mm : ring.reshaped())
                 require_within(mm, {-kLargestMm, kLargestMm}, "a coordinate of an outline", mark.stroke);
             area += signed_area(ring);
@@ -78,10 +78,11 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
                       (ring.bottomRows(ring.rows() - 1) - ring.topRows(ring.rows() - 1)).rowwise().norm().sum();
         }
         if (area < 0.0)
-            throw Error("the outlines run round less than nothing: outer ones go counter-clockwise", mark.stroke, area);
+            throw Error("outline-clockwise",
+                        "the outlines run round less than nothing: outer ones go counter-clockwise", mark.stroke, area);
         const double deepest = -mark.poses_mm.col(2).minCoeff();
         if (deepest > options.deepest_mm + 1e-9)
-            throw Error("a pose is deeper than the range of the laws", mark.stroke, deepest,
+            throw Error("depth-out-of-range", "a pose is deeper than the range of the laws", mark.stroke, deepest,
                         std::array<double, 2>{0.0, options.deepest_mm});
         const Index moves = mark.poses_mm.rows() - 1;
         way += double(moves) +
@@ -93,7 +94,7 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
 
 /// What is to expect of edges this uncertain, which forget themselves as exp(-s / length).
 void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOptions& options) {
-    if (!from) throw Error("to say what to expect takes a brush to start from");
+    if (!from) throw Error("options-contradict", "to say what to expect takes a brush to start from");
     at.begin(*from);
     at.shared[at.model.layout().widest()] = from->widest_per_half;
     at.shared[at.model.layout().front()] = from->front_per_half;
@@ -150,13 +151,13 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     MarkProblem fit(marks, options);
     Index points = 0;
     for (Index i = 0; i < fit.model.marks(); ++i) points += fit.model.points(i);
-    if (points == 0) throw Error("there are only specks, no mark");
+    if (points == 0) throw Error("mark-empty", "there are only specks, no mark");
     MarkFit out;
     if (options.noise_mm)
         expect(fit, from, options);
     else
         out.converged = solve(fit, from, marks, options);
-    if (!fit.shared.allFinite()) throw Error("no brush was found that paints these marks");
+    if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
     const MatrixXd whole = to * covariance_at_touch(fit) * to.transpose();
@@ -176,7 +177,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         const Eigen::Vector2d& own = fit.own[std::size_t(i)];
         VectorXd distance;
         if (!fit.model.distances(i, fit.shared.data(), own.data(), distance, nullptr, nullptr))
-            throw Error("the laws to start from predict no mark", marks[std::size_t(i)].stroke);
+            throw Error("fit-failed", "the laws to start from predict no mark", marks[std::size_t(i)].stroke);
         MarkMiss miss;
         miss.point_mm = fit.model.placed(i, fit.shared.data(), own.data());
         miss.distance_mm.assign(distance.data(), distance.data() + distance.size());

@@ -71,6 +71,7 @@ void start(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOpt
     }
     if (!std::isfinite(best))
         throw Error(
+            "fit-failed",
             "no lag that was tried predicts these marks: are plan and marks those of one sheet, and is there no pose "
             "above the paper as it was taught?");
     at.iterations += tried.iterations;

@@ -187,7 +187,8 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
     Law<N>& law = at.law;
     const auto& strokes = at.all;
     std::vector<VectorXd>& own = at.own;
-    if (!law.positive) throw Error("the lag to start from is not above 0 on the whole range of depths", "start");
+    if (!law.positive)
+        throw Error("law-zero", "the lag to start from is not above 0 on the whole range of depths", "start");
     ceres::Problem::Options problem_options;
     problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     problem_options.evaluation_callback = &at;
@@ -215,7 +216,7 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
     solver.initial_trust_region_radius = 1e6;  // the problem is nearly quadratic; the step is cut where it is not
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    if (!summary.IsSolutionUsable()) throw Error("the lag could not be fitted: " + summary.message);
+    if (!summary.IsSolutionUsable()) throw Error("fit-failed", "the lag could not be fitted: " + summary.message);
 
     TrackFit out;
     out.iterations = int(summary.iterations.size());
@@ -247,6 +248,7 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normal);
     if (!(eigen.eigenvalues()[0] > 1e-11 * eigen.eigenvalues()[n - 1]))
         throw Error(
+            "law-undetermined",
             "the strokes leave the lag open: paint curved strokes at as many depths as the law has coefficients",
             "lag");
     out.degrees_of_freedom = int(rows_in_all - unknowns);
@@ -267,38 +269,42 @@ TrackFit fit(const std::vector<Track>& tracks, const std::vector<double>& start,
 void refuse_what_cannot_be_fitted(const std::vector<Track>& tracks, const std::vector<double>& start,
                                   const TrackOptions& options) {
     if (start.empty() || int(start.size()) > kMaxLawDegree + 1)
-        throw Error("a law of " + std::to_string(start.size()) + " coefficients is outside the range [1, 9]", "start");
+        throw Error("law-terms",
+                    "a law of " + std::to_string(start.size()) + " coefficients is outside the range [1, 9]", "start");
     const auto [lo, hi] = options.range_mm;
     if (!(lo >= 0.0 && lo < hi && hi <= kDeepestMm))
-        throw Error("the range of depths must rise from 0 or more to 1000 mm or less", "range_mm");
+        throw Error("out-of-range", "the range of depths must rise from 0 or more to 1000 mm or less", "range_mm");
     const std::array<double, 2> any{-kLargestMm, kLargestMm};
     for (double c : start) require_within(c, any, "a coefficient", "start");
     if (int(options.lever_mm.size()) > kMaxLawDegree + 1)
-        throw Error("a law of " + std::to_string(options.lever_mm.size()) + " coefficients is outside the range [0, 9]",
+        throw Error("law-terms",
+                    "a law of " + std::to_string(options.lever_mm.size()) + " coefficients is outside the range [0, 9]",
                     "lever_mm");
     for (double c : options.lever_mm) require_within(c, any, "a coefficient", "lever_mm");
     require_within(options.most_iterations, {1, 10000}, "the number of iterations", "most_iterations");
-    if (tracks.empty()) throw Error("there is no stroke");
+    if (tracks.empty()) throw Error("measurement-missing", "there is no stroke");
     for (std::size_t i = 0; i < tracks.size(); ++i) {
         const Track& track = tracks[i];
         const std::string where = "stroke " + std::to_string(i + 1);
-        if (track.poses_mm.rows() < 2) throw Error("a stroke needs two poses or more", where);
+        if (track.poses_mm.rows() < 2) throw Error("pass-empty", "a stroke needs two poses or more", where);
         for (const double mm : track.poses_mm.reshaped()) require_within(mm, any, "a coordinate of a pose", where);
         for (const double mm : track.seen_mm.reshaped()) require_within(mm, any, "a coordinate that was seen", where);
         if (!std::isnan(track.heading_rad)) require_within(track.heading_rad, any, "the heading", where);
         const double deepest = -track.poses_mm.col(2).minCoeff();
         if (deepest > hi + 1e-9)
-            throw Error("a pose is deeper than the range of the law", where, deepest, options.range_mm);
+            throw Error("depth-out-of-range", "a pose is deeper than the range of the law", where, deepest,
+                        options.range_mm);
         if (track.pose.empty() || Index(track.pose.size()) != track.seen_mm.rows())
-            throw Error("each place seen needs its pose", where);
+            throw Error("sizes-differ", "each place seen needs its pose", where);
         double before = 0.0;
         for (double pose : track.pose) {
             if (!(pose >= before && pose <= double(track.poses_mm.rows() - 1)))
-                throw Error("the poses of what was seen must ascend and lie on the stroke", where, pose);
+                throw Error("not-ascending", "the poses of what was seen must ascend and lie on the stroke", where,
+                            pose);
             const Index from = std::min(Index(pose), track.poses_mm.rows() - 2);
             const double z0 = track.poses_mm(from, 2), z1 = track.poses_mm(from + 1, 2);
             if (z0 + (pose - double(from)) * (z1 - z0) > 1e-9)
-                throw Error("something was seen where the brush is in the air", where, pose);
+                throw Error("above-paper", "something was seen where the brush is in the air", where, pose);
             before = pose;
         }
     }

@@ -15,15 +15,15 @@ from .from_widths import need_fits, outlines_assumed
 from .mark_input import Painted, depths_painted, middle
 from .plausibility import BEYOND
 from .sheet_scale import SheetScale, refuse_scale, sheet_scale
+from .stray_marks import MOST, OUTLYING, Stray, strays
 
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
-OUTLYING = 4.7  # standard deviations beyond which a point is masked
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
-UNSURE, UNSURE_MM, UNSURE_PART = 0.5, 0.5, 0.25
+UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,8 @@ class MarkCalibration:
     """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
-    edge_mm: by which all edges may lie off together, in the brush's intervals (sigma).
+    edge_mm: by which all edges may lie off together (sigma), and covariance, of all that is fitted, with that in it.
+    strays: marks that are not like the others, which the fit had no part of where they were left out.
     """
 
     brush: _core.Brush
@@ -41,6 +42,9 @@ class MarkCalibration:
     scale: SheetScale | None = None
     round_tail_gain: float = 0.0
     edge_mm: float = 0.0
+    covariance: np.ndarray | None = None
+    strays: tuple[Stray, ...] = ()
+    strays_left_out: bool = False
 
 
 def calibrate_marks(
@@ -50,6 +54,7 @@ def calibrate_marks(
     max_speed_mm_s: float = 25.0,
     options: _core.MarkOptions | None = None,
     edge_mm: float = 0.0,
+    leave_out_strays: bool = False,
 ) -> MarkCalibration:
     """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
 
@@ -57,7 +62,8 @@ def calibrate_marks(
     told from paper. No mark tells it from a wider brush, so the intervals hold it.
 
     Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
-    displacement and height; depths, numbers per law and the tail are set here.
+    displacement and height; depths, numbers per law and the tail are set here. leave_out_strays: fit once more without
+    marks that are not where or what the others say; Error where they are many.
     """
     need_fits()
     least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
@@ -79,6 +85,12 @@ def calibrate_marks(
     options.lag_terms = min(LAG_TERMS, painted.depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
     fit, gain = _likelier_tail(painted.marks, options)
+    astray = tuple(strays(painted.marks, fit))
+    if leave_out_strays and astray:
+        _refuse_many(astray, painted)
+        gone = {each.mark.stroke for each in astray}
+        painted = painted.without(gone)
+        fit, gain = _likelier_tail(painted.marks, options)
     scale = _scale(fit, painted)
     refuse_scale(scale)
     _refuse_unlike(fit, painted)
@@ -98,9 +110,24 @@ def calibrate_marks(
             half_interval_95=found.half_interval_95,
         )
         setattr(brush, law, known)
-    _refuse_unsure(brush, fit)
+    _refuse_undetermined(brush, fit)
     _core.check(brush)
-    return MarkCalibration(brush, fit, painted, options, scale, gain, edge_mm)
+    return MarkCalibration(
+        brush, fit, painted, options, scale, gain, edge_mm, covariance, astray, leave_out_strays
+    )
+
+
+def _refuse_many(astray: tuple[Stray, ...], painted: Painted) -> None:
+    most = math.floor(MOST * len(painted.marks))
+    if len(astray) > most:
+        raise Error(
+            f"{len(astray)} of {len(painted.marks)} marks are not where or what the others say, the range is "
+            f"[0, {most}]: {', '.join(each.mark.stroke for each in astray)}; does anything lie on the page, is the "
+            "paint smeared, and is it the page on which this chart was painted?",
+            "marks",
+            len(astray),
+            code="marks-outlying",
+        )
 
 
 def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
@@ -252,10 +279,10 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     if covariance is not None:
         whole = _over_brush(laws, covariance)
         brush.covariance = whole.tolist()
-        sure = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
-            setattr(brush, law, _core.Profile(coefficients, half_interval_95=sure[place]))
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place]))
     return brush
 
 
@@ -300,15 +327,15 @@ def _refuse_unlike(fit, painted: Painted) -> None:
         )
 
 
-def _refuse_unsure(brush: _core.Brush, fit) -> None:
+def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
     for law in ("lag", "half_width"):  # the others are not what a plan is led by
         half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
-        unsure = (half > UNSURE * values) & (half > UNSURE_MM)
-        if unsure.mean() > UNSURE_PART:
-            worst = int(np.argmax(np.where(unsure, half / np.maximum(values, 1e-9), 0.0)))
+        undetermined = (half > UNDETERMINED * values) & (half > UNDETERMINED_MM)
+        if undetermined.mean() > UNDETERMINED_PART:
+            worst = int(np.argmax(np.where(undetermined, half / np.maximum(values, 1e-9), 0.0)))
             todo = (
                 fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
             )

@@ -303,14 +303,16 @@ class _Maker:
         law = getattr(brush, self.corrected)
         rests_on = [self.done[name].fit.law.degrees_of_freedom for name in (self.corrected, *self.pulls)]
         freedom = min(rests_on)
-        sure = _core.deviations_of_95(freedom) * np.sqrt(np.diag(covariance)[places(brush)[self.corrected]])
+        half_intervals = _core.deviations_of_95(freedom) * np.sqrt(
+            np.diag(covariance)[places(brush)[self.corrected]]
+        )
         return _core.Profile(
             law.coefficients,
             floor=law.floor,
             floor_slope=law.floor_slope,
             calibrated_mm=law.calibrated_mm,
             source=law.source,
-            half_interval_95=sure,
+            half_interval_95=half_intervals,
             rmse_mm=law.rmse_mm,
             degrees_of_freedom=freedom,
         )

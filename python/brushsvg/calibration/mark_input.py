@@ -41,6 +41,10 @@ class Painted:
     deepest_mm: float
     depths: int
 
+    def without(self, strokes: set[str]) -> Painted:
+        """Error where what is left tells nothing."""
+        return painted_of([mark for mark in self.marks if mark.stroke not in strokes])
+
 
 def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], bytes]) -> Painted:
     """plan: a path or what stands in a plan.json; marks: a path of a marks.json, or [{"stroke", "outline_mm"}].
@@ -71,10 +75,14 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
         raise Error("there is no mark in it", "marks", code="measurement-missing")
     _refuse_other_frames(found)
     _refuse_what_is_no_paint(found)
-    _refuse_what_tells_nothing(found)
-    painted = [_core.PaintedMark(stroke, poses, _oriented(rings)) for stroke, poses, rings in found]
-    deepest = max(float(-poses[:, 2].min()) for _, poses, _ in found)
-    return Painted(painted, deepest, depths_painted([poses for _, poses, _ in found]))
+    return painted_of([_core.PaintedMark(stroke, poses, _oriented(rings)) for stroke, poses, rings in found])
+
+
+def painted_of(marks: list) -> Painted:
+    """Error where the marks tell nothing of a brush."""
+    ways = [np.array(mark.poses_mm) for mark in marks]
+    _refuse_what_tells_nothing(ways)
+    return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
 
 def _passes(plan, read) -> dict[str, np.ndarray]:
@@ -280,8 +288,7 @@ def depths_painted(ways: list[np.ndarray]) -> int:
     return int(np.sum(runs & ~np.concatenate([[False], runs[:-1]]))) if runs.sum() < 4 else int(runs.sum())
 
 
-def _refuse_what_tells_nothing(found: list) -> None:
-    ways = [poses for _, poses, _ in found]
+def _refuse_what_tells_nothing(ways: list[np.ndarray]) -> None:
     count = depths_painted(ways)
     if count == 0:
         raise Error(

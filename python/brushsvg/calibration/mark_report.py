@@ -10,7 +10,9 @@ from .. import _core
 from ..brush.confidence import law_band
 from ..brush.describe import LAWS, polynomial
 from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
-from .from_marks import LAG_TERMS, OUTLYING, TELLS
+from ..errors import Notice
+from .from_marks import LAG_TERMS, TELLS
+from .stray_marks import OUTLYING
 
 TABLE_ROWS = 6
 FOREIGN = 0.1  # of all points, masked: more than blots and gaps
@@ -36,7 +38,13 @@ def report(made) -> str:
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     remarks = [
         f"note: {sentence}"
-        for sentence in [*_few_depths(made), *_unexpected(made), *_unlike(fit, overlap[1]), *fit.remarks]
+        for sentence in [
+            *_few_depths(made),
+            *_astray(made),
+            *_unexpected(made),
+            *_unlike(fit, overlap[1]),
+            *fit.remarks,
+        ]
     ]
     if not fit.converged:
         remarks.append("note: the fit had not converged when it was stopped: look at the picture")
@@ -65,29 +73,72 @@ def _few_depths(made) -> list[str]:
 
 def _unexpected(made) -> list[str]:
     """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
-    fit, expected, out = made.fit, made.expected, []
-    aside = np.array([miss.displacement_mm for miss in fit.marks])
-    far = int(np.argmax(np.hypot(*aside.T)))
-    others, limit = np.delete(aside, far, axis=0), UNLIKELY_RMS * expected.displacement_mm
-    if limit > 0 and len(others) > 2 and _rms(aside) > limit > _rms(others):
-        stroke = made.painted.marks[far].stroke
-        out.append(
-            f"{stroke} is displaced by {np.hypot(*aside[far]):.1f} mm, the others by {_rms(others):.2g} mm (rms): is "
-            "it the mark of this stroke?"
-        )
-        aside = others
+    fit, expected = made.fit, made.expected
+    astray = {stray.mark.stroke for stray in made.strays}
+    aside = [
+        miss.displacement_mm
+        for mark, miss in zip(made.painted.marks, fit.marks, strict=True)
+        if mark.stroke not in astray
+    ]
     found = (
         ("displacement_mm", "in x and in y (rms)", _rms(aside), expected.displacement_mm, UNLIKELY_RMS),
         ("placement_mm", "", max(map(abs, fit.shift_mm)), expected.placement_mm, UNLIKELY),
         ("height_mm", "", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
         ("turn_deg", "", math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad), UNLIKELY),
     )
-    return out + [
+    return [
         f"{key} is {size:.2g}{which and ' ' + which}, expected was a standard deviation of {sigma:.2g}, which "
         f'biases the laws: give "expected": {{"{key}": {_rounded_up(size):g}}} if that is how exact the sheet is'
         for key, which, size, sigma, times in found
         if size > times * sigma > 0
     ]
+
+
+def _astray(made) -> list[str]:
+    if made.strays_left_out and made.strays:
+        names = ", ".join(stray.mark.stroke for stray in made.strays)
+        return [f"left out, not being where or what the other marks say: {names}"]
+    return [f"{notice.where}: {notice.told}" for notice in strays_told(made)]
+
+
+def strays_told(made) -> list[Notice]:
+    """Of each mark that is not where or what the others say: where it was found and where expected, what it costs."""
+    out = []
+    for stray in made.strays:
+        (rings,) = predicted_marks(made, [stray.mark])
+        found, expected = (
+            _extent(np.vstack(each))
+            for each in (stray.mark.outline_mm, on_sheet(made, rings) or [np.zeros((1, 2))])
+        )
+        if stray.is_displaced:
+            dx, dy = stray.displacement_mm
+            what = (
+                f"its mark lies {math.hypot(dx, dy):.1f} mm aside ({dx:+.1f}, {dy:+.1f}), the others scatter by "
+                f"{stray.spread_mm:.2f} mm"
+            )
+        else:
+            what = (
+                f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
+                "lies on the mark, or it is smeared or torn"
+            )
+        sentence = f"{what}; found in {found}, expected in {expected}; {_cost(made, stray.mark)}"
+        out.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
+    return out
+
+
+def _extent(points: np.ndarray) -> str:
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+    return f"x [{x0:.1f}, {x1:.1f}], y [{y0:.1f}, {y1:.1f}] mm"
+
+
+def _cost(made, mark) -> str:
+    if not made.strays_left_out:
+        return "look at the picture, and leave it out if it is not the mark of this stroke"
+    depth = deepest_mm(mark)
+    alike = sum(abs(deepest_mm(other) - depth) < 0.01 for other in made.painted.marks)
+    at = min(depth, made.brush.depth_range_mm[1])
+    half = float(law_band(made.brush, "lag", np.array([at]))[0][0])
+    return f"it is left out: {alike} other marks are {depth:.4g} mm deep, the lag is known there to +- {half:.2f} mm"
 
 
 def _unlike(fit, moved: float) -> list[str]:
@@ -134,8 +185,8 @@ def _table(brush) -> list[str]:
 def _moved(made) -> list[str]:
     """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
     fit = made.fit
-    sure = _core.deviations_of_95() * np.sqrt(np.diag(np.array(fit.covariance)))
-    height, shift, turn = sure[-4], sure[-3:-1], sure[-1]
+    half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
+    height, shift, turn = half_intervals[-4], half_intervals[-3:-1], half_intervals[-1]
     way = "higher" if fit.height_mm >= 0 else "lower"
     sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
     far = int(np.argmax(sizes))
@@ -165,7 +216,7 @@ def _stays(made, lying: float, moved: float) -> list[str]:
     if made.edge_mm > 0:
         lines.append(
             f"all edges may lie {made.edge_mm:.2f} mm off together (standard deviation), as a picture has them: the "
-            "intervals of the laws hold that"
+            "intervals hold that"
         )
     if fit.left_aside > 0.01:
         bound = f"residual above {OUTLYING:g} standard deviations"
@@ -188,7 +239,7 @@ def overlaps(made) -> tuple[float, float]:
     """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
     the brush says where paint will be, which is more than the confidence of its laws."""
     marks, lying, moved = made.painted.marks, [], []
-    predicted = predicted_marks(made, list(range(len(marks))))
+    predicted = predicted_marks(made, marks)
     for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
         lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
         moved.append(_core.overlap(_home(made, mark.outline_mm, miss.displacement_mm), rings))
@@ -202,7 +253,7 @@ def report_picture(made, suffix: str) -> bytes:
     brush_picture_on(laws, made.brush)
     order = np.argsort([miss.rms_mm for miss in made.fit.marks])
     chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
-    predicted = predicted_marks(made, [int(k) for _, k in chosen])
+    predicted = predicted_marks(made, [made.painted.marks[int(k)] for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
         mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
         fill_rings(axes, _home(made, mark.outline_mm, miss.displacement_mm), PAINT)
@@ -234,17 +285,21 @@ def on_sheet(made, rings) -> list[np.ndarray]:
     return [(ring - centre) @ np.array([[c, s], [-s, c]]) + centre + fit.shift_mm for ring in rings]
 
 
-def predicted_marks(made, chosen: list[int]) -> list:
+def deepest_mm(mark) -> float:
+    return float(-np.array(mark.poses_mm)[:, 2].min())
+
+
+def predicted_marks(made, marks: list) -> list:
     """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
     brush = made.brush
-    reach = max(brush.depth_range_mm[1], made.painted.deepest_mm + made.fit.height_mm)
+    reach = max(brush.depth_range_mm[1], max(map(deepest_mm, marks)) + made.fit.height_mm)
     brush = _core.read_brush(_core.write_brush(brush))
     brush.depth_range_mm = (brush.depth_range_mm[0], reach)
     passes = []
-    for k in chosen:
-        poses = np.array(made.painted.marks[k].poses_mm)
+    for mark in marks:
+        poses = np.array(mark.poses_mm)
         poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
-        passes.append(_core.Pass(made.painted.marks[k].stroke, poses))
-    marks = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
-    _core.trace_outlines(marks, brush)
-    return [one.outline_mm for one in marks.passes]
+        passes.append(_core.Pass(mark.stroke, poses))
+    painted = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
+    _core.trace_outlines(painted, brush)
+    return [one.outline_mm for one in painted.passes]

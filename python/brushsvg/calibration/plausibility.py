@@ -154,10 +154,10 @@ def off_the_others(
         powers = depth ** np.arange(degree + 1.0)
         polynomial = powers @ others.law.coefficients
         noise = max(others.law.rmse_mm, 1e-9) ** 2
-        sure = max(powers @ np.array(others.covariance) @ powers, 1e-18)
-        squared = value**2 / noise + max(0.0, polynomial) ** 2 / sure
-        if polynomial + sure / (sure + noise) * (value - polynomial) >= 0.0:
-            squared = min(squared, (value - polynomial) ** 2 / (noise + sure))
+        variance = max(powers @ np.array(others.covariance) @ powers, 1e-18)
+        squared = value**2 / noise + max(0.0, polynomial) ** 2 / variance
+        if polynomial + variance / (variance + noise) * (value - polynomial) >= 0.0:
+            squared = min(squared, (value - polynomial) ** 2 / (noise + variance))
         size = float(_core.as_normal(math.sqrt(squared), others.degrees_of_freedom))
         found[k] = (size, value - others.law(depth))
     return found

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from contextlib import contextmanager
 
 from ..errors import Error, Notice
-from ..text_summary import folded
+from ..text_summary import summarized
 
 
 class RefusedError(Exception):
@@ -61,7 +61,7 @@ def tell(text: str) -> None:
 
 def warn(file: str, warnings: Iterable[Notice]) -> None:
     """Many warnings of a kind become one line."""
-    for notice in folded(warnings):
+    for notice in summarized(warnings):
         say_notice(file, notice)
 
 

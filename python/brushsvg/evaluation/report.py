@@ -12,7 +12,7 @@ from ..errors import Notice
 from ..geometry.polylines import length
 from ..units import clock
 from .error_causes import cause
-from .uncertainty import Uncertainty
+from .uncertainty import PlanConfidence
 
 RING_TOLERANCE_MM = 0.01
 SMALL_MM2 = 0.005  # that is no difference worth a word
@@ -75,7 +75,7 @@ class Report:
     warnings: tuple[Notice, ...] = ()
     refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
     forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
-    sure: Uncertainty | None = None  # None: the brush has no confidence
+    confidence: PlanConfidence | None = None  # None: the brush has no confidence
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
 
@@ -219,12 +219,12 @@ def _rounded(value):
 def to_json(report: Report) -> str:
     """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
 
-    def figures(row: Figures, sure) -> dict:
-        known = {} if sure is None else {"uncertainty_95": _rounded(asdict(sure))}
+    def figures(row: Figures, confidence) -> dict:
+        known = {} if confidence is None else {"uncertainty_95": _rounded(asdict(confidence))}
         return _rounded(asdict(row)) | known
 
-    sure = report.sure
-    sures = [None] * len(report.strokes) if sure is None else sure.strokes
+    confidence = report.confidence
+    intervals = [None] * len(report.strokes) if confidence is None else confidence.strokes
 
     return (
         json.dumps(
@@ -236,9 +236,9 @@ def to_json(report: Report) -> str:
                 "compensation": report.compensation,
                 "tolerance_mm": report.tolerance_mm,
                 "time_s": round(report.time_s, 3),
-                "uncertainty_from": None if sure is None else sure.source,
-                "total": figures(report.total, None if sure is None else sure.total),
-                "strokes": [figures(*pair) for pair in zip(report.strokes, sures, strict=True)],
+                "uncertainty_from": None if confidence is None else confidence.source,
+                "total": figures(report.total, None if confidence is None else confidence.total),
+                "strokes": [figures(*pair) for pair in zip(report.strokes, intervals, strict=True)],
                 "warnings": [notice.as_json() for notice in report.warnings],
                 "refused": [notice.as_json() for notice in report.refused],
                 "forbidden": [notice.as_json() for notice in report.forbidden],
@@ -273,7 +273,7 @@ def to_text(report: Report) -> str:
         ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
-        *_sure_columns(report.sure),
+        *_confidence_columns(report.confidence),
     ]
     notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
     table = _table(columns, notes)
@@ -290,7 +290,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
         "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
-        *_sure_words(report.sure),
+        *_confidence_words(report.confidence),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.groups:
@@ -312,10 +312,10 @@ def to_text(report: Report) -> str:
     return "\n".join([*lines, ""])
 
 
-def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
-    if sure is None:
+def _confidence_columns(confidence: PlanConfidence | None) -> list[tuple[str, list[str]]]:
+    if confidence is None:
         return []
-    rows = [*sure.strokes, sure.total]
+    rows = [*confidence.strokes, confidence.total]
     return [
         ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
         ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
@@ -323,12 +323,12 @@ def _sure_columns(sure: Uncertainty | None) -> list[tuple[str, list[str]]]:
     ]
 
 
-def _sure_words(sure: Uncertainty | None) -> list[str]:
-    if sure is None:
+def _confidence_words(confidence: PlanConfidence | None) -> list[str]:
+    if confidence is None:
         return ["No confidence intervals: the brush has neither covariance nor RMSE."]
     return [
         "+-: half the confidence interval of the mark's middle across the line, of its ends along it, of its width,",
-        f"{sure.words}.",
+        f"{confidence.words}.",
     ]
 
 

@@ -20,7 +20,7 @@ COVARIANCE, RMSE = "covariance", "RMSE"
 
 
 @dataclass(frozen=True)
-class Sure:
+class Confidence:
     """95 % half intervals in mm, the largest along a stroke; None where nothing is known or the brush is never taut.
 
     middle_mm: of the middle of the mark, across its line; ends_mm: of the mark's tip along it, where the brush first
@@ -33,14 +33,14 @@ class Sure:
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class PlanConfidence:
     """source: COVARIANCE, or RMSE where the brush has none: laws as far off as single readings, independently. words:
     the same for people, with the laws that were not measured and do not count."""
 
     source: str
     words: str
-    strokes: tuple[Sure, ...]
-    total: Sure
+    strokes: tuple[Confidence, ...]
+    total: Confidence
 
 
 @dataclass(frozen=True)
@@ -89,15 +89,15 @@ def _counts(brush, law: str) -> bool:
     return bool(np.any(np.diag(covariance_of(brush))[places(brush)[law]]))
 
 
-def uncertainty(plan, brush, marks) -> Uncertainty | None:
+def uncertainty(plan, brush, marks) -> PlanConfidence | None:
     """Per pass and in all; None where nothing is known. marks: the plan's, simulated with this brush."""
     source = known_from(brush)
     if source is None:
         return None
-    strokes = tuple(_sure(effects) for effects in _all_effects(plan, brush, marks))
+    strokes = tuple(_confidence(effects) for effects in _all_effects(plan, brush, marks))
     if not _counts(brush, "half_width"):
-        strokes = tuple(replace(sure, width_mm=None) for sure in strokes)
-    return Uncertainty(source, in_words(brush), strokes, _largest(strokes))
+        strokes = tuple(replace(each, width_mm=None) for each in strokes)
+    return PlanConfidence(source, in_words(brush), strokes, _largest(strokes))
 
 
 def band(plan, brush, marks) -> Band:
@@ -129,13 +129,13 @@ def _all_effects(plan, brush, marks):
         [brush.depth_range_mm[1] ** np.arange(part.stop - part.start, dtype=float) for part in at.values()]
     )
     covariance = scale[:, None] * covariance_of(brush) * scale
-    sure = np.concatenate(  # each law's half interval in its own standard deviations
+    deviations = np.concatenate(  # each law's half interval in its own standard deviations
         [
             np.full(part.stop - part.start, _core.deviations_of_95(getattr(brush, law).degrees_of_freedom))
             for law, part in at.items()
         ]
     )
-    factor, steps = sure[:, None] * _factor(covariance), _factor(covariance[lag, lag])
+    factor, steps = deviations[:, None] * _factor(covariance), _factor(covariance[lag, lag])
     mixing = np.linalg.pinv(steps) @ factor[lag]  # the independent directions of all, in steps of the lag
     runs = [_both_sides(plan, brush, step / scale[lag]) for step in steps.T]
     # once: every look at the passes copies the list
@@ -213,17 +213,17 @@ def _powers(law, depth: np.ndarray) -> np.ndarray:
     return powers
 
 
-def _sure(effects: _Effects) -> Sure:
+def _confidence(effects: _Effects) -> Confidence:
     rows = np.flatnonzero(effects.usable)
     if not len(rows):
-        return Sure(None, None, None)
+        return Confidence(None, None, None)
     tangent = _tangents(effects.middle[rows], effects.along[rows])
     normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
     across = _spread(np.einsum("ij,ijk->ik", normal, effects.d_middle[rows]))
     ends = rows[[0, -1]]
     along = _spread(np.einsum("ij,ijk->ik", effects.along[ends], effects.d_tip[ends]))
     width = 2 * _spread(effects.d_half[rows])
-    return Sure(*(float(values.max()) for values in (across, along, width)))
+    return Confidence(*(float(values.max()) for values in (across, along, width)))
 
 
 def _tangents(points: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -240,11 +240,11 @@ def _spread(effects: np.ndarray) -> np.ndarray:
     return np.sqrt(np.sum(np.square(effects), axis=1))
 
 
-def _largest(strokes: tuple[Sure, ...]) -> Sure:
+def _largest(strokes: tuple[Confidence, ...]) -> Confidence:
     def largest(name: str):
-        return max((value for sure in strokes if (value := getattr(sure, name)) is not None), default=None)
+        return max((value for each in strokes if (value := getattr(each, name)) is not None), default=None)
 
-    return Sure(*(largest(name) for name in ("middle_mm", "ends_mm", "width_mm")))
+    return Confidence(*(largest(name) for name in ("middle_mm", "ends_mm", "width_mm")))
 
 
 def _swept(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:

@@ -181,7 +181,7 @@ TABLES = {
     "reload": Reload,
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload")
-NEEDED_BY = {"grbl-servo": "servo", "urscript": "tool"}
+NEEDED_BY = {"grbl-servo": "servo", "urscript": "tool", "jaka": "tool"}
 RELOADS = ("length", "stroke", "layer")
 
 

@@ -34,6 +34,14 @@ def rotation(rotation_deg) -> np.ndarray:
     return turned
 
 
+def rotation_deg(turned: np.ndarray) -> np.ndarray:
+    """(3,) angles [degrees] about the fixed axes x, y, z of a rotation (3, 3): what `rotation` makes it of."""
+    about_x = np.arctan2(turned[2, 1], turned[2, 2])
+    about_y = np.arctan2(-turned[2, 0], np.hypot(turned[2, 1], turned[2, 2]))
+    about_z = np.arctan2(turned[1, 0], turned[0, 0])
+    return np.degrees([about_x, about_y, about_z])
+
+
 def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
     """From the origin, a point along x, a point on the side of positive y, perhaps one more to try the plane.
 

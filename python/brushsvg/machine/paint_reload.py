@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,9 @@ from .cell import Cell, Station
 class PlanInLoads:
     """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
 
-    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. A
-    plan.json does not tell that a pass is a part: plans are kept as they were planned, and cut for the machine.
+    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. Of a part
+    the key load says which of its stroke it is, in a plan.json, too: as a rule plans are kept as they were planned, and
+    cut for the machine.
     """
 
     sheet_mm: tuple[float, float]
@@ -31,6 +33,10 @@ class PlanInLoads:
             names.append(names[-1] if is_later_part(a_pass) else a_pass.stroke)
         return names
 
+    def left(self, first_stroke: int) -> PlanInLoads:
+        """The loads from that one on, counted from 1."""
+        return PlanInLoads(self.sheet_mm, self.loads[first_stroke - 1 :])
+
     def as_plan(self):
         """For who simulates what is run."""
         return _core.Plan(sheet_mm=self.sheet_mm, passes=list(self.loads))
@@ -39,15 +45,24 @@ class PlanInLoads:
 def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
     """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
-    Whole are all strokes of cells that do not count the length, and those whose setting reload is false.
+    Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
+    already stays as it is. Error for a part that does not follow the one before it.
     """
-    loads = list(plan.passes)
+    loads, last = list(plan.passes), None
+    for a_pass in loads:
+        if (number := _load(a_pass)) > 1 and (last is None or _load(last) != number - 1):
+            sentence = f"load {number} of a stroke stands where no load {number - 1} of it comes before"
+            raise Error(sentence, a_pass.stroke, code="load-out-of-order")
+        last = a_pass
     if cell.reload and cell.reload.when == "length":
         every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
         loads = []
         for a_pass in plan.passes:
-            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False
-            loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+            whole = painted_mm(a_pass) <= every_mm or _asked(a_pass) is False or _load(a_pass)
+            parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+            for number, part in enumerate(parts, 1) if len(parts) > 1 else ():
+                part.extra = json.dumps({**json.loads(part.extra), "load": number})
+            loads += parts
     return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
 
 
@@ -70,7 +85,7 @@ def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
 
 
 def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
-    """For each load the stations to visit before it; () for a cell without paint.
+    """For each load the stations to visit before it, none before loads that are not run; () for a cell without paint.
 
     Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
     cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
@@ -78,8 +93,11 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
     """
     if not cell.reload:
         return ()
-    found, last, used_mm = [], None, 0.0
-    for number, a_pass in enumerate(loads.loads, 1):
+    painted, due = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
+    found, last, used_mm = [()] * len(painted), None, 0.0
+    with suppress(Error):  # what no station serves is not on the brush
+        last = painted[-1] if painted and _station_for(painted[-1], cell) else None
+    for number, a_pass in enumerate(due, len(painted) + 1):
         station = _station_for(a_pass, cell)
         length_mm = painted_mm(a_pass)
         changed = last is not None and _station_for(last, cell) != station
@@ -116,7 +134,15 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
 
 def is_later_part(a_pass) -> bool:
     """Whether a load goes on with the stroke that the load before it paints."""
-    return a_pass.origin.load > 1
+    return _load(a_pass) > 1
+
+
+def _load(a_pass) -> int:
+    """Which load of its stroke a pass is, from 1; 0 for a stroke that is whole."""
+    load = json.loads(a_pass.extra).get("load", 0)
+    if type(load) is not int:
+        raise Error(f"load must be a whole number, not {load!r:.40}", a_pass.stroke, code="wrong-type")
+    return load
 
 
 def _asked(a_pass) -> bool | None:

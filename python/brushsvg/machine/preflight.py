@@ -20,8 +20,14 @@ DEFAULT_TOLERANCE_MM = 0.05
 
 
 def look(loads: PlanInLoads, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB) -> Walked:
-    """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads."""
+    """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
+    is resumed only what is left is asked."""
     walk = walked(loads, brush, cell, job)
+    if job.first_stroke > 1:
+        loads = loads.left(job.first_stroke)
+        if not loads.loads:
+            return walk
+        marks = _core.simulate(loads.as_plan(), brush)
     found = walk.problems + off_sheet(marks, brush, loads.sheet_mm)
     return replace(walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm))
 

@@ -52,17 +52,12 @@ class Walked:
         """What is run. Error, naming stroke and range, where something forbids it."""
         for notice in self.problems:
             raise Error(notice.sentence, where=notice.where, code=notice.code)
-        first, count = self.job.first_stroke, len(self.loads.loads)
-        if not 1 <= first <= count:
-            raise Error(
-                f"stroke {first} is outside the range [1, {count}] of this job", code="stroke-unknown"
-            )
         return self.made
 
 
 def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walked:
-    """Moves for every load, in order, with the visits to the paint, and each limit that is broken anywhere on the way
-    of the whole job, whichever stroke it begins with, or on that of a visit to any station.
+    """Moves for every load of the job, in order, with the visits to the paint, and each limit that is broken anywhere
+    on its way, or on that of a visit to any station.
 
     brush: asked for nothing but its name and how fast it may go.
     """
@@ -72,11 +67,14 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     except Error as unserved:
         problems.append(unserved.notice())
     made = _held(unchecked_program(loads, brush, cell, job), loads)
-    problems += broken_limits(loads.loads, loads.sheet_mm, brush, cell)
-    if all(np.isfinite(a_pass.poses_mm).all() for a_pass in loads.loads):
-        from_first = replace(job, first_stroke=1)
-        whole = made if job == from_first else unchecked_program(loads, brush, cell, from_first)
-        problems += astray_in(whole, loads.sheet_mm)
+    first, count = job.first_stroke, len(loads.loads)
+    if count and not 1 <= first <= count:
+        sentence = f"stroke {first} is outside the range [1, {count}] of this job"
+        return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
+    left = loads.left(first).loads
+    problems += broken_limits(left, loads.sheet_mm, brush, cell)
+    if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
+        problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:
             one = [visit(station, brush, cell)]
             problems += walked_astray(one, made.robot_from_frame, cell, loads.sheet_mm)

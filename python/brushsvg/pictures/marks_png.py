@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error
-from .marks_svg import BAND, BOTH, EDGE, MISSES, MISSING, SPILT, check_picture, known_colour
+from .marks_svg import BAND, BOTH, EDGE, MISSING, OVERLAP_COLOURS, SPILT, check_picture, known_colour
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
@@ -67,7 +67,7 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
     _write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)
 
 
-def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
+def overlap_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
     """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
     common = np.minimum(wanted, painted)
     rows, columns = common.shape
@@ -79,7 +79,7 @@ def misses_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
         page -= share[..., None] * (255.0 - np.array(_bgr(colour)))
     image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
     x = size
-    for colour, words in MISSES:
+    for colour, words in OVERLAP_COLOURS:
         image[rows + size // 2 : rows + 3 * size // 2, x : x + size] = _bgr(colour)
         x = _write(image, words, (x + 3 * size // 2, rows + 11 * size // 8), size, 400, TEXT) + 2 * size
     return _png(image)

@@ -19,7 +19,7 @@ def marks_svg(
     sheet_mm: tuple[float, float],
     colours: list[str],
     title: str = "",
-    misses=(),
+    tracking_errors=(),
     made: str = "",
     band=None,
     blank=(),
@@ -27,9 +27,9 @@ def marks_svg(
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; misses: of the passes, if known; made: how, in words; band: where their edges lie, with a
-    legend; blank: rings of what of shapes stays blank, outlined; seen_mm: no stroke is marked for smaller misses,
-    whatever the tolerance.
+    marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: where their edges lie,
+    with a legend; blank: rings of what of shapes stays blank, outlined; seen_mm: no stroke is marked for smaller
+    errors, whatever the tolerance.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -38,8 +38,8 @@ def marks_svg(
         f'viewBox="0 0 {width:g} {height:g}"' + (f" data-made={_quoted(made)}" if made else "") + ">",
         f"<title>{escape(_printable(title), quote=False)}</title>",
     ]
-    misses = misses or [None] * len(colours)
-    for trace, colour, miss in zip(marks.passes, colours, misses, strict=True):
+    tracking_errors = tracking_errors or [None] * len(colours)
+    for trace, colour, miss in zip(marks.passes, colours, tracking_errors, strict=True):
         if trace.outline_mm:
             stroke = _quoted(trace.stroke)
             lines.append(
@@ -90,11 +90,15 @@ def _band(band, width: float, height: float) -> list[str]:
 
 
 BOTH, MISSING, SPILT = "#b4b8c0", "#d1431f", "#2f6fd0"
-MISSES = ((BOTH, "painted as wanted"), (MISSING, "wanted, not painted"), (SPILT, "painted, not wanted"))
+OVERLAP_COLOURS = (
+    (BOTH, "painted as wanted"),
+    (MISSING, "wanted, not painted"),
+    (SPILT, "painted, not wanted"),
+)
 
 
-def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
-    """Where paint is missing and where there is too much of it, in the colours of MISSES, in millimetres of the sheet.
+def overlap_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
+    """Where paint is missing and where there is too much of it, in OVERLAP_COLOURS, in millimetres of the sheet.
 
     wanted, painted: rings of all that was drawn, and of all paint.
     """
@@ -116,7 +120,7 @@ def misses_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title
         f'<path fill="{BOTH}" clip-path="url(#wanted)" d="{data["painted"]}"/>',
     ]
     x = size
-    for colour, words in MISSES:
+    for colour, words in OVERLAP_COLOURS:
         lines.append(
             f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>'
         )

@@ -17,7 +17,7 @@ from ..drawing.design import Design, Notice
 from ..drawing.layout import bounds_mm
 from ..geometry import polylines
 from ..geometry.cubics import at
-from ..text_summary import folded
+from ..text_summary import summarized
 from .stroke_labels import Room, Run, ahead, runs_of, width_text
 
 PAPER, SHEET, EDGE, TEXT, QUIET, SHAPE = "#f3f1ec", "#ffffff", "#c9c7c0", "#22252b", "#6d717a", "#d9d7d0"
@@ -173,7 +173,7 @@ def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
     told = [
         (colour, notice)
         for is_damage, colour in ((True, WARNING), (False, TEXT))
-        for notice in folded(notice for notice in notices if notice.damaged == is_damage)
+        for notice in summarized(notice for notice in notices if notice.damaged == is_damage)
     ]
     for colour, notice in told[:LISTED]:
         for line in textwrap.wrap(f"{notice.where}: {notice.told}", WRAPPED, subsequent_indent="    "):

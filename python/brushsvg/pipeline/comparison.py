@@ -43,7 +43,10 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
         painted = _core.coverage(_core.simulate(done.plan, work.brush), work.brush, window, px_per_mm)
         overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
         if overlap > most:
-            best, most = replace(work, plan=done.plan, misses=tuple(done.misses), options=options), overlap
+            best, most = (
+                replace(work, plan=done.plan, tracking_errors=tuple(done.misses), options=options),
+                overlap,
+            )
     return best
 
 

@@ -13,7 +13,7 @@ from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads
 from ..machine.writer import time_s, whole_program
 from ..pictures.animation import animation
-from ..pictures.marks_svg import marks_svg, misses_svg
+from ..pictures.marks_svg import marks_svg, overlap_svg
 from ..pictures.timeline import timeline
 from .preparation import Work
 
@@ -45,7 +45,7 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
             work.plan.sheet_mm,
             colours,
             work.title,
-            work.misses,
+            work.tracking_errors,
             made,
             band,
             bare,
@@ -63,20 +63,20 @@ def _seen_mm(brush) -> float:
     return 0.0 if known is None else 0.25 * float(known[0][0])
 
 
-def misses_picture(suffix: str, work: Work, marks) -> bytes:
+def overlap_picture(suffix: str, work: Work, marks) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
     outlines. Error for a plan, which does not say what was wanted."""
     if work.strokes is None:
         raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
     if suffix == ".svg":
         wanted = report.wanted_rings(work.strokes)
-        return misses_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
     from ..pictures import marks_png
 
     px_per_mm = min(20.0, marks_png.PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
     wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
-    return marks_png.misses_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
+    return marks_png.overlap_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
 
 
 def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:
@@ -130,7 +130,7 @@ def reported(
         warnings=tuple(known),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
-        sure=uncertainty(work.plan, work.brush, marks),
+        confidence=uncertainty(work.plan, work.brush, marks),
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
     )

@@ -54,14 +54,14 @@ class Options:
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
-    misses: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
+    tracking_errors: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
     """
 
     title: str
     brush: object
     plan: object
     strokes: list | None
-    misses: tuple
+    tracking_errors: tuple
     options: Options
     notices: tuple[Notice, ...]
     refused: tuple[Notice, ...] = ()
@@ -100,10 +100,10 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
-    plan, misses, moved = done.plan, done.misses, [False] * len(painted)
+    plan, tracking_errors, moved = done.plan, done.misses, [False] * len(painted)
     if options.compensation == "refined":
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
-        plan.passes, misses, moved = better.passes, better.misses, better.moved
+        plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _with_speeds(plan, strokes)
     told = _widths(painted, brush, done.warnings, options.layout.width_mm is None)
     notices = [*design.notices, *notices, *told]
@@ -115,13 +115,13 @@ def prepare(
     if options.compensation in ("closed", "refined"):
         blank = missed(drawn, painted, _core.simulate(plan, brush).passes, bare, brush)
         notices += blank_notices(blank, is_reached=True)
-        notices += _misses(painted, misses, moved, brush, options.tolerance_mm)
+        notices += _tracking_notices(painted, tracking_errors, moved, brush, options.tolerance_mm)
     return Work(
         design.title,
         brush,
         plan,
         strokes,
-        tuple(misses),
+        tuple(tracking_errors),
         options,
         tuple(notices),
         tuple(refused),
@@ -172,7 +172,7 @@ def _sorted_out(painted, wanted, step):
         try:
             step(pair[:1])
         except Error as error:
-            refused.append(replace(error.notice(pair[0].id), code=error.code or "stroke-refused"))
+            refused.append(error.notice(pair[0].id))
             left_out.append(pair[1])
         else:
             sound.append(pair)
@@ -180,21 +180,19 @@ def _sorted_out(painted, wanted, step):
 
 
 def _widths(painted, brush, warnings, may_advise: bool) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
-    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them."""
+    """What compensation warns of, with what helps against depths that were not measured. Where these are at strokes'
+    ends alone, as they are set down and lifted, it is said once for all of them."""
     advice = "--width MM gives all strokes one width" if may_advise else ""
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
     thin = {stroke.id: stroke for stroke in painted if measured and _thins_out(stroke, brush, *measured)}
     told = [
-        Notice(where, said, code="depth-not-measured", advice=advice)
-        if where
-        else Notice(where, said, code="widths-ignored")
-        for where, said in warnings
-        if where not in thin
+        replace(each, advice=advice) if each.code == "depth-not-measured" else each
+        for each in warnings
+        if each.where not in thin
     ]
-    ends = [thin[where] for where, _ in warnings if where in thin]
+    ends = [thin[each.where] for each in warnings if each.where in thin]
     if ends:
         least = min(half for stroke in ends for _, half in stroke.half_width)
         count = "1 stroke begins or ends" if len(ends) == 1 else f"{len(ends)} strokes begin or end"
@@ -239,10 +237,10 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _misses(painted, misses, moved, brush, tolerance_mm: float) -> list[Notice]:
+def _tracking_notices(painted, tracking_errors, moved, brush, tolerance_mm: float) -> list[Notice]:
     """Tracking errors above their bound: moved, as refinement does on purpose, where it is beside the stroke."""
     found = []
-    for stroke, miss, is_moved in zip(painted, misses, moved, strict=True):
+    for stroke, miss, is_moved in zip(painted, tracking_errors, moved, strict=True):
         half_mm = brush.half_width(brush.paint_depth_mm)
         if brush.width_follows_depth():
             half_mm = max(half for _, half in stroke.half_width)
@@ -300,5 +298,5 @@ def nearest_first(work: Work) -> Work:
     was = work.plan
     plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
     strokes = None if work.strokes is None else [work.strokes[k] for k in order]
-    misses = tuple(work.misses[k] for k in order) if work.misses else ()
-    return replace(work, plan=plan, strokes=strokes, misses=misses)
+    tracking_errors = tuple(work.tracking_errors[k] for k in order) if work.tracking_errors else ()
+    return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)

@@ -21,7 +21,7 @@ class Refined:
     """One of each per pass. moved: whether it is another pass than the one in closed form."""
 
     passes: list
-    misses: list
+    tracking_errors: list
     moved: list[bool]
 
 
@@ -34,12 +34,12 @@ def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=N
     """
     aims = [towards_reach(*pair, brush) for pair in zip(painted, wanted, strict=True)]
     done = compensated(aims, "refined")
-    passes, misses, moved = list(done.plan.passes), list(done.misses), [True] * len(painted)
+    passes, tracking_errors, moved = list(done.plan.passes), list(done.misses), [True] * len(painted)
     fallback = list(zip(closed.plan.passes, closed.misses, strict=True))
 
     def keep_closed(numbers):
         for k in numbers:
-            passes[k], misses[k] = fallback[k]
+            passes[k], tracking_errors[k] = fallback[k]
             moved[k] = False
 
     def worse_of(groups):
@@ -53,7 +53,7 @@ def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=N
     if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
         keep_closed(worse_of(redirected))  # they were judged by what they aimed at
     keep_closed(worse_of(_core.touching(wanted)))
-    return Refined(passes, misses, moved)
+    return Refined(passes, tracking_errors, moved)
 
 
 def towards_reach(painted, wanted, brush):

@@ -87,8 +87,8 @@ def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> np.ndarra
     bare = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) > PAPER) & ~covered
     weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
     mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
-    sure = weight[..., None] > 0.02
-    even = np.where(sure, mean / np.maximum(weight[..., None], 1e-6), bright).astype(np.float32)
+    is_lit = weight[..., None] > 0.02
+    even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), bright).astype(np.float32)
     return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR)
 
 

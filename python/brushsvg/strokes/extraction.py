@@ -47,11 +47,7 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
         try:
             lines = _lines(element, paths_as)
         except Error as beyond:
-            notices.append(
-                Notice(
-                    element.id or "filled", f"{beyond}: left out", code=beyond.code or "outline-too-complex"
-                )
-            )
+            notices.append(Notice(element.id or "filled", f"{beyond}: left out", code=beyond.code))
             continue
         if lines:
             found.append((element, lines))

@@ -10,7 +10,7 @@ import shapely
 
 from .. import _core
 from .contour_fill import contour_passes, painted, region, unpainted
-from .offset_passes import Line, clamped, passes_beside
+from .offset_passes import Line, clamped, offset_passes
 
 # More of the shape covered along its outline is worth the direction of writing, which middle lines have.
 _BETTER = 0.01
@@ -60,7 +60,7 @@ def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> 
 
 def _filling(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> Filling:
     beside = {
-        k: [clamped(stroke, least, greatest), *passes_beside(stroke, greatest)] for k, stroke in wide.items()
+        k: [clamped(stroke, least, greatest), *offset_passes(stroke, greatest)] for k, stroke in wide.items()
     }
     meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
     left = unpainted(shape, [*narrow, *(lines[0] for lines in beside.values())])

@@ -35,7 +35,7 @@ def clamped(stroke, least: float, greatest: float) -> Line:
     return Line(stroke.middle_mm, cut, stroke.closed)
 
 
-def passes_beside(stroke, greatest: float) -> list[Line]:
+def offset_passes(stroke, greatest: float) -> list[Line]:
     """Passes of the greatest width left and right of the middle line, wherever the stroke is wider; none where that
     would be hundreds."""
     widest = max(half for _, half in stroke.half_width)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,8 +98,54 @@ def differing_line(
         elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b):
             k += 1
         else:
+            if a and b and a.kind == b.kind == "lift":
+                a, b = _first_unlike(_of_lift(read.acts, ours, i), _of_lift(again.acts, theirs, k), like)
+            elif a and b and a.kind == b.kind == "way" and like.is_stopped(ours[i + 1 :], theirs[k + 1 :]):
+                a = _of_lift(read.acts, ours, i + 1)[0]
             return _differs(text.splitlines(), theirs_text.splitlines(), a, b, like)
     return None
+
+
+def _of_lift(acts: list[Act], lifts: list[Act], number: int) -> list[Act]:
+    """What a servo's lift was put together of, and what follows it."""
+    before = max((act.line for act in lifts[:number]), default=0)
+    lines = [act.line for act in acts]
+    return acts[bisect_right(lines, before) : bisect_right(lines, lifts[number].line) + 1]
+
+
+def _first_unlike(found: list[Act], wanted: list[Act], like: _Alike) -> tuple[Act, Act]:
+    """What makes one lift another one: the value that it ends with, or that is beyond all of the other's, else what is
+    waited at the value where that is furthest off. Rounding may have made the values one more or less."""
+    ours, theirs = ([act for act in acts if act.kind == "lift"] for acts in (found, wanted))
+    if bool(ours) != bool(theirs):
+        return found[0], wanted[0]
+    for pick in (lambda acts, **_: acts[-1], min, max) if ours else ():
+        a, b = (pick(acts, key=lambda act: act.same[0]) for acts in (ours, theirs))
+        if abs(a.same[0] - b.same[0]) > like.step_values:
+            return a, b
+    ours_at, theirs_at = _by_value(found), _by_value(wanted)
+
+    def off_s(value: float) -> float:
+        waits = [
+            [act.same[0] for act in at.get(value, ()) if act.kind == "wait"] for at in (ours_at, theirs_at)
+        ]
+        return abs(sum(waits[0]) - sum(waits[1]))
+
+    value = max([*ours_at, *theirs_at], key=off_s)
+    pairs = zip(ours_at.get(value, found[-1:]), theirs_at.get(value, wanted[-1:]), strict=False)
+    unlike = ((a, b) for a, b in pairs if (a.kind, a.same) != (b.kind, b.same))
+    return next(unlike, (found[-1], wanted[-1]))
+
+
+def _by_value(acts: list[Act]) -> dict[float, list[Act]]:
+    """What follows each value of a lift, up to the next one and with it; none before its first."""
+    at: dict[float, list[Act]] = {}
+    value = None
+    for act in acts:
+        at.setdefault(value, []).append(act)
+        if act.kind == "lift":
+            value = act.same[0]
+    return at
 
 
 def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, like: _Alike) -> str:
@@ -117,7 +164,8 @@ def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, l
         return f"line {a.line}: {line.strip()[:60]!r} {speeds} {b.at_most[0]:.1f} mm/s"
     if b and a.kind == b.kind == "move" and not a.text and a.place == b.place and a.same != b.same:
         corners = next((line for line in theirs if line.startswith("G6")), "nothing")
-        return f"line {a.line}: corners are cut by up to {a.same[0]:g} mm, brushsvg would write {corners!r}"
+        most = f"by up to {a.same[0]:g} mm" if math.isfinite(a.same[0]) else "as far as the machine likes"
+        return f"line {a.line}: corners are cut {most}, brushsvg would write {corners!r}"
     at = next((n for n, (x, y) in enumerate(zip(line, expected, strict=False)) if x != y), len(line))
     found, wanted = _near(line, at), _near(expected, at)
     instead = f"brushsvg would write {wanted!r}" if b else "nothing should follow"
@@ -191,6 +239,10 @@ class _Alike:
             found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)
         )
 
+    def is_stopped(self, ours: list[Act], theirs: list[Act]) -> bool:
+        """Whether a lift follows where another one does, or none."""
+        return bool(ours) and ours[0].kind == "lift" and not (theirs and self.is_same(ours[0], theirs[0]))
+
     def is_idle(self, act: Act, here: tuple) -> bool:
         """Goes to where the tool is, or nowhere that a brush shows: the tool counts as where it was."""
         if act.kind != "move" or len(act.place) != len(here):
@@ -236,7 +288,7 @@ class _Alike:
         if (about := _ABOUT.fullmatch(found)) and (found[:6] == wanted[:6]):
             value, unit = _about(about)
             least, most = self.length_mm if about[4] else self.time_s
-            return least - 2 * unit <= value <= most + 2 * unit
+            return least - unit <= value <= most + 2 * unit
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
         tilts = 3 if wanted.startswith(("set_tcp", "return", "paper")) else 0
@@ -259,7 +311,8 @@ _ABOUT = re.compile(
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
-    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for two units of the last digit.
+    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for one unit of the last digit
+    less and two more: circles that were written as lines took rests.
 
     A servo's heights in steps make a way longer than it was meant, but not shorter than it is seen from above; and each
     stroke may have lost a step and a value at both ends.

@@ -166,7 +166,7 @@ def _visits(read: Readback, cell: Cell) -> tuple:
 
 def _title(text: str) -> str:
     """As much of a title as stands in a program of any language."""
-    return spelled(text)[: len("paint: ") + NAMED]
+    return spelled(text)[: len("paint: ") + NAMED].rstrip(" ")
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,8 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
             continue
         middle = moved(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
         centres[number] = (*middle.tolist(), step.centre[2])
-        between = list(step.via) or chords(last, ends[number], centres[number])
+        named = moved(back, np.reshape(step.via, (-1, 3)))
+        between = named if len(named) else chords(last, ends[number], centres[number])
         points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
         owner += [known[done:at], np.full(len(between), number)]
         done = at

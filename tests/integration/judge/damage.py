@@ -14,27 +14,35 @@ class Page:
     """A program's lines, by what they are."""
 
     def __init__(self, text: str, dialect: str):
-        self.dialect, self.is_robot = dialect, dialect == "urscript"
+        self.dialect, self.is_robot, self.is_jaka = (
+            dialect,
+            dialect in ("urscript", "jaka"),
+            dialect == "jaka",
+        )
+        self.remark = "#" if self.is_jaka else "  #" if self.is_robot else "("
         self.lines = text.split("\n")[:-1]
         self.comments = [k for k, line in enumerate(self.lines) if self._comment(line)]
         self.code = [k for k, line in enumerate(self.lines) if line.strip() and not self._comment(line)]
         self.header = [k for k in self.comments if k < next(c for c in self.code if self._acts(c))]
         self.titles = [k for k in self.comments if re.search(r"stroke \d|paint: ", self.lines[k])]
-        self.moves = [k for k in self.code if re.match(r"G[0-3] |  move|M3 ", self.lines[k])]
+        self.moves = [
+            k for k in self.code if re.match(r"G[0-3] |  move|M3 |(?:to|via) = |mov[lc]", self.lines[k])
+        ]
 
     def _comment(self, line: str) -> bool:
-        return line.startswith("  #" if self.is_robot else "(")
+        return line.startswith(self.remark)
 
     def _acts(self, k: int) -> bool:
         return not self.lines[k].startswith("def ")
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        ends = [*self.titles[1:], self.code[-1] - self.is_robot]
+        last = self.code[-1] + 1 if self.is_jaka else self.code[-1] - self.is_robot
+        ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))
 
     def made(self, words: str) -> str:
-        return f"  # {words}" if self.is_robot else f"({words})"
+        return f"{self.remark} {words}" if self.is_robot else f"({words})"
 
 
 Damage = Callable[[Page, np.random.Generator], list[str] | None]
@@ -183,6 +191,8 @@ def cut_off(page, random):
 def feed(page, random):
     """Faster or slower; also a robot's acceleration and blend."""
     word = r"(\b[avr]=)(\d+\.\d+)" if page.is_robot else r"(F|G64 P)(\d+\.\d+)"
+    if page.is_jaka:  # speed, acceleration or tolerance
+        word = rf"(mov\w\([\w, ]*, (?:\d+\.\d+, ){{{int(random.integers(3))}}})(\d+\.\d+)"
     if random.random() < 0.2 and not page.is_robot:
         word = r"(P)(\d+\.\d+)"  # a dwell
     lines = [k for k in page.code if re.search(word, page.lines[k])]
@@ -203,10 +213,24 @@ def word_lost(page, random):
     return _with(page, k, " ".join(words[:at] + words[at + 1 :]))
 
 
+JAKA_WORDS = (
+    ("movl", "movj"),
+    ("movc(via, to", "movl(to"),
+    ("to = ", "via = "),
+    ("via = ", "to = "),
+    ("(to, 0", "(to, 1"),
+    ("(up, 1", "(up, 0"),
+    ("here[2]", "here[1]"),
+    (" - here", " + here"),
+)
+
+
 def word_changed(page, random):
     """Letters of words: one axis or code for another."""
     pairs = (
-        (
+        JAKA_WORDS
+        if page.is_jaka
+        else (
             ("movel", "movep"),
             ("movep", "movel"),
             ("movel", "movej"),
@@ -244,6 +268,14 @@ MODES = {
 
 def mode(page, random):
     """Units, absolute places, planes, the path's mode: another, or none."""
+    if page.is_jaka:
+        pairs = (
+            ("set_tool(", "set_tol("),
+            ("tool = ", "tol = "),
+            ("frame_id(0", "frame_id(1"),
+            ("up = ", "u = "),
+        )
+        return _word(page, random, *_pick(random, pairs))
     if page.is_robot:
         old, new = _pick(
             random, (("set_tcp(", "set_tpc("), ("pose_trans(paper", "pose_trans(here"), ("paper = ", "p = "))
@@ -264,6 +296,11 @@ def _word(page, random, old: str, new: str):
 
 def offset(page, random):
     """A line more that shifts, scales or turns all that follows; or a robot's paper and tool."""
+    if page.is_jaka:
+        k = _pick(random, [k for k in page.code if re.match(r"tool =|to =|rise =", page.lines[k])])
+        return _at_number(
+            page, random, [k], lambda n: f"{float(n) + random.choice((-100, -1, 1, 0.2, 90)):.3f}"
+        )
     if page.is_robot:
         k = _pick(
             random, [k for k in page.code if re.search(r"set_tcp|  paper =|return pose_trans", page.lines[k])]
@@ -295,6 +332,9 @@ def _more(page, random, line: str) -> list[str]:
 
 
 def m_code(page, random):
+    if page.is_jaka:
+        lines = "exit()", "sleep(0.500)", "set_digital_output(0, 0, 1, 1)", "pause()", 'log_message(1, "x")'
+        return _more(page, random, _pick(random, lines))
     if page.is_robot:
         return _more(
             page,
@@ -328,7 +368,7 @@ def title(page, random):
     """A letter of a section's title."""
     k = _pick(random, page.titles)
     line = page.lines[k]
-    at = int(random.integers(4 if page.is_robot else 1, len(line) - 1))
+    at = int(random.integers(len(page.remark) + page.is_robot, len(line) - 1))
     return _with(page, k, line[:at] + _pick(random, "abcxyz0123456789") + line[at + 1 :])
 
 
@@ -347,7 +387,7 @@ WORDS = (
 def remark(page, random):
     """A comment more, of somebody's own."""
     at = int(random.integers(len(page.lines)))
-    if page.is_robot:
+    if page.dialect == "urscript":
         at = max(at, 1)
     return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
 
@@ -381,7 +421,7 @@ def acting(page, random):
         k = _pick(random, page.comments)
         line = page.lines[k]
         if page.is_robot:
-            return _with(page, k, line[2:].replace("#", "", 1) or "x")
+            return _with(page, k, line.lstrip().replace("#", "", 1) or "x")
         if kind == "linuxcnc":
             return _with(page, k, f"({words})")
         at = int(random.integers(1, len(line)))
@@ -398,7 +438,9 @@ def acting(page, random):
     if which < 0.75:
         k = _pick(random, page.comments)
         line = page.lines[k]
-        return _with(page, k, line[:-1] if not page.is_robot else line.replace("  #", "  ", 1))
+        return _with(page, k, line[:-1] if not page.is_robot else line.replace("#", "", 1))
+    if page.is_jaka:
+        return _more(page, random, f'log_message(1, "{words[:3]}")')
     return _more(page, random, page.made(words) if not page.is_robot else f'  textmsg("{words[:3]}")')
 
 

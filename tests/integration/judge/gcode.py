@@ -325,7 +325,7 @@ class _Controller:
         if path == 64.0:
             if values.get("P", 0) < 0:
                 raise RefusedError(f"line {self.number}: a negative tolerance")
-            self.cut_mm = values["P"] * self.mm if "P" in values else math.inf
+            self.cut_mm = values.get("P", 0) * self.mm or math.inf  # 0 is what rs274 makes of none
             used |= {"P", "Q"} & set(values)
         elif path is not None:
             self.cut_mm = 0.0

@@ -12,6 +12,7 @@ from brushsvg.machine.cell_file import find_cell
 from .works import CELLS
 
 SHEET = (80.0, 60.0)
+ROBOTS = ("urscript", "jaka")
 
 
 def random_svg(random) -> str:
@@ -71,17 +72,15 @@ def random_cell(random, dialect: str):
             )
         cell = replace(cell, servo=_servo(random, lowest, safe))
     elif random.random() < 0.8:
-        leans = random.uniform(-1, 1, 2) * (
-            0 if random.random() < 0.4 else 1.3 if dialect != "urscript" else 9
-        )
+        leans = random.uniform(-1, 1, 2) * (0 if random.random() < 0.4 else 9 if dialect in ROBOTS else 1.3)
         paper = Paper(
             tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360)))
         )
     if random.random() < 0.25 and dialect != "grbl-servo":
         paper = _about_the_robot(random)
     cell = replace(cell, paper=paper)
-    if random.random() < 0.6 and dialect in ("linuxcnc", "urscript"):
-        radius = float(random.uniform(0.2, 5)) if dialect == "urscript" else 0.0
+    if random.random() < 0.6 and dialect in ("linuxcnc", *ROBOTS):
+        radius = float(random.uniform(0.2, 5)) if dialect in ROBOTS else 0.0
         cell = replace(cell, blending=Blending(float(random.choice((0.0, 0.005, 0.01, 0.05))), radius))
     cell = _with_space(random, cell)
     if random.random() < 0.3:

@@ -15,6 +15,7 @@ import numpy as np
 
 from . import places
 from .gcode import run_gcode
+from .jaka import run_jaka
 from .moves import Leg, Run, arc_points
 from .urscript import run_urscript
 
@@ -108,10 +109,8 @@ class Job:
         return tuple(places.moved(self.paper, low)[0])
 
     def interpret(self, text: str) -> Run:
-        if self.language == "urscript":
-            return run_urscript(
-                text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
-            )
+        if robot := {"urscript": run_urscript, "jaka": run_jaka}.get(self.language):
+            return robot(text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell))
         dialect = "linuxcnc" if self.language == "linuxcnc" else "grbl"
         servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None
         return run_gcode(text, dialect, self.start, servo, self.cell["speeds"]["travel_mm_s"])

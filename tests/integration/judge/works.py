@@ -20,6 +20,7 @@ CELLS = {
     "grbl": ("grbl-3axis", ".gcode"),
     "grbl-servo": ("grbl-servo", ".nc"),
     "urscript": ("ur5e", ".script"),
+    "jaka": ("jaka-zu3", ".jks"),
 }
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 

@@ -13,6 +13,7 @@ import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -120,12 +121,12 @@ class _Unit:
     strokes: tuple[_Drawn, ...]
     boxes_mm: tuple[tuple[float, float, float, float], ...]
 
-    @property
+    @cached_property
     def box_mm(self) -> tuple[float, float, float, float]:
         boxes = np.array(self.boxes_mm)
         return (*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
 
-    @property
+    @cached_property
     def size_mm(self) -> tuple[float, float]:
         x0, y0, x1, y1 = self.box_mm
         return max(x1 - x0, 3 * LETTER_MM) + GAP_MM, y1 - y0 + GAP_MM + LABEL_MM
@@ -158,7 +159,7 @@ def chart(
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
         units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
         # the first choice settles where markers stand at the sides; strokes matter more than these two
-        for tried in (beside,) if best is not None else (*_besides(sheet_mm, side), None):
+        for tried in (beside,) if best is not None else (*_marker_gaps(sheet_mm, side), None):
             placed, used = _packed(units, room[0], side, room[1], tried)
             if used <= room[1]:
                 beside = tried
@@ -183,7 +184,7 @@ def _side(sheet_mm: tuple[float, float]) -> float:
     return min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
 
 
-def _besides(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
+def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
     """From where to where, down from the sheet's inner edge, markers may stand near the middle of its left and right
     side."""
     if sheet_mm[1] >= BETWEEN * side:
@@ -341,7 +342,7 @@ def _packed_so(units: list[_Unit], width: float, side: float, beside: tuple[floa
         wide, tall = math.ceil(unit.size_mm[0]), unit.size_mm[1]
         if wide > len(taken):
             return [], math.inf
-        tops = np.lib.stride_tricks.sliding_window_view(taken, wide).max(axis=1)
+        tops = _highest(taken, wide)
         if beside:
             lefts = np.arange(len(tops))
             at_edge = (lefts < columns) | (lefts + wide > len(taken) - columns)
@@ -350,6 +351,15 @@ def _packed_so(units: list[_Unit], width: float, side: float, beside: tuple[floa
         placed.append((unit, float(left), float(tops[left])))
         taken[left : left + wide] = tops[left] + tall
     return placed, float(taken.max())
+
+
+def _highest(taken: np.ndarray, wide: int) -> np.ndarray:
+    """The greatest of each so many values in a row."""
+    tops, reached = taken, 1
+    while 2 * reached <= wide:
+        tops, reached = np.maximum(tops[:-reached], tops[reached:]), 2 * reached
+    rest = wide - reached
+    return np.maximum(tops[: len(tops) - rest], tops[rest:])
 
 
 def _top_middle(side: float) -> float:

@@ -21,8 +21,8 @@ LINE_MM = 0.3  # of the bar
 INCH_MM = 25.4
 
 
-def chart_page(chart: Chart) -> str:
-    """An SVG to be printed at 100 %."""
+def chart_page(chart: Chart, more=()) -> str:
+    """An SVG to be printed at 100 %. more: further black rings."""
     width, height = chart.plan.sheet_mm
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
@@ -36,11 +36,12 @@ def chart_page(chart: Chart) -> str:
     if chart.bar:
         rings = bar_rings(chart.bar)
         lines.append(f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK}" d="{_path(rings, height)}"/>')
+    lines += [f'<path fill="{INK}" d="{_path([ring], height)}"/>' for ring in more]
     lines += [_label(label, height) for label in chart.labels]
     return "\n".join([*lines, "</svg>", ""])
 
 
-def chart_pdf(chart: Chart) -> bytes:
+def chart_pdf(chart: Chart, more=()) -> bytes:
     """The same page as a PDF of its size. Error where matplotlib is missing."""
     try:
         import matplotlib
@@ -55,6 +56,7 @@ def chart_pdf(chart: Chart) -> bytes:
     axes.set_axis_off()
     shapes = [marker_rings(marker, chart.dictionary) for marker in chart.markers]
     shapes += [bar_rings(chart.bar)] if chart.bar else []
+    shapes += [[ring] for ring in more]
     for rings in shapes:
         closed = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
         axes.add_patch(PathPatch(Path.make_compound_path(*closed), facecolor=INK, linewidth=0))

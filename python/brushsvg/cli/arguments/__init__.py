@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 
 from ..console import say, tell
 from . import brushes, drawings, machines
@@ -37,6 +38,7 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+@functools.cache  # the flags of all commands take longer than what a short one does
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="brushsvg", description="Vector lettering to brush strokes that a robot can paint.")
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
@@ -61,5 +63,6 @@ def _parser() -> argparse.ArgumentParser:
     brushes.add_scan(commands)
     brushes.add_calibrate(commands)
     brushes.add_brush(commands)
+    drawings.add_compare(commands)
     machines.add_install_plugin(commands)
     return parser

@@ -5,7 +5,16 @@ from __future__ import annotations
 from ...drawing import READERS
 from . import values
 from .flags import add_choices, add_input, add_job, add_layout, add_quiet, plans_and_programs
-from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files, suffix_of
+from .operands import (
+    DRAWINGS,
+    PHOTOS,
+    PICTURES,
+    PROGRAMS,
+    check_drawing,
+    check_extension,
+    check_files,
+    suffix_of,
+)
 
 
 def add_convert(commands) -> None:
@@ -15,6 +24,9 @@ def add_convert(commands) -> None:
     add_choices(convert)
     add_job(convert)
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
+    convert.add_argument(
+        "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
+    )
     convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
     add_quiet(convert)
     convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
@@ -25,9 +37,41 @@ def _check_convert(args) -> None:
     written = [
         (args.output, (".json", *PROGRAMS)),
         (args.preview, PICTURES),
+        (args.page, (".pdf", ".svg")),
         (args.report, (".txt", ".json")),
     ]
     check_files(args, [(args.input, DRAWINGS), (args.brush, None)], written)
+
+
+def add_compare(commands) -> None:
+    compare = commands.add_parser(
+        "compare", help="hold photographs of a painted job against what was wanted and predicted"
+    )
+    compare.add_argument(
+        "photos",
+        metavar="PHOTO",
+        nargs="+",
+        help=f"of the painted page of `convert --page` ({' '.join(PHOTOS)})",
+    )
+    add_input(compare)
+    add_choices(compare)
+    compare.add_argument("-o", metavar="FILE", dest="output", help="also write the figures (.json .txt)")
+    compare.add_argument("--picture", metavar="FILE", help="also draw paint, wanted and predicted (.png)")
+    compare.add_argument(
+        "--at-least",
+        metavar="OVERLAP",
+        type=values.share,
+        help="exit with 1 where the paint overlaps by less with what was wanted",
+    )
+    compare.add_argument("--json", action="store_true", help="as JSON")
+    add_quiet(compare)
+    compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
+
+
+def _check_compare(args) -> None:
+    check_drawing(args)
+    read = [*((path, PHOTOS) for path in args.photos), (args.input, DRAWINGS), (args.brush, None)]
+    check_files(args, read, [(args.output, (".json", ".txt")), (args.picture, (".png",))])
 
 
 def add_predict(commands) -> None:

@@ -57,6 +57,16 @@ def count(text: str) -> int:
     return int(text)
 
 
+def share(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is outside the range [0, 1]")
+    return value
+
+
 def width_at(text: str) -> tuple[float, float]:
     depth, equals, at_depth = text.partition("=")
     if not equals:

@@ -8,6 +8,7 @@ from .calibrate import calibrate_file
 from .cell import cell_check, cell_list, cell_new, cell_show
 from .chart import chart_file
 from .check import check_file
+from .compare import compare_files
 from .convert import convert_file
 from .plugin import install_plugin
 from .report import report_file
@@ -31,6 +32,7 @@ __all__ = [
     "cell_show",
     "chart_file",
     "check_file",
+    "compare_files",
     "convert_file",
     "height_file",
     "import_file",

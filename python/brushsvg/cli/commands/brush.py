@@ -25,7 +25,7 @@ def brush_show(args) -> None:
 def brush_check(args) -> None:
     with about(args.input):
         brush = find_brush(args.input)
-        odd = [Notice(*each) for each in remarks(brush)]
+        odd = remarks(brush)
     warn(args.input, odd)
     tell(f"{args.input}: brush {brush.name} can be used\n")
 

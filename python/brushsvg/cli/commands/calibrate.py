@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 
 from ..._core import remarks, write_brush
-from ...errors import Notice
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
 from .outputs import check_places, suffix_of, write
@@ -36,12 +35,14 @@ def calibrate_file(args) -> None:
         more = ""
         if read:
             from ...calibration.chart.photograph import told
+            from ...calibration.mark_report import strays_told
             from ...calibration.photo_report import read_picture
 
+            warn(args.photos[0], strays_told(made))
             more = told(read)
             if args.picture:
                 files[args.picture] = read_picture(read, made)
-    warn(args.output, [Notice(*each) for each in remarks(made.brush)])
+    warn(args.output, remarks(made.brush))
     write(args, files, more=more)
     tell(report(made))
 
@@ -71,4 +72,5 @@ def _from_photo(read, name: str):
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    return calibrate_marks(painted, name, edge_mm=edge_mm(read)), report, report_picture
+    made = calibrate_marks(painted, name, edge_mm=edge_mm(read), leave_out_strays=True)
+    return made, report, report_picture

@@ -8,7 +8,7 @@ from ...machine import preflight, writer
 from ...machine.paint_reload import in_loads
 from ...machine.program import Job
 from ...pipeline import preparation
-from ...text_summary import folded
+from ...text_summary import summarized
 from ..console import RefusedError, about, stage, tell
 from .options import brush_of, exact_cell, settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
@@ -37,7 +37,7 @@ def chart_file(args) -> None:
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.look(loads, brush, marks, painting, tolerance_mm, Job(args.z_offset))
         if walk.problems:
-            raise RefusedError(args.output, folded(walk.problems))
+            raise RefusedError(args.output, summarized(walk.problems))
         title = f"calibration chart of brush {brush.name}"
         files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
     if args.page:

@@ -15,7 +15,7 @@ from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
 from ...machine.paint_reload import in_loads
 from ...pipeline import outputs, prediction, preparation
-from ...text_summary import folded
+from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
 from .options import brush_of, exact_cell, typed
@@ -70,7 +70,8 @@ def check_file(args) -> None:
         again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
         least_s = None
         if again and speeds is None:  # feeds may have been lowered since its time was told
-            fastest = [again.touching_mm_s] * len(ran.plan.passes)
+            usual_mm_s = min(preparation.Options.speed_mm_s, again.touching_mm_s)
+            fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in ran.plan.passes]
             least_s = duration_s(
                 against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
             )
@@ -124,7 +125,7 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
             looked = setup_programs.look_at_border(
                 text, read, made, brush, cell, work.plan.sheet_mm if work else made.sheet_mm, z_offset_mm
             )
-            problems = looked.problems + (_beside(made, work) if work else [])
+            problems = looked.problems + (_border_notices(made, work) if work else [])
             does = f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
         else:
             looked = setup_programs.look_at_heights(text, read, made, brush, cell)
@@ -140,7 +141,7 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
     _refuse_or_allow(args, problems, work is None and made.border_mm)
 
 
-def _beside(made, work: preparation.Work) -> list[Notice]:
+def _border_notices(made, work: preparation.Work) -> list[Notice]:
     """A sentence where an air run does not go round what a drawing's paint needs."""
     from ...machine.setup_programs import around
 
@@ -161,7 +162,7 @@ STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
 
 def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
     if problems:
-        raise RefusedError(args.program, folded(problems))
+        raise RefusedError(args.program, summarized(problems))
     if not args.json:
         known = "; it was not compared with a drawing" if is_alone else ""
         tell(f"{args.program}: nothing forbids to run it{known}\n")

@@ -9,7 +9,7 @@ from ...machine import preflight, writer
 from ...machine.paint_reload import in_loads, too_long
 from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
-from ...text_summary import folded
+from ...text_summary import summarized
 from ..console import RefusedError, about, stage, warn
 from .options import settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
@@ -17,7 +17,7 @@ from .prepare import prepare, seconds_written
 
 
 def convert_file(args) -> None:
-    check_places(args.output, args.preview, args.report)
+    check_places(args.output, args.preview, args.report, args.page)
     work = prepare(settled(typed(args), args.input))
     suffix, brush, tolerance_mm = suffix_of(args.output), work.brush, work.options.tolerance_mm
     is_program = suffix != ".json"
@@ -26,6 +26,7 @@ def convert_file(args) -> None:
     warn(args.input, [notice for notice in work.notices if notice not in damaged])
     job = Job(args.z_offset, args.from_stroke if is_program else 1)
     notes = outputs.notes(work)
+    page = job_page_of(args.page, work) if args.page else None
     if args.order == "nearest":
         work, notes = preparation.nearest_first(work), (*notes, "order: nearest first")
     if is_program:
@@ -37,12 +38,14 @@ def convert_file(args) -> None:
         marks = prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
         loads = in_loads(work.plan, brush, cell)
         walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job)
-        problems = folded([*walk.problems, *damaged])
+        problems = summarized([*walk.problems, *damaged])
         if damaged:
             problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
         if problems:
             raise RefusedError(args.input, problems)
         files = {args.output: writer.encoded(suffix, work.plan, walk, brush, work.title, notes)}
+        if page:
+            files[args.page] = page
         if args.preview:
             files[args.preview] = outputs.picture(suffix_of(args.preview), work, marks)
         overlap = None
@@ -56,3 +59,14 @@ def convert_file(args) -> None:
     warn_of_example(args, cell)
     seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
     write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap)
+
+
+def job_page_of(path: str, work) -> bytes:
+    """The page that is printed for a job, before strokes change their order."""
+    from ...calibration.chart.page import chart_page, chart_pdf
+    from ...painted.job_page import job_page
+
+    page = job_page(work.plan, work.title)
+    if suffix_of(path) == ".pdf":
+        return chart_pdf(page.printed, page.ticks)
+    return chart_page(page.printed, page.ticks).encode()

@@ -7,7 +7,7 @@ from ...drawing import read_drawing
 from ...drawing.layout import arrange
 from ...evaluation import report
 from ...pipeline import comparison, outputs, preparation
-from ...text_summary import folded
+from ...text_summary import summarized
 from ..console import RefusedError, about, stage, tell
 from .options import layout_of, options_of, reading_of, settled, typed
 from .outputs import check_places, suffix_of, write
@@ -29,14 +29,14 @@ def report_file(args) -> None:
         )
         text = report.as_text(".json" if args.json else ".txt", figures)
         if args.preview:
-            picture = outputs.misses_picture(suffix_of(args.preview), work, marks)
+            picture = outputs.overlap_picture(suffix_of(args.preview), work, marks)
             write(args, {args.preview: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
     if work.plan.passes or args.json:
         tell(text)
     elif advice:
         tell(advice + "\n")
     if work.refused:
-        raise RefusedError(args.input, folded(work.refused))
+        raise RefusedError(args.input, summarized(work.refused))
 
 
 def _all_brushes(args) -> None:

@@ -55,7 +55,7 @@ def _read(document: Document, options: ReadOptions) -> Design:
     root = _root_of(document)
     page = read_page(root.attrib, options.sheet_mm)
     chosen = selected(root, options.select) if options.select else None
-    walk = Walk(root, page, chosen, _beside(document, root, page))
+    walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
     walk.run()
     if not walk.elements:
         raise nothing_to_paint(walk.notices, walk.left_out)
@@ -64,7 +64,7 @@ def _read(document: Document, options: ReadOptions) -> Design:
     return Design(page.sheet_mm, tuple(walk.elements), tuple(walk.notices), name, walk.layers)
 
 
-def _beside(document: Document, root: ET.Element, page: Page) -> list[Notice]:
+def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
     """What is to be told of what stands beside the tree."""
     notices = []
     if "xml-stylesheet" in document.instructions:

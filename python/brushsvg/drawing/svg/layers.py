@@ -28,7 +28,7 @@ def layer_names(root: ET.Element) -> dict[ET.Element, str]:
         for node in root.iter()
         if node.get(INKSCAPE + "groupmode") == "layer"
     }
-    own = own or _by_habit(root)
+    own = own or _by_convention(root)
     names: dict[ET.Element, str] = {}
     waiting = [("", 0, iter(root))] if own else []
     while waiting:
@@ -46,7 +46,7 @@ def layer_names(root: ET.Element) -> dict[ET.Element, str]:
     return names
 
 
-def _by_habit(root: ET.Element) -> dict[ET.Element, str]:
+def _by_convention(root: ET.Element) -> dict[ET.Element, str]:
     names: dict[ET.Element, str] = {}
     inside: ET.Element | None = root
     while inside is not None:

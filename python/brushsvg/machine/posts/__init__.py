@@ -47,10 +47,17 @@ def _urscript(program: Program) -> Iterator[str]:
     return urscript(program)
 
 
+def _jaka(program: Program) -> Iterator[str]:
+    from .jaka import jaka
+
+    return jaka(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
     "grbl": Post("G-code for grbl", GCODE, _grbl),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo),
     "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, True),
+    "jaka": Post("JAKA script", (".jks",), _jaka, circles_by_pose=True),
 }

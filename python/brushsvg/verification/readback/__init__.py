@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ...errors import Error
 
 if TYPE_CHECKING:
@@ -18,8 +20,7 @@ class Step(NamedTuple):
 
     line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
     blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
-    frame of the program, which is the paper's where there is one; wait_s: what is waited for behind it. What a servo
-    does alone takes no time but that.
+    frame of the program; wait_s: what is waited for behind it. What a servo does alone takes no time but that.
     """
 
     line: int
@@ -92,6 +93,28 @@ class Readback:
             self.acts.append(Act(number, "text", f"({text})"))
 
 
+def circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_mm_s: float) -> None:
+    """A step from where the tool is through a point to a point (3,): its centre is as far from all of them."""
+    steps = out.section().steps
+    if not steps:
+        raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
+    start = np.array([steps[-1].x, steps[-1].y])
+    to_via, to_end = via[:2] - start, end[:2] - start
+    cross = to_via[0] * to_end[1] - to_via[1] * to_end[0]
+    if abs(cross) < 1e-9:
+        raise Error(f"line {number}: the three points of the circle lie on one line", code="line-incomplete")
+    square_via, square_end = to_via @ to_via, to_end @ to_end
+    centre = start + np.array(
+        [
+            to_end[1] * square_via - to_via[1] * square_end,
+            to_via[0] * square_end - to_end[0] * square_via,
+        ]
+    ) / (2 * cross)
+    turn = 1 if cross > 0 else -1
+    place = (float(centre[0]), float(centre[1]), turn)
+    steps.append(Step(number, False, *end.tolist(), speed_mm_s, 0.0, place, (via,)))
+
+
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     """What a program of the cell's language does. Error with the line for what brushsvg would not have written."""
     from ...machine.posts import POSTS
@@ -123,6 +146,12 @@ def _gcode(text: str, cell: Cell) -> Readback:
     return read_gcode(text, cell)
 
 
+def _jaka(text: str, cell: Cell) -> Readback:
+    from .jaka import read_jaka
+
+    return read_jaka(text, cell)
+
+
 def _urscript(text: str, cell: Cell) -> Readback:
     from .urscript import read_urscript
 
@@ -134,4 +163,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "grbl": _gcode,
     "grbl-servo": _gcode,
     "urscript": _urscript,
+    "jaka": _jaka,
 }

@@ -12,8 +12,10 @@ from ...machine.posts.gcode_servo import SERVO_END, height_at
 from . import Act, Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
-_CODE = re.compile(r"(?:[A-Z]-?(?:\d+\.?\d*|\.\d+)(?: |$))+")
-_WORD = re.compile(r"([A-Z])(-?(?:\d+\.?\d*|\.\d+))")
+_VALUE = r"(?:[GM]-?|[A-FH-LN-Z][+-]?)(?:\d+\.?\d*|\.\d+)"
+_CODE = re.compile(rf"(?:{_VALUE}(?: +|$))+")
+_WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
+_END = re.compile(r"M(?:0?2|30)")
 WAYS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF"}  # and the words that they may have
 INSTEAD = {
     "G18": ["G17"],
@@ -79,7 +81,11 @@ class _Reader:
 
     def read(self, text: str) -> Readback:
         for number, line in enumerate(text.splitlines(), 1):
+            self._count(number, line)
+            line = line.rstrip(" ")
             if line and self.ended:
+                if _END.fullmatch(line) and not self.servo:
+                    continue  # ends what has ended
                 raise Error(
                     f"line {number}: {line[:40]!r} stands behind the end of the program", code="line-unread"
                 )
@@ -100,7 +106,8 @@ class _Reader:
             )
         return self.out
 
-    def _line(self, number: int, line: str) -> None:
+    def _count(self, number: int, line: str) -> None:
+        """Error for a line that the controller does not read whole."""
         # grbl drops blanks before it counts
         size = len(line) if self.longest == LONGEST else len(line.replace(" ", ""))
         if size > self.longest:
@@ -108,6 +115,8 @@ class _Reader:
                 f"line {number} has {size} letters, the controller reads no more than {self.longest}",
                 code="line-unread",
             )
+
+    def _line(self, number: int, line: str) -> None:
         if not _CODE.fullmatch(line):
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
@@ -152,7 +161,7 @@ class _Reader:
         if first in WAYS or not first:
             self._move(number, line, first, values)
         elif first == "G64":
-            self.out.joint_mm = values.get("P", math.inf)
+            self.out.joint_mm = values.get("P") or math.inf  # none and 0 alike leave it to the machine
         elif first == "M3":
             self._lift(number, values)
         elif first == "G4":

@@ -103,6 +103,6 @@ def _damaged(word: str, said: str) -> Error:
 
 def _header_of(text: str) -> dict[str, str]:
     """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
-    lines = (re.fullmatch(r"\((\w+): (.*)\)|  # (\w+): (.*)", line) for line in text.splitlines()[:100])
-    header = {found[1] or found[3]: found[2] or found[4] for found in lines if found}
-    return {word: rest for word, rest in header.items() if rest is not None}
+    told = re.compile(r"\((\w+): (.*)\)| *# (\w+):(?: (.*))?")
+    lines = (told.fullmatch(line.rstrip(" ")) for line in text.splitlines()[:100])
+    return {found[1] or found[3]: found[2] or found[4] or "" for found in lines if found}

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ...errors import Error
-from . import Act, Readback, Step
+from . import Act, Readback, Step, circle
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
@@ -31,13 +31,11 @@ _OTHER = re.compile(  # the frame around the moves
 def read_urscript(text: str) -> Readback:
     """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
     out = Readback(in_paper_frame=True)
-    lines = [
-        (number, line.lstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
-    ]
+    lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     for number, line in lines:
         if line.startswith("# "):
             before = len(out.acts)
-            out.comment(number, line[2:])
+            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
             if 0 < before < len(out.acts) and out.acts[before - 1].text.startswith("here ="):
                 out.acts.insert(
                     before - 1, out.acts.pop()
@@ -52,7 +50,7 @@ def read_urscript(text: str) -> Readback:
         elif found := _CIRCLE.fullmatch(line):
             *points, a, v = (float(value) * 1e3 for value in found.groups())
             _is_run(number, line, a, v)
-            _circle(out, number, np.array([*points, v]))
+            circle(out, number, np.array(points[:3]), np.array(points[3:]), v)
             out.acts.append(Act(number, "circle", "", tuple(points[3:]), (v, a), tuple(points[:3])))
         elif found := _SLEEP.fullmatch(line):
             out.acts.append(Act(number, "wait", same=(float(found[1]),)))
@@ -79,25 +77,3 @@ def read_urscript(text: str) -> Readback:
 def _is_run(number: int, line: str, acceleration: float, speed: float) -> None:
     if not (acceleration > 0 and speed > 0):
         raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration", code="line-incomplete")
-
-
-def _circle(out: Readback, number: int, values: np.ndarray) -> None:
-    """Through a point to a point: its centre is as far from both as from where the tool is."""
-    steps = out.section().steps
-    if not steps:
-        raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
-    via, end, speed = values[:3], values[3:6], values[6]
-    start = np.array([steps[-1].x, steps[-1].y])
-    to_via, to_end = via[:2] - start, end[:2] - start
-    cross = to_via[0] * to_end[1] - to_via[1] * to_end[0]
-    if abs(cross) < 1e-9:
-        raise Error(f"line {number}: the three points of the circle lie on one line", code="line-incomplete")
-    square_via, square_end = to_via @ to_via, to_end @ to_end
-    centre = start + np.array(
-        [
-            to_end[1] * square_via - to_via[1] * square_end,
-            to_via[0] * square_end - to_end[0] * square_via,
-        ]
-    ) / (2 * cross)
-    turn = 1 if cross > 0 else -1
-    steps.append(Step(number, False, *end, speed, 0.0, (float(centre[0]), float(centre[1]), turn), (via,)))

@@ -1,0 +1,55 @@
+"""brushsvg compare: photographs of a painted job held against what was wanted and predicted."""
+
+from __future__ import annotations
+
+from ...errors import Error
+from ...evaluation import report as figures
+from ...files import read_bytes
+from ...pipeline import prediction
+from ..console import RefusedError, about, stage, tell, warn
+from .options import settled, typed
+from .outputs import check_places, suffix_of, write
+from .prepare import prepare
+
+
+def compare_files(args) -> None:
+    from ...painted.comparison import Wanted, compare_photos
+    from ...painted.job_page import job_page
+    from ...painted.picture import comparison_png
+    from ...painted.report import as_json, as_text
+
+    check_places(args.output, args.picture)
+    work = prepare(settled(typed(args), args.input))
+    warn(args.input, work.notices)
+    with about(args.input):
+        marks = prediction.predict(work, True, stage)
+        page = job_page(work.plan, work.title)
+        wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
+        strokes = [
+            Wanted(each.stroke, wanted.get(each.stroke), [ring for ring in each.outline_mm])
+            for each in marks.passes
+        ]
+    with about(args.photos[0]):
+        stage("reading the photographs")
+        found = compare_photos(page, strokes, [(path, read_bytes(path)) for path in args.photos])
+    warn(args.photos[0], list(found.notices))
+    title = work.title or "untitled"
+    files = {}
+    if args.output:
+        make = as_json if suffix_of(args.output) == ".json" else as_text
+        files[args.output] = make(title, found)
+    if args.picture:
+        files[args.picture] = comparison_png(page, strokes, found, title)
+    if files:
+        write(args, files)
+    tell(as_json(title, found) if args.json else as_text(title, found))
+    reached = found.overlap_wanted if found.overlap_wanted is not None else found.overlap_predicted
+    if args.at_least is not None and reached < args.at_least:
+        raise RefusedError(
+            args.photos[0],
+            [
+                Error(
+                    f"the overlap {reached:.3f} is below {args.at_least:g}", value=reached, code="overlap-low"
+                ).notice()
+            ],
+        )

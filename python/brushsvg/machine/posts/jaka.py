@@ -1,0 +1,100 @@
+"""Moves -> JAKA script (.jks) for JAKA robots: millimetres, degrees, points in the robot's own frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..cell import Blending, robot_from_paper
+from ..frames import rotation, rotation_deg
+from ..motion import Move, Program, Wait, via
+from .text import number, plain, rows
+
+LINE_LIMIT = 100
+DEGREE_DECIMALS = 4
+SPEED_DECIMALS = 3
+RISE_MM_S = 50.0
+JAKA_END = "end: the brush is held up"
+
+
+def jaka(program: Program) -> Iterator[str]:
+    """A program for the robot's base frame. A move takes a variable that holds the pose, so each is two lines.
+
+    The last number of a move is how exactly its end is met: 0 for exactly, else the next move may begin before. It is
+    never more than the blending's tolerance, so that no corner is cut by more whether the controller takes it as the
+    way that is left or as how far the path may pass the corner.
+    """
+    cell, decimals = program.cell, program.cell.decimals
+    yield "".join(map(comment, program.header))
+    yield "set_user_frame_id(0)\n"
+    yield f"tool = [{_numbers(cell.tool.tcp_mm, decimals)}, {_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
+    yield "set_tool(tool)\n"
+    turned = _numbers(turned_deg(cell), DEGREE_DECIMALS)
+    acceleration = number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
+    risen = False
+    for section in program.sections():
+        yield "\n" + comment(section.title)
+        for step in section.steps:
+            if isinstance(step, Wait):
+                yield _wait(step)
+                continue
+            if not risen:  # straight up before going anywhere
+                yield _rise(program.rise_mm, step.speed_mm_s, acceleration, decimals)
+                risen = True
+            yield from _lines(step, turned, acceleration, cell.blending, decimals)
+    yield "\n" + comment(JAKA_END)
+
+
+def turned_deg(cell) -> np.ndarray:
+    """(3,) the tool in the robot's frame, its z into the paper: turned about the fixed x, then y, then z axis."""
+    down = np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, cell.tool.spin_deg))
+    return rotation_deg(robot_from_paper(cell)[:3, :3] @ down)
+
+
+def comment(text: str) -> str:
+    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+
+
+def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
+    """By what is missing, along the base's z axis, turned as the tool is."""
+    height = number(height_mm, decimals)
+    return (
+        "here = get_atl_tcp_pose()\n"
+        f"if(here[2] < {height}):\n"
+        f"  rise = ({height} - here[2])\n"
+        "  up = [0, 0, rise, 0, 0, 0]\n"
+        f"  movl(up, 1, {_speed(min(speed_mm_s, RISE_MM_S))}, {acceleration}, 0)\n"
+        "end\n"
+    )
+
+
+def _lines(move: Move, turned: str, acceleration: str, blending: Blending, decimals: int) -> Iterator[str]:
+    speed = _speed(move.speed_mm_s)
+    pose = f"[%.{decimals}f, %.{decimals}f, %.{decimals}f, {turned}]"
+    if move.arc is not None:
+        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        pattern = f"via = {pose}\nto = {pose}\nmovc(via, to, 0, {speed}, {acceleration}, 0)"
+        yield from rows(pattern, values, decimals)
+        return
+    cut_mm = np.zeros(len(move.points_mm))
+    if move.blends_mm is not None:
+        cut_mm[:-1] = np.minimum(move.blends_mm[:-1], blending.tolerance_mm)
+    values = np.column_stack([move.points_mm, np.floor(cut_mm * 10.0**decimals) / 10.0**decimals])
+    pattern = f"to = {pose}\nmovl(to, 0, {speed}, {acceleration}, %.{decimals}f)"
+    yield from rows(pattern, values, decimals)
+
+
+def _wait(step: Wait) -> str:
+    if step.seconds is None:
+        return comment(f"stop: {step.message}") + "pause()\n"
+    return f"sleep({number(step.seconds, 3)})\n"
+
+
+def _speed(speed_mm_s: float) -> str:
+    unit = 10.0**SPEED_DECIMALS
+    return number(max(np.floor(speed_mm_s * unit + 1e-6), 1) / unit, SPEED_DECIMALS)
+
+
+def _numbers(values, decimals: int) -> str:
+    return ", ".join(number(value, decimals) for value in values)

@@ -1,0 +1,97 @@
+"""The page that a job is painted on: markers in a frame round its sheet, ticks at the sheet's corners for the robot."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from ..calibration.chart.layout import (
+    BETWEEN,
+    EDGE_MM,
+    GROUP,
+    GROUPS,
+    MARKERS,
+    QUIET,
+    Bar,
+    Chart,
+    Label,
+    Marker,
+    chart_id,
+)
+
+TICK_MM = 4.0
+LINE_MM = 0.3
+
+
+@dataclass(frozen=True)
+class JobPage:
+    """printed: the page, in its own frame; frame_mm: how far its lower left corner lies left of the sheet's and below
+    it; ticks: rings (4, 2), in the page's frame."""
+
+    printed: Chart
+    frame_mm: float
+    ticks: tuple[np.ndarray, ...]
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        return self.printed.plan.sheet_mm
+
+
+def job_page(plan, title: str = "") -> JobPage:
+    """Markers that name the plan, of the chart's dictionary: another job's page is told from this one."""
+    sheet = plan.sheet_mm
+    side = min(max(min(sheet) / 14, MARKERS[0]), MARKERS[1])
+    frame = math.ceil(EDGE_MM + (1 + 2 * QUIET) * side)
+    page = (sheet[0] + 2 * frame, sheet[1] + 2 * frame)
+    mark = chart_id(plan)
+    base = GROUP * (int(mark, 16) % GROUPS)
+    markers = tuple(
+        Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
+        for k, (x, y) in _places(page, side)
+    )
+    bar = _bar(page, side)
+    labels = (
+        Label(f"brushsvg job {mark}", (bar.at_mm[0], bar.at_mm[1] - 5.0), bar.length_mm),
+        Label(
+            f"bar: {bar.length_mm:g} mm, print at 100 %", (bar.at_mm[0], bar.at_mm[1] + 2.0), bar.length_mm
+        ),
+        Label(title or "untitled", (page[0] / 2 + side, bar.at_mm[1]), max(page[0] / 2 - 3 * side, 10.0)),
+    )
+    empty = _core.Plan(brush=plan.brush, brush_sha256=plan.brush_sha256, sheet_mm=page)
+    ticks = tuple(box_ring(*corners) for corners in _ticks(sheet, frame))
+    return JobPage(Chart(empty, (), markers, labels, mark, bar), float(frame), ticks)
+
+
+def _places(page, side: float) -> list[tuple[int, tuple[float, float]]]:
+    """Numbers and upper left corners: corners clockwise from the upper left, then the middle of each long edge."""
+    left, right, top, bottom = EDGE_MM, page[0] - EDGE_MM - side, page[1] - EDGE_MM, EDGE_MM + side
+    across, up = (page[0] - side) / 2, (page[1] + side) / 2
+    places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
+    if page[0] >= BETWEEN * side:
+        places += [(4, (across, top)), (6, (across, bottom))]
+    if page[1] >= BETWEEN * side:
+        places += [(5, (right, up)), (7, (left, up))]
+    return sorted(places)
+
+
+def _bar(page, side: float) -> Bar:
+    """In the lower part of the frame, between two markers."""
+    room = page[0] / 2 - EDGE_MM - (1.5 + 2 * QUIET) * side
+    length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
+    return Bar((EDGE_MM + (1 + QUIET) * side, EDGE_MM + side / 2), float(max(length, 5)))
+
+
+def _ticks(sheet, frame: float):
+    """Lines that end at the sheet's corners: the robot's origin is where the lower left two meet."""
+    half = LINE_MM / 2
+    for x, out_x in ((frame, -1), (frame + sheet[0], 1)):
+        for y, out_y in ((frame, -1), (frame + sheet[1], 1)):
+            yield min(x, x + out_x * TICK_MM), y - half, max(x, x + out_x * TICK_MM), y + half
+            yield x - half, min(y, y + out_y * TICK_MM), x + half, max(y, y + out_y * TICK_MM)
+
+
+def box_ring(left: float, bottom: float, right: float, top: float) -> np.ndarray:
+    return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])

@@ -1,0 +1,103 @@
+"""Where a mark lies in a picture of paint: shifted, turned and wider than predicted, by least squares of its pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from .. import _core
+
+BLURS_MM = (1.2, 0.5, 0.2)  # coarse to fine: a mark is found from as far as the first is wide
+ROUNDS = 6
+MOST_MM = 8.0  # a step goes no farther: beyond, nothing was found
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Where a mark lies against its prediction: shift_mm of its middle, turn_rad about it, counter-clockwise, wider_mm:
+    how much farther out each edge lies. found: whether least squares came to rest within reach."""
+
+    shift_mm: tuple[float, float]
+    turn_rad: float
+    wider_mm: float
+    found: bool
+
+    def moved(self, points_mm: np.ndarray, middle_mm: np.ndarray) -> np.ndarray:
+        """(n, 2) points of the prediction, where they lie in truth."""
+        c, s = np.cos(self.turn_rad), np.sin(self.turn_rad)
+        return (points_mm - middle_mm) @ np.array([[c, s], [-s, c]]) + middle_mm + self.shift_mm
+
+
+NOWHERE = Placed((0.0, 0.0), 0.0, 0.0, False)
+
+
+@dataclass(frozen=True)
+class Canvas:
+    """Pixels over a window of the sheet: left, bottom, right, top [mm], row 0 on top."""
+
+    window_mm: tuple[float, float, float, float]
+    px_per_mm: float
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        left, bottom, right, top = self.window_mm
+        return round((top - bottom) * self.px_per_mm), round((right - left) * self.px_per_mm)
+
+    def filled(self, rings: list[np.ndarray]) -> np.ndarray:
+        """Share of each pixel that rings cover together, holes (clockwise) left out."""
+        rows, columns = self.shape
+        left, _, _, top = self.window_mm
+        window = (left, top - rows / self.px_per_mm, columns / self.px_per_mm, rows / self.px_per_mm)
+        return np.asarray(_core.coverage(rings, window, self.px_per_mm), np.float32)
+
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """x (columns,) and y (rows,) of the middles of pixels."""
+        rows, columns = self.shape
+        left, _, _, top = self.window_mm
+        x = left + (np.arange(columns) + 0.5) / self.px_per_mm
+        return x, top - (np.arange(rows) + 0.5) / self.px_per_mm
+
+
+def place(
+    paint: np.ndarray, free: np.ndarray, rings: list[np.ndarray], canvas: Canvas, turns: bool = True
+) -> Placed:
+    """paint: share of paint of each pixel of the canvas; free: pixels in which other marks have no say.
+
+    Gauss-Newton: a shift changes a picture by its slope, growing edges by the slope's size.
+    """
+    middle = np.vstack(rings).mean(axis=0)
+    x, y = canvas.places()
+    now = np.zeros(4)
+    settled = False
+    for blur_mm in BLURS_MM:
+        sigma = blur_mm * canvas.px_per_mm
+        seen = cv2.GaussianBlur(np.clip(paint, 0, 1), None, sigma)
+        weight = free.astype(np.float32)
+        for _ in range(ROUNDS):
+            placed = Placed((now[0], now[1]), now[2], now[3], True)
+            moved = [placed.moved(ring, middle) for ring in rings]
+            shown = cv2.GaussianBlur(canvas.filled(moved), None, sigma)
+            slope_x = cv2.Sobel(shown, cv2.CV_32F, 1, 0, scale=1 / 8) * canvas.px_per_mm
+            slope_y = -cv2.Sobel(shown, cv2.CV_32F, 0, 1, scale=1 / 8) * canvas.px_per_mm
+            size = np.hypot(slope_x, slope_y)
+            here = (size > 1e-3) & (weight > 0)
+            if here.sum() < 20:
+                return NOWHERE
+            left, up = np.meshgrid(x - middle[0] - now[0], y - middle[1] - now[1])
+            columns = [-slope_x, -slope_y, slope_x * up - slope_y * left, size]
+            if not turns:
+                columns[2] = np.zeros_like(size)
+            slopes = np.column_stack([column[here] for column in columns])
+            off = (seen - shown - now[3] * size)[here]
+            step = np.linalg.lstsq(slopes.T @ slopes + 1e-6 * np.eye(4), slopes.T @ off, rcond=None)[0]
+            length = float(np.hypot(*step[:2]))
+            step *= min(1.0, 1.5 * blur_mm / max(length, 1e-9))
+            now = now + step
+            if np.hypot(*now[:2]) > MOST_MM:
+                return NOWHERE
+            settled = length < 0.01
+            if length < 0.003:
+                break
+    return Placed((float(now[0]), float(now[1])), float(now[2]), float(now[3]), bool(settled))

@@ -1,0 +1,153 @@
+"""A painted job in a rendered photograph: where each mark lies comes back, and other pictures are refused."""
+
+import json
+
+import numpy as np
+import photograph
+import pytest
+from photograph import BLUE, INK, Camera
+from shapely import affinity
+from shapely.geometry import Polygon
+from shapely.ops import unary_union
+
+from brushsvg import _core
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.cli import main
+from brushsvg.painted.job_page import job_page
+from brushsvg.pipeline.preparation import prepare
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
+<title>four</title><g fill="none" stroke="#000" stroke-linecap="round">
+<path id="bow" d="M14 30 C24 6 48 6 56 28" stroke-width="4"/>
+<path id="line" d="M16 58 L70 54" stroke-width="3"/>
+<path id="cross" d="M78 16 L82 50" stroke-width="4"/>
+<path id="bar" d="M66 34 L98 30" stroke-width="3"/></g></svg>"""
+CAMERA = Camera(size_px=(1500, 1050), fill=0.95)
+SHIFT_MM, TURN_DEG, MIDDLE = np.array([0.7, -0.9]), 0.5, np.array([55.0, 35.0])
+
+
+def turned(points):
+    c, s = np.cos(np.radians(TURN_DEG)), np.sin(np.radians(TURN_DEG))
+    return (points - MIDDLE) @ np.array([[c, s], [-s, c]]) + MIDDLE + SHIFT_MM
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory):
+    """Folder, page, and of each stroke its predicted rings and where they were painted."""
+    folder = tmp_path_factory.mktemp("job")
+    (folder / "four.svg").write_text(DRAWING)
+    work = prepare(folder / "four.svg")
+    marks = _core.simulate(work.plan, work.brush)
+    _core.trace_outlines(marks, work.brush)
+    rng = np.random.default_rng(5)
+    own = {mark.stroke: rng.normal(0, 0.2, 2) for mark in marks.passes}
+    rings = {mark.stroke: [np.array(ring) for ring in mark.outline_mm] for mark in marks.passes}
+    painted = {name: [turned(ring) + own[name] for ring in each] for name, each in rings.items()}
+    page = job_page(work.plan, work.title)
+    (folder / "photo.jpg").write_bytes(shown(page, painted))
+    return folder, page, rings, painted
+
+
+def shown(page, painted, camera=CAMERA):
+    sheet = photograph.page(page.printed)
+    for tick in page.ticks:
+        sheet.paint([tick], INK)
+    for rings in painted.values():
+        sheet.paint([ring + page.frame_mm for ring in rings], BLUE)
+    return photograph.photograph(sheet, camera)
+
+
+def compare(folder, capsys, photo="photo.jpg", *flags):
+    status = main(["compare", str(folder / photo), str(folder / "four.svg"), "--quiet", *flags])
+    return status, capsys.readouterr()
+
+
+def test_every_mark_is_found_where_it_was_painted(job, capsys):
+    folder, _, rings, painted = job
+    status, told = compare(folder, capsys, "photo.jpg", "--json", "--picture", str(folder / "seen.png"))
+    assert status == 0
+    found = json.loads(told.out)
+    assert [row["stroke"] for row in found["strokes"]] == ["bow", "line", "cross", "bar"]
+    for row in found["strokes"]:
+        before, after = (np.vstack(each[row["stroke"]]).mean(axis=0) for each in (rings, painted))
+        assert row["shift_mm"] == pytest.approx(after - before, abs=0.03), row["stroke"]
+        assert row["turn_deg"] == pytest.approx(TURN_DEG, abs=0.15)
+        assert row["wider_mm"] == pytest.approx(0, abs=0.02)
+        assert row["missing"] < 0.02 and row["blots"] == 0
+        ours, theirs = (unary_union([Polygon(r) for r in each[row["stroke"]]]) for each in (rings, painted))
+        by_shapely = ours.intersection(theirs).area / ours.union(theirs).area
+        assert row["overlap_predicted"] == pytest.approx(by_shapely, abs=0.03)
+    assert found["overlap_sheet_placed"] > found["overlap_wanted"] + 0.1
+    assert found["overlap_strokes_placed"] > found["overlap_sheet_placed"] + 0.01
+    assert found["sheet"]["turn_deg"] == pytest.approx(TURN_DEG, abs=0.3)
+    assert (folder / "seen.png").stat().st_size > 10_000
+
+
+def test_wider_paint_and_a_missing_stroke_are_told(job, capsys):
+    folder, page, _, painted = job
+    wider = {
+        name: [np.array(Polygon(ring).buffer(0.3).exterior.coords)[::-1] for ring in rings]
+        for name, rings in painted.items()
+        if name != "line"
+    }
+    (folder / "wide.jpg").write_bytes(shown(page, wider))
+    status, told = compare(folder, capsys, "wide.jpg", "--json")
+    rows = {row["stroke"]: row for row in json.loads(told.out)["strokes"]}
+    assert status == 0 and "line: no paint is found" in told.err
+    assert not rows["line"]["found"] and rows["line"]["missing"] == 1
+    for name in ("bow", "cross", "bar"):
+        assert rows[name]["wider_mm"] == pytest.approx(0.3, abs=0.05)
+
+
+def test_a_blot_is_told(job, capsys):
+    folder, page, _, painted = job
+    blot = np.array(Polygon([(30, 21), (36, 21), (36, 16), (30, 16)]).exterior.coords)[:-1]
+    (folder / "blot.jpg").write_bytes(shown(page, painted | {"blot": [blot]}))
+    rows = {
+        row["stroke"]: row
+        for row in json.loads(compare(folder, capsys, "blot.jpg", "--json")[1].out)["strokes"]
+    }
+    assert rows["line"]["blots"] > 0.1 and rows["bow"]["blots"] < 0.05
+    assert rows["bar"]["found"]
+
+
+def test_scripts_can_ask_for_an_overlap(job, capsys):
+    folder = job[0]
+    assert compare(folder, capsys, "photo.jpg", "--at-least", "0.2")[0] == 0
+    status, told = compare(folder, capsys, "photo.jpg", "--at-least", "0.99")
+    assert status == 1 and "below 0.99" in told.err
+
+
+def test_other_pictures_are_refused(job, capsys):
+    folder, page, _, painted = job
+    (folder / "bare.jpg").write_bytes(shown(page, {}))
+    line = affinity.rotate(Polygon(painted["line"][0]), 75, origin=(35, 30))
+    elsewhere = {"line": [np.array(line.exterior.coords)[:-1]]}
+    (folder / "elsewhere.jpg").write_bytes(shown(page, elsewhere))
+    work = prepare(folder / "four.svg")
+    of_a_chart = chart(work.brush, (148.0, 210.0), "few")
+    sheet = photograph.page(of_a_chart)
+    (folder / "chart.jpg").write_bytes(photograph.photograph(sheet, Camera(size_px=(1050, 1500))))
+    (folder / "none.jpg").write_bytes(photograph.encoded(np.full((600, 800, 3), 200, np.uint8)))
+    for name, words in (
+        ("bare.jpg", "no paint is found"),
+        ("elsewhere.jpg", "is this the painted page of this job?"),
+        ("chart.jpg", "the page of another job"),
+        ("none.jpg", "no marker"),
+    ):
+        status, told = compare(folder, capsys, name)
+        assert status == 1 and words in told.err and "Traceback" not in told.err, (name, told.err)
+
+
+def test_the_page_names_its_plan(job, tmp_path, capsys):
+    folder, page, *_ = job
+    for name in ("page.svg", "page.pdf"):
+        words = ["convert", str(folder / "four.svg"), str(tmp_path / "a.ngc"), "--page", str(tmp_path / name)]
+        made = main([*words, "--quiet"])
+        assert made == 0, capsys.readouterr().err
+    text = (tmp_path / "page.svg").read_text()
+    assert (
+        f"brushsvg job {page.printed.id}" in text
+        and text.count("data-marker") == len(page.printed.markers) == 8
+    )
+    assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
