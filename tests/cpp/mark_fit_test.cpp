@@ -235,7 +235,7 @@ TEST_CASE("laws with footprints that no brush has predict nothing: their instant
     for (const double half : {0.4, 4.0, 400.0}) {
         const VectorXd x = model.unknowns({{3.0}, {0.0, 0.3}, {0.0, half}});
         VectorXd at;
-        CHECK(model.distances(0, x.data(), still.data(), at, nullptr, nullptr) == half < 100.0);
+        CHECK(model.distances(0, x.data(), still.data(), at, nullptr, nullptr) == (half < 100.0));
     }
 }
 

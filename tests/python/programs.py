@@ -12,6 +12,7 @@ LANGUAGES = {
     "grbl-3axis": ".gcode",
     "grbl-servo": ".nc",
     "ur5e": ".script",
+    "jaka-zu3": ".jks",
 }
 
 

@@ -42,6 +42,7 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
             arcs=ARCS.get(name, ()),
             colour=colour,
             layer="",
+            extra="{}",
             settings=_core.Settings(),
             origin=SimpleNamespace(load=1),
         )
