@@ -17,7 +17,13 @@ from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
 
-LANGUAGES = {"linuxcnc-3axis": ".ngc", "grbl-3axis": ".ngc", "grbl-servo": ".ngc", "ur5e": ".script"}
+LANGUAGES = {
+    "linuxcnc-3axis": ".ngc",
+    "grbl-3axis": ".ngc",
+    "grbl-servo": ".ngc",
+    "ur5e": ".script",
+    "jaka-zu3": ".jks",
+}
 SHEET = (400.0, 400.0)
 
 
@@ -101,6 +107,18 @@ def urscript_moves(text):
             yield False, tuple(1e3 * float(value) for value in point), 1e3 * float(speed[1]), visit
 
 
+def jaka_moves(text):
+    visit, places = False, {}
+    for line in text.splitlines():
+        if line.startswith("# "):
+            visit = line.startswith("# paint")
+        if pose := re.fullmatch(r"(to|via) = \[(-?[\d.]+), (-?[\d.]+), (-?[\d.]+), .*\]", line):
+            places[pose[1]] = tuple(map(float, pose.groups()[1:]))
+        if move := re.fullmatch(r"(movl\(|movc\(via, )to, 0, ([\d.]+), [\d.]+, [\d.]+\)", line):
+            names = ("via", "to") if move[1].startswith("movc") else ("to",)
+            yield from ((False, places[name], float(move[2]), visit) for name in names)
+
+
 def in_paper_frame(moves, cell, name, z_offset):
     back = np.eye(4) if name == "ur5e" else np.linalg.inv(robot_from_paper(cell, z_offset))
     for rapid, point, speed, visit in moves:
@@ -123,9 +141,11 @@ def test_whatever_is_written_is_safe(name, seed):
         return
     again = "".join(writer.encode(LANGUAGES[name], plan, brush, "t\u00e9\u66f8", (), cell, job))
     assert text == again and text.isascii() and "\r" not in text and text.endswith("\n")
-    code = re.sub(r"\(.*\)|#.*", "", text) if name != "ur5e" else text
+    is_robot = name in ("ur5e", "jaka-zu3")
+    code = text if is_robot else re.sub(r"\(.*\)|#.*", "", text)
     assert not re.search(r"\d[eE][-+]?\d|nan|inf\b|-0\.0+(?![\d])", code)
-    moves = gcode_moves(text, cell) if name != "ur5e" else urscript_moves(text)
+    read = {"ur5e": urscript_moves, "jaka-zu3": jaka_moves}.get(name, lambda text: gcode_moves(text, cell))
+    moves = read(text)
     slack = 0.15 if name == "grbl-servo" else 2e-3
     fastest = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s)
     # what leans and is rounded in the robot's frame is off by as much in the paper's

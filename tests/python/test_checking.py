@@ -47,7 +47,10 @@ def test_what_was_planned_comes_back(desk, name):
     work = preparation.prepare("two.svg")
     back = ran(*text_of(work, name), work)
     assert back.problems == []
-    assert [p.stroke for p in back.plan.passes] == ["curve", "hook (1)" if name == "ur5e" else "hook [1]"]
+    assert [p.stroke for p in back.plan.passes] == [
+        "curve",
+        "hook (1)" if name in ("ur5e", "jaka-zu3") else "hook [1]",
+    ]
     for meant, found in zip(work.plan.passes, back.plan.passes, strict=True):
         away = np.linalg.norm(found.poses_mm[None] - meant.poses_mm[:, None], axis=2).min(axis=1)
         assert away.max() < (0.1 if name == "grbl-servo" else 2e-3), "every pose is passed"

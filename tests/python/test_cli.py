@@ -544,8 +544,8 @@ def test_the_package_runs_as_a_module(desk):
     done = spawn("convert", "a.svg", "b.svg", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")
     assert (
-        done.stderr
-        == b"brushsvg: b.svg does not end in .json or .ngc or .gcode or .nc or .script (see brushsvg convert --help)\n"
+        done.stderr == b"brushsvg: b.svg does not end in .json or .ngc or .gcode or .nc or .script or .jks "
+        b"(see brushsvg convert --help)\n"
     )
     done = spawn("--version", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")
@@ -672,7 +672,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--wide",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
-    assert flags == choices | job | {"--help", "--preview", "--report", "--quiet"}
+    assert flags == choices | job | {"--help", "--page", "--preview", "--report", "--quiet"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.pipeline.preparation"} & set(done.stderr.split())

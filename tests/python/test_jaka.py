@@ -142,7 +142,7 @@ def test_what_is_written_is_read(cell):
     assert np.array([step[2:5] for step in steps]) == pytest.approx(ends)
     assert read.joint_mm == cell.blending.tolerance_mm
     blanks = read_program(text.replace("\n", "  \n"), ".jks", cell)
-    assert blanks.acts == read.acts and blanks.sections == read.sections
+    assert (repr(blanks.acts), repr(blanks.sections)) == (repr(read.acts), repr(read.sections))
 
 
 @pytest.mark.parametrize(

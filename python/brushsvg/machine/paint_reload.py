@@ -139,7 +139,15 @@ def is_later_part(a_pass) -> bool:
 
 def _load(a_pass) -> int:
     """Which load of its stroke a pass is, from 1; 0 for a stroke that is whole."""
-    load = json.loads(a_pass.extra).get("load", 0)
+    try:
+        extra = json.loads(a_pass.extra)
+    except ValueError:
+        extra = None
+    if not isinstance(extra, dict):
+        raise Error(
+            f"extra must be a JSON object, not {a_pass.extra!r:.40}", a_pass.stroke, code="wrong-type"
+        )
+    load = extra.get("load", 0)
     if type(load) is not int:
         raise Error(f"load must be a whole number, not {load!r:.40}", a_pass.stroke, code="wrong-type")
     return load
