@@ -34,7 +34,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         "    brush: mine",
         "    compensation: nothing, and brushsvg takes closed",
         "    machine: grbl-servo",
-        "    letters wider than the brush: nothing, and brushsvg takes clamp",
+        "    letters wider than the brush: nothing, and brushsvg takes auto",
         "    tolerance: 0.1mm",
         "    data-brushsvg-speed: 7",
     ]
@@ -49,7 +49,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         (
             "--cell=default",
             {"cell": None},
-            "machine: nothing, and brushsvg takes linuxcnc-3axis, for URScript ur5e",
+            "machine: nothing, and brushsvg takes linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3",
         ),
         ("--wide=passes", {"wide": "passes"}, "letters wider than the brush: passes (before: nothing)"),
         ("--tolerance=0.2", {"tolerance": "0.2mm"}, "tolerance: 0.2mm (before: 0.1mm)"),
@@ -82,7 +82,7 @@ def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
     monkeypatch.syspath_prepend(SOURCE)
     from brushsvg_settings import OWN
 
-    options, cell = Options(), f"{DEFAULT_CELL}, for URScript ur5e"
+    options, cell = Options(), f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3"
     assert {
         "brush": DEFAULT_BRUSH,
         "compensation": options.compensation,

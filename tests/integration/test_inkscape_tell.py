@@ -55,7 +55,12 @@ ADVICE = {  # by the code of what brushsvg tells: a script of ours and a drawing
     "brush-unknown": ("preview", document('data-brushsvg-brush="mine"')),
     "cell-unknown": ("preview", document('data-brushsvg-cell="mine"')),
     "depth-not-measured": ("preview", path("M20 30 H90", width="0.1")),
-    "width-out-of-reach": ("check", f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'),
+    "width-out-of-reach": (
+        "check",
+        f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'.replace(
+            "<svg ", '<svg data-brushsvg-wide="clamp" '
+        ),
+    ),
     "paper-example": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
     "sheet-too-small": ("chart", SOUND, "--strokes=many", "--sheet=letter"),
     "program-format": ("save", document('data-brushsvg-cell="linuxcnc-3axis"'), "--format=script"),

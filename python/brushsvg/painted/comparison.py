@@ -22,7 +22,14 @@ BLOT_MM = 1.5  # beyond a mark, as it lies, what is no edge any more
 FINEST_PX_PER_MM = 12.0
 LEAST_OVERLAP = 0.3  # of paint with its prediction, where it lies: less is another job, or chance
 PRINT_MM = 0.5  # round what is printed
-COVERED = 0.15  # share of a mark that is painted at least, or it is not there
+COVERED, MOSTLY = (
+    0.3,
+    0.7,
+)  # share of a mark, where it lies, that is painted at least; without paint, it is missing
+LEVEL = 0.5  # of the usual paint: an edge
+PALEST = 0.15  # of the usual paint, that of a stroke
+ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
+LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
 
 
 @dataclass(frozen=True)
@@ -37,24 +44,29 @@ class Wanted:
 @dataclass(frozen=True)
 class Compared:
     """A stroke as it was painted. overlap_wanted (None without a drawing), overlap_predicted: intersection over union;
-    placed: against the prediction; missing, extra: shares of the predicted area, once the mark lies where it is."""
+    placed: against the prediction, whose middle lies at middle_mm; missing: share of the mark, where it lies, without
+    paint."""
 
     stroke: str
     overlap_wanted: float | None
     overlap_predicted: float
     placed: Placed
+    middle_mm: tuple[float, float]
     missing: float
-    extra: float
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """common: how all marks together lie against their predictions. overlaps: of all paint with what was wanted (or,
-    without a drawing, predicted) as it lies, once the sheet's place is put right, and once each stroke's is."""
+    """common: how the sheet lies, by the places of all marks, about middle_mm; spread_mm: rms of what is left of their
+    displacements, None of fewer than three marks; elsewhere_mm2: paint that lies beside all marks. overlaps: of all
+    paint with what was wanted (or, without a drawing, predicted) as it lies, once the sheet's place is put right, and
+    once each stroke's is."""
 
     strokes: tuple[Compared, ...]
     common: Placed
     middle_mm: np.ndarray
+    spread_mm: float | None
+    elsewhere_mm2: float
     overlap_wanted: float | None
     overlap_predicted: float
     overlaps: tuple[float, float, float]
@@ -78,14 +90,26 @@ def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str,
     paint = np.mean([each[2] for each in reads], axis=0).astype(np.float32)
     sheet = (page.size_mm[0] - 2 * page.frame_mm, page.size_mm[1] - 2 * page.frame_mm)
     canvas = Canvas((0.0, 0.0, *sheet), flat.px_per_mm)
-    painted, level = _on_sheet(paint, flat, page, canvas)
+    painted = [_on_sheet(each, flat, page, canvas) for _, _, each in reads]
+    _refuse_other_sheets(painted, photos)
     if all(not stroke.predicted for stroke in strokes):
         raise Error("there is nothing to paint", code="nothing-to-paint")
-    shown = [canvas.filled(stroke.predicted) for stroke in strokes]
-    common, middle = _common(painted, strokes, canvas)
-    return _compared(
-        strokes, shown, painted, level, common, middle, canvas, (view, flat, paint), photos[0][0]
-    )
+    mean = np.mean(painted, axis=0).astype(np.float32)
+    common, middle = _common(mean, strokes, canvas)
+    return _compared(strokes, mean, common, middle, canvas, (view, flat, paint), photos[0][0])
+
+
+def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, bytes]]) -> None:
+    for (name, _), each in zip(photos[1:], painted[1:], strict=True):
+        alike = _overlap(painted[0] > LEVEL, each > LEVEL)
+        if alike < ALIKE:
+            raise Error(
+                f"its paint overlaps with that of {photos[0][0]} by {alike:.2f}, less than {ALIKE:g}: photographs of "
+                "one sheet are averaged; compare each sheet by itself",
+                file=name,
+                value=alike,
+                code="photos-differ",
+            )
 
 
 def _of_a_job(refusal: Error, name: str) -> Error:
@@ -123,8 +147,8 @@ def _read(
     return flat, view, paint_seen(flat, print_, rooms)
 
 
-def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> tuple[np.ndarray, float]:
-    """Paint of the sheet's own pixels, 1 where the usual paint lies, and the level of an edge."""
+def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
+    """Paint of the sheet's own pixels, 1 where the usual paint lies."""
     left, up = page.frame_mm, page.size_mm[1] - page.frame_mm
     matrix = np.array(
         [[1.0, 0.0, left * flat.px_per_mm], [0.0, 1.0, (flat.sheet_mm[1] - up) * flat.px_per_mm]]
@@ -133,7 +157,7 @@ def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> tuple[np.ndar
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
     sheet = cv2.warpAffine(paint, matrix, (columns, rows), flags=flags)
     usual = float(np.median(sheet[sheet > 0.5])) if (sheet > 0.5).any() else 1.0
-    return np.clip(sheet / usual, 0, 1.2), 0.5
+    return np.clip(sheet / usual, 0, 1.2)
 
 
 def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.ndarray]:
@@ -147,11 +171,10 @@ def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.
     return replace(found, wider_mm=0.0) if found.found else NOWHERE, middle
 
 
-def _compared(strokes, shown, painted, level, common, middle, canvas, photo, name) -> Comparison:
-    is_painted = painted > level
-    every = np.sum([np.uint8(each > 0.5) for each in shown], axis=0)
+def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparison:
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
-    rows, notices, own = [], [], []
+    is_painted = painted > LEVEL
+    found, notices = [], []
     for stroke, rings in zip(strokes, moved, strict=True):
         others = [
             ring
@@ -159,22 +182,15 @@ def _compared(strokes, shown, painted, level, common, middle, canvas, photo, nam
             if other is not stroke
             for ring in theirs
         ]
-        row, placed = _stroke(stroke, rings, others, painted, level, common, middle, canvas)
-        rows.append(row)
-        own.append(placed)
-        if row is not None and not row.placed.found:
-            sentence = "no paint is found where its mark should be, or it cannot be told from its neighbours"
+        seen = _stroke(stroke, rings, others, painted, is_painted, common, middle, canvas)
+        found.append(seen)
+        if seen and not seen[0].placed.found and seen[0].missing > MOSTLY:
+            sentence = "no paint is found where its mark should be"
             notices.append(Notice(stroke.stroke, sentence, code="mark-missing"))
+    rows = [seen[0] for seen in found if seen]
     has_wanted = all(stroke.wanted is not None for stroke in strokes)
     target = [stroke.wanted if has_wanted else stroke.predicted for stroke in strokes]
-    predicted = _overlap(every > 0, is_painted)
-    whole = [ring for rings in target for ring in rings]
-    as_it_lies = _overlap(_any(whole, canvas), is_painted)
-    placed = _overlap(_any([common.moved(ring, middle) for ring in whole], canvas), is_painted)
-    each = _overlap(
-        _any([ring for rings, at in zip(target, own, strict=True) for ring in at(rings)], canvas), is_painted
-    )
-    view, flat, paint = photo
+    predicted = _overlap(_any([ring for stroke in strokes for ring in stroke.predicted], canvas), is_painted)
     best = max(predicted, _overlap(_any([ring for rings in moved for ring in rings], canvas), is_painted))
     if best < LEAST_OVERLAP:
         raise Error(
@@ -184,19 +200,54 @@ def _compared(strokes, shown, painted, level, common, middle, canvas, photo, nam
             value=best,
             code="photo-of-another-job",
         )
+    sheet, spread_mm = _sheet(rows, common, middle)
+    whole = [ring for rings in target for ring in rings]
+    each = [ring for rings, seen in zip(target, found, strict=True) if seen for ring in seen[1](rings)]
+    marks = [
+        ring
+        for stroke, seen in zip(strokes, found, strict=True)
+        if seen
+        for ring in seen[1](stroke.predicted)
+    ]
+    beside = is_painted & (_away(_any(marks, canvas), canvas.px_per_mm) > BLOT_MM)
+    as_it_lies = _overlap(_any(whole, canvas), is_painted)
+    view, flat, paint = photo
     return Comparison(
-        tuple(row for row in rows if row is not None),
-        common,
+        tuple(rows),
+        sheet,
         middle,
+        spread_mm,
+        float(beside.sum()) / canvas.px_per_mm**2,
         as_it_lies if has_wanted else None,
         predicted,
-        (as_it_lies, placed, each),
+        (
+            as_it_lies,
+            _overlap(_any([sheet.moved(ring, middle) for ring in whole], canvas), is_painted),
+            _overlap(_any(each, canvas), is_painted),
+        ),
         view,
         flat,
         paint,
         canvas,
         tuple(notices),
     )
+
+
+def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
+    """The shift and turn that bring all predicted middles nearest to where the marks lie (Kabsch), and what is left."""
+    known = [row for row in rows if row.placed.found]
+    if len(known) < LEAST_MARKS:
+        return common, None
+    before = np.array([row.middle_mm for row in known]) - middle
+    after = before + np.array([row.placed.shift_mm for row in known])
+    here, there = before.mean(axis=0), after.mean(axis=0)
+    a, b = before - here, after - there
+    turn = float(np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b)))
+    turned = Placed((0.0, 0.0), turn, 0.0, True)
+    shift = there - turned.moved(here[None], np.zeros(2))[0]
+    left = after - shift - turned.moved(before, np.zeros(2))
+    spread_mm = float(np.sqrt(np.square(left).sum(axis=1).mean()))
+    return Placed((float(shift[0]), float(shift[1])), turn, 0.0, True), spread_mm
 
 
 def _any(rings: list[np.ndarray], canvas: Canvas) -> np.ndarray:
@@ -208,10 +259,11 @@ def _overlap(one: np.ndarray, other: np.ndarray) -> float:
     return float((one & other).sum()) / union if union else 1.0
 
 
-def _stroke(stroke: Wanted, rings, others, painted, level, common: Placed, middle, canvas: Canvas):
-    """The figures of one stroke, and a function that puts rings of it where its mark lies."""
+def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas):
+    """The figures of one stroke, and a function that puts rings of it where its mark lies; None for one that paints
+    nothing. is_painted gets what of its paint is paler than that of others."""
     if not rings:
-        return None, lambda each: each
+        return None
     points = np.vstack(rings)
     low = np.maximum(points.min(axis=0) - AROUND_MM, canvas.window_mm[:2])
     high = np.minimum(points.max(axis=0) + AROUND_MM, canvas.window_mm[2:])
@@ -222,42 +274,39 @@ def _stroke(stroke: Wanted, rings, others, painted, level, common: Placed, middl
     window = (c0 / fine, canvas.window_mm[3] - r0 / fine - part.shape[0] / fine)
     small = Canvas((*window, window[0] + part.shape[1] / fine, window[1] + part.shape[0] / fine), fine)
     near = [ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()]
-    theirs = small.filled(near)
-    mine = small.filled(rings)
-    away = _away(mine > 0.5, fine)
-    their_away = _away(theirs > 0.5, fine)
-    nearer = (away <= their_away) | (mine > 0.5)
-    attributed = np.where(nearer, part, 0.0)
+    mine = small.filled(rings) > 0.5
+    their_away = _away(small.filled(near) > 0.5, fine)
+    nearer = (_away(mine, fine) <= their_away) | mine
+    strength = float(np.median(part[mine & (part > PALEST)])) if (mine & (part > PALEST)).any() else 1.0
+    attributed = np.where(nearer, part / strength, 0.0)
     free = (their_away > BESIDE_MM) & nearer
     found = place(attributed, free, rings, small)
-    found = (
-        found if found.found else place(attributed, free, rings, small, turns=False)
-    )  # a dab has no direction
+    if not found.found:  # a dab has no direction
+        found = place(attributed, free, rings, small, turns=False)
     inner = np.vstack(rings).mean(axis=0)
-    is_there = float(((attributed > level) & (mine > 0.5)).sum()) > COVERED * float((mine > 0.5).sum())
-    found = found if found.found and is_there else replace(NOWHERE, found=is_there and found.found)
 
-    def lies(each):
-        return [found.moved(common.moved(ring, middle), inner) for ring in each]
+    def lies(each, at):
+        return [at.moved(common.moved(ring, middle), inner) for ring in each]
 
-    is_mine = (attributed > level) & nearer
-    at_last = small.filled(lies(stroke.predicted)) > 0.5
-    area = float(max(at_last.sum(), 1))
-    beyond = (_away(at_last, fine) > BLOT_MM) & is_mine
-    wanted = None
-    if stroke.wanted:
-        wanted = _overlap(small.filled(stroke.wanted) > 0.5, is_mine)
-    inside = small.filled(stroke.predicted) > 0.5
+    is_mine = attributed > LEVEL
+    at_last = small.filled(lies(stroke.predicted, found)) > 0.5
+    if not found.found or (at_last & is_mine).sum() < COVERED * at_last.sum():
+        found, at_last = NOWHERE, mine
+    is_painted[r0:r1, c0:c1] |= is_mine & (_away(at_last, fine) < BLOT_MM)
     start = np.vstack(stroke.predicted).mean(axis=0)
-    shift = lies([start[None]])[0][0] - start
+    shift = lies([start[None]], found)[0][0] - start
     whole = Placed(
         (float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found
     )
-    missing = float((at_last & ~(part > level)).sum()) / area
     row = Compared(
-        stroke.stroke, wanted, _overlap(inside, is_mine), whole, missing, float(beyond.sum()) / area
+        stroke.stroke,
+        _overlap(small.filled(stroke.wanted) > 0.5, is_mine) if stroke.wanted else None,
+        _overlap(small.filled(stroke.predicted) > 0.5, is_mine),
+        whole,
+        (float(start[0]), float(start[1])),
+        float((at_last & ~(part / strength > LEVEL)).sum()) / float(max(at_last.sum(), 1)),
     )
-    return row, lies
+    return row, lambda each: lies(each, found)
 
 
 def _away(mask: np.ndarray, px_per_mm: float) -> np.ndarray:

@@ -24,6 +24,7 @@ from ..calibration.chart.layout import (
 
 TICK_MM = 4.0
 LINE_MM = 0.3
+LEAST_LABEL_MM = 25.0
 
 
 @dataclass(frozen=True)
@@ -46,20 +47,23 @@ def job_page(plan, title: str = "") -> JobPage:
     side = min(max(min(sheet) / 14, MARKERS[0]), MARKERS[1])
     frame = math.ceil(EDGE_MM + (1 + 2 * QUIET) * side)
     page = (sheet[0] + 2 * frame, sheet[1] + 2 * frame)
-    mark = chart_id(plan)
+    passes = sorted(plan.passes, key=lambda each: each.stroke)  # whatever their order is
+    mark = chart_id(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes))
     base = GROUP * (int(mark, 16) % GROUPS)
     markers = tuple(
         Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
         for k, (x, y) in _places(page, side)
     )
     bar = _bar(page, side)
+    x, y = bar.at_mm
     labels = (
-        Label(f"brushsvg job {mark}", (bar.at_mm[0], bar.at_mm[1] - 5.0), bar.length_mm),
-        Label(
-            f"bar: {bar.length_mm:g} mm, print at 100 %", (bar.at_mm[0], bar.at_mm[1] + 2.0), bar.length_mm
-        ),
-        Label(title or "untitled", (page[0] / 2 + side, bar.at_mm[1]), max(page[0] / 2 - 3 * side, 10.0)),
+        Label(f"brushsvg job {mark}", (x, y - 5.0), bar.length_mm),
+        Label(f"bar: {bar.length_mm:g} mm, print at 100 %", (x, y + 2.0), bar.length_mm),
+        Label(title or "untitled", (page[0] / 2 + side, y), page[0] / 2 - 3 * side),
     )
+    labels = tuple(
+        label for label in labels if label.width_mm >= LEAST_LABEL_MM
+    )  # smaller, nobody reads them
     empty = _core.Plan(brush=plan.brush, brush_sha256=plan.brush_sha256, sheet_mm=page)
     ticks = tuple(box_ring(*corners) for corners in _ticks(sheet, frame))
     return JobPage(Chart(empty, (), markers, labels, mark, bar), float(frame), ticks)

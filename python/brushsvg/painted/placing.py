@@ -6,11 +6,16 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from shapely.geometry import Polygon
+from shapely.geometry.polygon import orient
+from shapely.ops import unary_union
 
 from .. import _core
+from ..geometry.rings import signed_area
 
 BLURS_MM = (1.2, 0.5, 0.2)  # coarse to fine: a mark is found from as far as the first is wide
 ROUNDS = 6
+MOST_GROWN_MM = 1.0  # in one step
 MOST_MM = 8.0  # a step goes no farther: beyond, nothing was found
 
 
@@ -60,12 +65,24 @@ class Canvas:
         return x, top - (np.arange(rows) + 0.5) / self.px_per_mm
 
 
+def grown(rings: list[np.ndarray], by_mm: float) -> list[np.ndarray]:
+    """Rings whose edges lie so much farther out; none where nothing is left."""
+    if abs(by_mm) < 1e-6:
+        return rings
+    outer = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) > 0]
+    holes = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) < 0]
+    shape = unary_union(outer).difference(unary_union(holes)).buffer(by_mm)
+    parts = [part for part in getattr(shape, "geoms", [shape]) if not part.is_empty]
+    around = [np.array(orient(part).exterior.coords)[:-1] for part in parts]
+    return around + [np.array(hole.coords)[:-1] for part in parts for hole in orient(part).interiors]
+
+
 def place(
     paint: np.ndarray, free: np.ndarray, rings: list[np.ndarray], canvas: Canvas, turns: bool = True
 ) -> Placed:
     """paint: share of paint of each pixel of the canvas; free: pixels in which other marks have no say.
 
-    Gauss-Newton: a shift changes a picture by its slope, growing edges by the slope's size.
+    Gauss-Newton on redrawn rings: a shift changes a picture by its slope, growing edges by the slope's size.
     """
     middle = np.vstack(rings).mean(axis=0)
     x, y = canvas.places()
@@ -77,7 +94,7 @@ def place(
         weight = free.astype(np.float32)
         for _ in range(ROUNDS):
             placed = Placed((now[0], now[1]), now[2], now[3], True)
-            moved = [placed.moved(ring, middle) for ring in rings]
+            moved = [placed.moved(ring, middle) for ring in grown(rings, now[3])]
             shown = cv2.GaussianBlur(canvas.filled(moved), None, sigma)
             slope_x = cv2.Sobel(shown, cv2.CV_32F, 1, 0, scale=1 / 8) * canvas.px_per_mm
             slope_y = -cv2.Sobel(shown, cv2.CV_32F, 0, 1, scale=1 / 8) * canvas.px_per_mm
@@ -90,14 +107,14 @@ def place(
             if not turns:
                 columns[2] = np.zeros_like(size)
             slopes = np.column_stack([column[here] for column in columns])
-            off = (seen - shown - now[3] * size)[here]
+            off = (seen - shown)[here]
             step = np.linalg.lstsq(slopes.T @ slopes + 1e-6 * np.eye(4), slopes.T @ off, rcond=None)[0]
             length = float(np.hypot(*step[:2]))
-            step *= min(1.0, 1.5 * blur_mm / max(length, 1e-9))
-            now = now + step
-            if np.hypot(*now[:2]) > MOST_MM:
+            step[:3] *= min(1.0, 1.5 * blur_mm / max(length, 1e-9))
+            now = now + np.append(step[:3], np.clip(step[3], -MOST_GROWN_MM, MOST_GROWN_MM))
+            if np.hypot(*now[:2]) > MOST_MM or not grown(rings, now[3]):
                 return NOWHERE
-            settled = length < 0.01
-            if length < 0.003:
+            settled = length < 0.01 and abs(step[3]) < 0.02
+            if length < 0.003 and abs(step[3]) < 0.003:
                 break
     return Placed((float(now[0]), float(now[1])), float(now[2]), float(now[3]), bool(settled))

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import math
 
-import numpy as np
-
 from .comparison import BLOT_MM, Compared, Comparison
 
-HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing", "blots")
+LEAST_BLOT_MM2 = 1.0
+HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing")
 
 
 def as_text(title: str, found: Comparison) -> str:
@@ -24,7 +23,7 @@ def as_text(title: str, found: Comparison) -> str:
     ]
     as_it_lies, placed, each = found.overlaps
     what = "what was wanted" if found.overlap_wanted is not None else "what was predicted"
-    common, spread = found.common, spread_mm(found)
+    common, middle, spread = found.common, found.middle_mm, found.spread_mm
     lines = [
         f"{title}: {len(found.strokes)} strokes",
         "",
@@ -33,40 +32,36 @@ def as_text(title: str, found: Comparison) -> str:
         "",
         f"All paint overlaps with {what} by {as_it_lies:.3f}; with the sheet's place put right by {placed:.3f}, with "
         f"each stroke's by {each:.3f}.",
-        f"The sheet: x {common.shift_mm[0]:+.2f}, y {common.shift_mm[1]:+.2f} mm, "
-        f"turned {math.degrees(common.turn_rad):+.2f} degrees."
-        + (f" What is left of the strokes' places: {spread:.2f} mm (rms)." if spread is not None else ""),
+        f"The sheet lies x {common.shift_mm[0]:+.2f}, y {common.shift_mm[1]:+.2f} mm aside at the middle of its marks, "
+        f"x {middle[0]:.1f}, y {middle[1]:.1f} mm, turned by {math.degrees(common.turn_rad):+.2f} degrees."
+        + (f" Beyond that, strokes lie {spread:.2f} mm (rms) aside." if spread is not None else ""),
+        *(
+            [f"Paint farther than {BLOT_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2."]
+            if found.elsewhere_mm2 > LEAST_BLOT_MM2
+            else []
+        ),
         "",
         "Wanted, predicted: overlap of the stroke's paint with them, intersection over union. x, y, off: displacement",
-        "from the prediction in mm; turn in degrees; wider: of each edge, in mm; missing: share of the mark, as it",
-        f"lies, without paint; blots: paint more than {BLOT_MM:g} mm beside it.",
+        "from the prediction in mm; turn in degrees; wider: of each edge, in mm; missing: share of the mark, where it",
+        "lies, without paint; -: not to be told from its neighbours.",
     ]
     return "\n".join(lines) + "\n"
 
 
 def _row(one: Compared) -> tuple[str, ...]:
     x, y = one.placed.shift_mm
-    known = one.placed.found
+    placed = (x, y, math.hypot(x, y), math.degrees(one.placed.turn_rad), one.placed.wider_mm)
+    formats = ("+.2f", "+.2f", ".2f", "+.1f", "+.2f")
     return (
         one.stroke,
         "-" if one.overlap_wanted is None else f"{one.overlap_wanted:.3f}",
         f"{one.overlap_predicted:.3f}",
-        f"{x:+.2f}" if known else "-",
-        f"{y:+.2f}" if known else "-",
-        f"{math.hypot(x, y):.2f}" if known else "-",
-        f"{math.degrees(one.placed.turn_rad):+.1f}" if known else "-",
-        f"{one.placed.wider_mm:+.2f}" if known else "-",
+        *(
+            f"{round(value, int(how[-2])) + 0.0:{how}}" if one.placed.found else "-"
+            for value, how in zip(placed, formats, strict=True)
+        ),
         f"{100 * one.missing:.0f} %",
-        f"{100 * one.extra:.0f} %",
     )
-
-
-def spread_mm(found: Comparison) -> float | None:
-    """Of the strokes' displacements about the sheet's, rms; None where fewer than two are known."""
-    places = np.array([one.placed.shift_mm for one in found.strokes if one.placed.found])
-    if len(places) < 2:
-        return None
-    return float(np.sqrt(np.square(places - places.mean(axis=0)).sum(axis=1).mean()))
 
 
 def as_json(title: str, found: Comparison) -> str:
@@ -84,18 +79,19 @@ def as_json(title: str, found: Comparison) -> str:
             "turn_deg": math.degrees(found.common.turn_rad),
             "middle_mm": found.middle_mm.tolist(),
             "found": found.common.found,
+            "strokes_aside_mm": found.spread_mm,
         },
+        "elsewhere_mm2": found.elsewhere_mm2,
         "strokes": [
             {
                 "stroke": one.stroke,
                 "overlap_wanted": one.overlap_wanted,
                 "overlap_predicted": one.overlap_predicted,
                 "found": one.placed.found,
-                "shift_mm": list(one.placed.shift_mm),
-                "turn_deg": math.degrees(one.placed.turn_rad),
-                "wider_mm": one.placed.wider_mm,
+                "shift_mm": list(one.placed.shift_mm) if one.placed.found else None,
+                "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
+                "wider_mm": one.placed.wider_mm if one.placed.found else None,
                 "missing": one.missing,
-                "blots": one.extra,
             }
             for one in found.strokes
         ],

@@ -108,11 +108,12 @@ def prepare(
     notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
-    bare = unreached([stroke for stroke in drawn if stroke.id not in without], painted, brush)
+    planned = [stroke for stroke in drawn if stroke.id not in without]
+    bare = unreached(planned, painted, brush)
     notices += blank_notices(bare)
     blank = []
     if options.compensation in ("closed", "refined"):
-        blank = missed(drawn, painted, _core.simulate(plan, brush).passes, bare, brush)
+        blank = missed(planned, painted, _core.simulate(plan, brush).passes, bare, brush)
         notices += blank_notices(blank, is_reached=True)
         notices += _tracking_notices(painted, tracking_errors, moved, brush, options.tolerance_mm)
     return Work(

@@ -172,7 +172,7 @@ def notices(found: list[Blank], is_reached: bool = False) -> list[Notice]:
         if len(pieces) > 1:
             where = f"in {len(pieces)} pieces, the largest {where}"
         if is_reached:
-            said = f"the mark leaves {share:.2g} % of its shape blank, {where}"
+            said = f"the mark leaves at least {share:.2g} % of its shape blank, {where}"
             told.append(Notice(element, said, code="mark-misses"))
         else:
             said = f"no stroke reaches {share:.2g} % of its shape, {where}"

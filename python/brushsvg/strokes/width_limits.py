@@ -53,7 +53,7 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
                     stroke.id,
                     f"{count} {2 * worst:.3g} mm, outside the range {reach}: {how}",
                     code="width-out-of-reach",
-                    about="wider" if worst > greatest else "narrower",
+                    about="in passes" if k in filled else "wider" if worst > greatest else "narrower",
                     advice="--wide passes paints more of it" if k in fillable else "",
                 )
             )

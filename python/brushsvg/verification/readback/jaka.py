@@ -13,7 +13,7 @@ from . import Act, Readback, Step, circle
 
 LEANS_DEG = 0.5  # what no brush shows
 
-_N = r"-?(?:\d+\.?\d*|\.\d+)"
+_N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _POSE = re.compile(rf"(to|via) = \[({_N}(?:, {_N}){{5}})\]")
 _MOVE = re.compile(rf"movl\(to, 0, ({_N}), ({_N}), ({_N})\)")
 _CIRCLE = re.compile(rf"movc\(via, to, 0, ({_N}), ({_N}), (?:0+\.?0*|\.0+)\)")
