@@ -85,9 +85,8 @@ def test_what_is_not_there_yet_is_wrong_usage(desk):
 
 def test_help_names_what_there_is_and_nothing_else(desk):
     pages = {tuple(page): brushsvg(*page, "--help", cwd=desk, status=0).out for page in PAGES}
-    text = "\n".join(
-        page for words, page in pages.items() if words not in (("chart",), ("convert",))
-    )  # their page may be a PDF
+    with_pages = (("chart",), ("convert",))  # which may be PDFs
+    text = "\n".join(page for words, page in pages.items() if words not in with_pages)
     for absent in (*LATER["flags"], *LATER["formats"]):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
     commands = set(re.findall(r"(?m)^    ([a-z]+)(?: |$)", pages[()]))
@@ -109,11 +108,11 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     # every extension that help names is one the command takes
     values = {"IN": "sound.svg", "--brush": "round-6"}
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("convert",)])[0]):
-        cell = ("--cell", "ur5e") if suffix == ".script" else ()
+        cell = {".script": ("--cell", "ur5e"), ".jks": ("--cell", "jaka-zu3")}.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
         brushsvg("predict", values["IN"], f"seen{suffix}", cwd=desk, status=0)
-    for flag in ("preview", "report"):
+    for flag in ("preview", "report", "page"):
         says = re.search(rf"(?s)--{flag} FILE .*?\((.*?)\)", pages[("convert",)])[1]
         for suffix in says.split():
             brushsvg("convert", values["IN"], "made.ngc", f"--{flag}", f"{flag}{suffix}", cwd=desk, status=0)
@@ -125,6 +124,9 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.gcode",
             "made.nc",
             "made.script",
+            "made.jks",
+            "page.pdf",
+            "page.svg",
             "seen.png",
             "seen.svg",
             "seen.json",
