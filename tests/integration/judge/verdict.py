@@ -562,8 +562,9 @@ def judged(text: str, whole: Sound) -> tuple[str, str]:
 
 def _told(way: Way, job: Job) -> list:
     """Legs that move, waits and stops, in order, each with how far its corner may be cut; what a servo does on the spot
-    as one lift: its steps are but the rounding of a ramp."""
-    cut = cuts(way, job)
+    as one lift: its steps are but the rounding of a ramp. What a tolerance of JAKA script bounds, its manual does not
+    say: there it counts as it is written."""
+    cut = [leg.cut_mm for leg in way.run.legs] if job.language == "jaka" else cuts(way, job)
     out: list = []
     for k, leg in enumerate(way.run.legs):
         if leg.kind in ("jump", "wait") and job.language == "grbl-servo":
