@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from diagnostics import agrees, refused
 from svg_text import read
 
 from brushsvg import _core, find_brush
-from brushsvg.errors import Error
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.width_limits import within_reach
 
@@ -32,7 +32,7 @@ def test_what_is_in_reach_and_what_was_drawn_stays(brush):
     line = of("M10 20H60", 'fill="none" stroke="red" stroke-width="20"')
     for made in (narrow, line):
         assert within_reach(made, brush) == (made, made, [])
-    with pytest.raises(Error, match=r"width 20.000 mm is outside"):
+    with refused("width-out-of-reach 20.000"):
         _core.compensate(line, brush, (100, 50))
 
 
@@ -44,8 +44,7 @@ def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
     assert halves[:, 1].max() == pytest.approx(4.2)
     assert np.interp(0.2, *halves.T) == pytest.approx(np.interp(0.2, *np.array(made[0].half_width).T))
     assert [r.tolist() for r in narrower.wanted_mm] == [r.tolist() for r in made[0].wanted_mm]
-    assert notice.where == "p"
-    assert "outside the range [0, 8.4] mm of brush round-6: painted at the nearest" in notice.sentence
+    assert agrees(notice, "width-out-of-reach '[0, 8.4] mm' round-6 nearest", "p")
 
 
 def test_passes_cover_the_shape_and_stay_in_it(brush):
@@ -61,7 +60,7 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
         passes, wanted, (notice,) = within_reach(made, brush, "passes")
         assert [each.id for each in passes] == ["p", *(f"p~{k}" for k in range(2, len(passes) + 1))]
         assert len(wanted) == len(passes) > 1
-        assert f"painted in {len(passes)} passes" in notice.sentence
+        assert agrees(notice, f"width-out-of-reach '{len(passes)} passes'")
         assert max(half for each in passes for _, half in each.half_width) <= 4.2 + 1e-9
         shape, paint = made[0].wanted_mm, painted(passes)
         beyond = _core.area(_core.unite([*shape, *paint])) - _core.area(shape)
@@ -70,9 +69,9 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
 
 
 def test_refusal_names_stroke_width_and_range(brush):
-    with pytest.raises(Error, match=r"width 16 mm .* \[0, 8.4\] mm of brush round-6") as refused:
+    with refused("width-out-of-reach 16 '[0, 8.4] mm' round-6", "p") as caught:
         within_reach(of(WIDE), brush, "refuse")
-    assert (refused.value.where, refused.value.value) == ("p", pytest.approx(16, abs=0.1))
+    assert caught.value.value == pytest.approx(16, abs=0.1)
 
 
 def test_a_pen_of_one_width_is_not_asked(brush):
@@ -99,7 +98,7 @@ def test_passes_are_taken_where_the_nearest_width_would_paint_too_little(brush, 
     filled, _, _ = within_reach(made, brush, "passes")
     assert [each.id for each in passes] == [each.id for each in filled]
     assert len(passes) > 1
-    assert f"the nearest width would paint {100 * nearest:.0f} % of the shape" in notices[0].sentence
+    assert agrees(notices[0], f"width-out-of-reach nearest '{100 * nearest:.0f} % of'")
 
 
 def test_each_shape_of_an_element_is_looked_at_for_itself(brush):
