@@ -261,7 +261,7 @@ def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
             save_brush(brush, path)
     brush.lag = lag
     with monkeypatch.context() as patch:
-        patch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+        patch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, os.strerror(28))))
         with refused("file-unwritable 'no space left'") as refusal:
             save_brush(brush, path)
         assert refusal.value.file == str(path)

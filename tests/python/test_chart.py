@@ -210,13 +210,19 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
     assert np.hypot(*(points - bar.at_mm - [bar.length_mm, 1.1]).T).min() < 0.01
 
 
-def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("command", ["chart plan.json --sheet a5", "convert a.svg plan.json"])
+def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
+    """It was told as a mistake of ours."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50">'
+        '<path d="M20 20h50" stroke="#000" stroke-width="3"/></svg>'
+    )
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    plan, page = str(tmp_path / "plan.json"), tmp_path / "page"
-    status, _, ((_, told),) = in_json(capsys, "chart", plan, "--sheet", "a5", "--page", f"{page}.pdf")
-    assert status == 1 and agrees(told, "package-missing PDF matplotlib")
-    assert not list(tmp_path.iterdir())
-    assert main(["chart", plan, "--sheet", "a5", "--page", f"{page}.svg"]) == 0
+    status, _, ((file, told),) = in_json(capsys, *command.split(), "--page", "page.pdf")
+    assert (status, file) == (1, "page.pdf") and agrees(told, "package-missing PDF matplotlib")
+    assert [each.name for each in tmp_path.iterdir()] == ["a.svg"]
+    assert main([*command.split(), "--page", "page.svg"]) == 0
 
 
 def test_a_file_of_before_is_read():

@@ -125,9 +125,9 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
 @pytest.mark.parametrize(
     ("setting", "said"),
     [
-        ('compensation="most"', "data-brushsvg-compensation most none constant closed"),
+        ('compensation="most"', "data-brushsvg-compensation most none, constant, closed"),
         ('tolerance="11mm"', "data-brushsvg-tolerance 11 '[1e-05, 10] mm'"),
-        ('wide="very"', "data-brushsvg-wide very auto clamp passes refuse"),
+        ('wide="very"', "data-brushsvg-wide very auto, clamp, passes, refuse"),
         ('cell=""', "data-brushsvg-cell empty"),
         ('machine="x"', "data-brushsvg-machine width speed"),
     ],

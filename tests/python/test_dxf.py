@@ -418,7 +418,7 @@ def test_colours_layers_and_weights_come_from_layers_and_blocks():
         {"true_color": 0x0A0B0C, "color": 1},
     ):
         msp.add_point((0, 0), attributes)
-    msp.add_point((0, 0), {"layer": "Not in the table", "color": 2})
+    msp.add_point((0, 0), {"layer": "Nowhere", "color": 2})
     found = [(e.colour, e.layer, e.stroke_width_mm) for e in read(document).elements]
     assert found == [
         ("#ff0000", "Red", 1.0),
@@ -429,7 +429,7 @@ def test_colours_layers_and_weights_come_from_layers_and_blocks():
         ("#000000", "0", 0.25),
         ("#000000", "0", 0.25),
         ("#0a0b0c", "0", 0.25),
-        ("#ffff00", "Not in the table", 0.25),
+        ("#ffff00", "Nowhere", 0.25),
     ]
 
 

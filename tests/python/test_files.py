@@ -92,7 +92,7 @@ def test_a_file_that_may_not_be_written_is_left_alone(tmp_path, monkeypatch):
     assert os.listdir(tmp_path) == ["locked"]
 
 
-@pytest.mark.parametrize("stop", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("stop", [OSError(28, os.strerror(28)), KeyboardInterrupt()])
 def test_a_full_disk_or_ctrl_c_leaves_the_old_files(tmp_path, monkeypatch, stop):
     paths = [tmp_path / "first", tmp_path / "second"]
     for path in paths:
@@ -172,16 +172,16 @@ def test_a_name_as_long_as_the_system_allows_can_be_written(tmp_path, letter):
 def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):
     (tmp_path / "sound").write_bytes(b"1")
     assert read_bytes(str(tmp_path / "sound")) == b"1"
-    for path, sentence in [
-        (tmp_path / "gone", "there is no such file"),
-        (tmp_path, "this is a directory, not a file"),
-        (tmp_path / "sound" / "below", "the file cannot be read: not a directory"),
-        (tmp_path / ("n" * 300), "the file cannot be read: file name too long"),
-        ("a\0b", "the file cannot be read: embedded null byte"),
+    for path, why in [
+        (tmp_path / "gone", "'no such file'"),
+        (tmp_path, "'is a directory'"),
+        (tmp_path / "sound" / "below", "'not a directory'"),
+        (tmp_path / ("n" * 300), "'name too long'"),
+        ("a\0b", "'null byte'"),
     ]:
-        with pytest.raises(Error) as refusal:
+        with refused(f"file-unreadable {why}") as refusal:
             read_bytes(path)
-        assert (str(refusal.value), refusal.value.file) == (sentence, str(path))
+        assert refusal.value.file == str(path)
         assert f"in {path}" in "".join(traceback.format_exception(refusal.value)), "whoever meets a traceback"
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, is_told, refused
+from diagnostics import agrees, are_told, is_told, refused
 from programs import call, forbidden, whole
 
 from brushsvg import _core
@@ -325,12 +325,10 @@ def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
 
 
 def test_a_station_on_the_sheet_or_far_from_it_is_refused():
-    for place, words in (
-        ((40.0, 30.0), "its place lies on the sheet of 400 x 100 mm"),
-        ((-90.0, 10.0), "60.00 mm beyond the left edge of the workspace"),
+    for place, said in (
+        ((40.0, 30.0), "station-on-sheet '400 x 100 mm'"),
+        ((-90.0, 10.0), "tool-off-sheet 60.00 left"),
     ):
         cell = cell_with(Reload("stroke"), Station("ink", place, depth_mm=5.0))
-        told = [
-            sentence for where, sentence in forbidden(plan_of((9, "", "")), BRUSH, cell) if where == "ink"
-        ]
-        assert len(told) == 1 and words in told[0]
+        told = [each for each in forbidden(plan_of((9, "", "")), BRUSH, cell) if each.where == "ink"]
+        assert are_told(told, said)

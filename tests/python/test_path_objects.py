@@ -119,5 +119,5 @@ def test_an_ezdxf_document_is_read_as_its_file_is(tmp_path):
 
 def test_what_is_neither_file_nor_document_is_refused():
     for wrong in (None, 3, io.BytesIO(b"x"), object()):
-        with refused("wrong-type drawing"):
+        with refused("drawing-format path ezdxf ElementTree"):
             brushsvg.read_drawing(wrong)

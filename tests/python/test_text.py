@@ -401,8 +401,7 @@ def filled(text, font, **options):
 
 def test_a_width_for_outlines_is_told_to_have_no_effect(ttf):
     document, notices = text_svg("A", ttf, size_mm=10, width_mm=3)
-    sentence = "the width 3 mm has no effect: the font has outlines, not single lines"
-    assert notices[-1].sentence == sentence
+    assert agrees(notices[-1], "width-without-effect 3 outlines")
     assert text_svg("A", ttf, size_mm=10) == (document, notices[:-1])
 
 
@@ -493,7 +492,7 @@ def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypat
     monkeypatch.setitem(sys.modules, "uharfbuzz", None)
     told = refusal("A", ttf)
     assert told.code == "package-missing"
-    assert told.sentence.endswith(f"{sys.executable} -m pip install fonttools uharfbuzz")
+    assert sys.executable in told.sentence and told.sentence.endswith("install fonttools uharfbuzz")
     assert len(drawn("TI")) == 2
 
 

@@ -186,7 +186,7 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
     )
     low = plan_of(np.array([(50, 20, 0), (80, 20, -2)], dtype=float))
     (told,) = forbidden(low, BRUSH, leans)
-    assert agrees(told, "out-of-box 'before the first' 'z 49.8 mm' '[-99, 40]'", "")
+    assert agrees(told, "out-of-box first 'z 49.8 mm' '[-99, 40]'", "")
 
 
 def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
