@@ -476,7 +476,7 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
 def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
-    status, _, err = run(capsys, "convert", "x.svg", "out.ngc", "--quiet")
+    status, _, err = run(capsys, "convert", "x.svg", "out.ngc", "--quiet", "--corners", "turn")
     assert (status, len(err)) == (0, 1)
     assert re.fullmatch(
         r"brushsvg: x.svg: line: tracking error \d\.\d+ mm near x \d+\.\d, y \d+\.\d mm, above the tolerance of "
@@ -670,6 +670,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--origin",
         "--as",
         "--wide",
+        "--corners",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
     assert flags == choices | job | {"--help", "--page", "--preview", "--report", "--quiet"}
