@@ -768,13 +768,14 @@ def test_whatever_was_changed_is_told(desk, capsys, suffix):
     """Seen by comparing with the drawing's own plan, and with what would be written for the same strokes."""
     cell = {".script": ("--cell", "ur5e"), ".nc": ("--cell", "grbl-servo")}.get(suffix, ())
     drawing = DRAWING.replace("h-12", "h-12 l12 2")  # a corner too sharp for anything but a turn in place
+    turn = ("--corners", "turn")
     (desk / "two.svg").write_text(drawing)
-    assert call(capsys, "convert", "two.svg", f"two{suffix}", *cell)[0] == 0
+    assert call(capsys, "convert", "two.svg", f"two{suffix}", *cell, *turn)[0] == 0
     text = (desk / f"two{suffix}").read_text()
-    assert call(capsys, "check", f"two{suffix}", "two.svg")[0] == 0
+    assert call(capsys, "check", f"two{suffix}", "two.svg", *turn)[0] == 0
     for edit, said in CHANGED[suffix]:
         (desk / f"two{suffix}").write_text(edit(text))
-        status, _, told = in_json(capsys, "check", f"two{suffix}", "two.svg")
+        status, _, told = in_json(capsys, "check", f"two{suffix}", "two.svg", *turn)
         assert (status, any(agrees(each, said) for _, each in told)) == (1, True), (said, told)
 
 
@@ -1041,12 +1042,12 @@ def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
 def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, digit):
     (desk / "two.svg").write_text(DRAWING.replace("h-12", "h-12 l12 2"))
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", program, "--cell", name, "--corners", "turn")[0] == 0
     text = (desk / program).read_text()
     depth = re.search(r"(?m)^G[23] X\S+ Y\S+ Z(\S+) ", text)[1]
     off = f"{float(depth) + float(digit):.{len(digit) - 2}f}"
     (desk / program).write_text(edited(rf"(?m)^(G[23] X\S+ Y\S+ Z){depth} ", rf"\g<1>{off} ")(text))
-    status, _, err = call(capsys, "check", program, "two.svg")
+    status, _, err = call(capsys, "check", program, "two.svg", "--corners", "turn")
     assert (status, err) == (0, []), err
 
 

@@ -480,7 +480,7 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
 def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
-    status, _, ((_, told),) = in_json(capsys, "convert", "x.svg", "out.ngc", "--quiet")
+    status, _, ((_, told),) = in_json(capsys, "convert", "x.svg", "out.ngc", "--quiet", "--corners", "turn")
     assert status == 0 and agrees(told, "off-middle-line 0.05 sharply", "line"), told
     assert re.search(r" \d\.\d+ mm near x \d+\.\d, y \d+\.\d mm", told.sentence)
     flags = ("--compensation", "none", "--quiet")
@@ -676,6 +676,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--origin",
         "--as",
         "--wide",
+        "--corners",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
     assert flags == choices | job | {"--help", "--page", "--preview", "--report", "--quiet"}

@@ -217,7 +217,7 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
 
 def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L32 63"))
-    assert main(["predict", "d.svg", "x.svg"]) == 0
+    assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     text = (desk / "x.svg").read_text()
     assert 'data-made="round-6, closed"' in text
     missed = re.findall(r'data-stroke="(.)" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
@@ -229,7 +229,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
     """0.095 mm in place of 0.05 was red, of a brush whose lag is known to 0.58 mm."""
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
-    assert main(["predict", "d.svg", "x.svg"]) == 0
+    assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     assert "b: tracking error " in capsys.readouterr().err
     text = (desk / "x.svg").read_text()
     ((miss, marked),) = re.findall(r'data-stroke="b" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)

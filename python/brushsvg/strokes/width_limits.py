@@ -8,12 +8,12 @@ from .. import _core
 from ..drawing.design import Notice
 from ..errors import Error, need
 from .offset_passes import clamped
+from .trial_mark import trial_mark
 
 WIDE = ("auto", "clamp", "passes", "refuse")
 # At the nearest width the mark overlaps with a shape by so much, or passes are taken for it.
 ENOUGH = 0.8
 BETTER = 0.01  # and passes by so much more
-_ANY_SHEET_MM = (1e6, 1e6)
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
 
@@ -130,12 +130,9 @@ def _chosen(found: list, strokes: list, brush) -> dict[int, str]:
 def _mark_overlap(strokes: list, rings: list, brush) -> float:
     """How much the marks of strokes, compensated in closed form, overlap with a shape; 0 where they are refused."""
     try:
-        plan = _core.compensate(strokes, brush, _ANY_SHEET_MM, "closed", 0.5, None).plan
+        return _core.overlap(trial_mark(strokes, brush), rings)
     except Error:
         return 0.0
-    marks = _core.simulate(plan, brush)
-    _core.trace_outlines(marks, brush)
-    return _core.overlap(marks.outline_mm, rings)
 
 
 def _how(passes: list) -> str:
