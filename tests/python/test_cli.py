@@ -677,6 +677,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--as",
         "--wide",
         "--corners",
+        "--join",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
     assert flags == choices | job | {"--help", "--page", "--preview", "--report", "--quiet"}

@@ -21,6 +21,7 @@ from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
+from ..strokes.joining import joined
 from ..strokes.unreached import missed, unreached
 from ..strokes.unreached import notices as blank_notices
 from ..strokes.width_limits import within_reach
@@ -43,6 +44,7 @@ class Options:
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
+    join: bool = False  # lines that meet end to end are one stroke
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
 
@@ -84,6 +86,9 @@ def prepare(
     design = layout.arrange(drawing.read_drawing(path, options.reading), options.layout)
     stage("finding strokes")
     strokes, notices = strokes_of(design, options.paths_as)
+    if options.join:
+        strokes, joints = joined(strokes)
+        notices += joints
     if options.corners == "auto" and options.compensation in ("closed", "refined"):
         strokes = lifted_at_corners(strokes, brush)
     refused, left_out, drawn = [], [], tuple(strokes)

@@ -74,6 +74,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add_layout(command)
     add_wide(command)
     add_corners(command)
+    add_join(command)
     add(
         "--compensation",
         choices=("none", "constant", "closed", "refined"),
@@ -108,6 +109,15 @@ def add_corners(command: argparse.ArgumentParser) -> None:
         "--corners",
         choices=("auto", "turn"),
         help="sharp corners of drawn lines: the brush turns in place; default: auto, it is lifted where that is better",
+    )
+
+
+def add_join(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--join",
+        action="store_true",
+        default=None,
+        help="paint lines that meet end to end, in one colour and width, as one",
     )
 
 

@@ -7,6 +7,7 @@ from .flags import (
     add_choices,
     add_corners,
     add_input,
+    add_join,
     add_layout,
     add_looks,
     add_quiet,
@@ -80,6 +81,7 @@ def add_check(commands) -> None:
     add_layout(check)
     add_wide(check)
     add_corners(check)
+    add_join(check)
     check.add_argument(
         "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
     )

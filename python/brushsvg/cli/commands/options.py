@@ -35,6 +35,7 @@ class Choices:
     origin: tuple[float, float] | None
     wide: str | None
     corners: str | None
+    join: bool | None
     compensation: str | None
     lag: float | None
     tolerance: float | None
@@ -103,6 +104,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         paths_as=chosen.paths_as,
         wide=chosen.wide or preparation.Options.wide,
         corners=chosen.corners or preparation.Options.corners,
+        join=bool(chosen.join),
         speed_mm_s=min(preparation.Options.speed_mm_s, cell.speeds.paint_mm_s),
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,
