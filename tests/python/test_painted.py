@@ -124,7 +124,7 @@ def bent(mark, **changes):
             plan(),
             bent(1, outline_mm=[[[90, 20], [float("nan"), 20], [90, 25]]]),
             "marks[1].outline_mm[0]",
-            "not-a-number",
+            "not-finite",
         ),
         (
             plan(),
