@@ -1095,14 +1095,16 @@ def test_a_line_that_is_lost_from_a_header_is_named(desk, capsys, name, drawing,
     text = (desk / program).read_text()
     (line,) = re.findall(rf"(?m)^(?:\(| *# ){word}: .*$", text)
     (desk / program).write_text(text.replace(f"{line}\n", ""))
-    status, _, err = call(capsys, "check", program, *drawing)
+    status, _, told = in_json(capsys, "check", program, *drawing)
     assert status == 1
-    assert f"brushsvg: {program}: its header lacks the line {line.strip()[:60]!r}" in err
+    (changed,) = [each for _, each in told if each.code == "program-changed"]
+    assert "lacks" in changed.sentence and line.strip()[:60] in changed.sentence
+    assert "line " not in changed.sentence.replace("the line", "")
 
 
 def test_a_line_that_no_header_has_is_named(desk, capsys):
     assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(text.replace("(sheet", "(colour: red)\n(sheet"))
-    status, _, (line,) = call(capsys, "check", "two.ngc")
-    assert (status, "line 3: '(colour: red)' is nothing that brushsvg would write" in line) == (1, True)
+    status, _, ((_, told),) = in_json(capsys, "check", "two.ngc")
+    assert status == 1 and agrees(told, "program-changed 'line 3' '(colour: red)' nothing")

@@ -202,6 +202,6 @@ def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
     brush = brushsvg.find_brush("round-6")
     marks = brushsvg.simulate(plan, brush)
     brushsvg.trace_outlines(marks, brush)
-    with pytest.raises(Error) as refused:
+    with pytest.raises(brushsvg.Error) as refused:
         _core.fit_marks([_core.PaintedMark("jumps", poses, marks.passes[0].outline_mm)])
     assert (refused.value.code, refused.value.where) == ("fit-failed", "jumps")

@@ -162,7 +162,9 @@ def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
         raise Error(sentence, where=where, code="out-of-range")
     if not isinstance(value, list) or (count is not None and len(value) != count):
         raise Error(
-            f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}", where=where, code="wrong-type"
+            f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}",
+            where=where.partition("[")[0],
+            code="wrong-type",
         )
     if len(shape) == 1:
         return tuple(_number(entry, item, where) for item in value)
