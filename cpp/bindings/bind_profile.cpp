@@ -32,8 +32,12 @@ to spare.)")
              py::arg("calibrated_mm") = py::none(), py::arg("source") = "", py::arg("assumed") = false,
              py::arg("half_interval_95") = std::vector<double>{}, py::arg("rmse_mm") = py::none(),
              py::arg("degrees_of_freedom") = py::none(), py::arg("extra") = "{}")
-        .def("__call__", py::vectorize([](const Profile* p, double depth_mm) { return (*p)(depth_mm); }),
-             py::arg("depth_mm"))
+        .def(
+            "__call__",
+            [](const Profile& p, const Numbers& depth_mm) {
+                return py::vectorize([&p](double d) { return p(d); })(depth_mm.values);
+            },
+            py::arg("depth_mm"))
         .def_property_readonly("coefficients", frozen_copy(&Profile::coefficients))
         .def_readonly("floor", &Profile::floor)
         .def_readonly("floor_slope", &Profile::floor_slope)

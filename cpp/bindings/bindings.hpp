@@ -1,11 +1,5 @@
 #pragma once
 
-#include <pybind11/eigen.h>
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -14,31 +8,8 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "converters.hpp"
 #include "parallel.hpp"
-
-namespace py = pybind11;
-
-/// No list is longer that anybody has a use for; the memory for a longer one is not even asked for.
-inline constexpr py::ssize_t kMostEntries = 10'000'000;
-
-namespace pybind11::detail {
-
-/// As pybind11 reads a list, which would first make room for whatever length it claims.
-template <class Value>
-struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> {
-    bool load(handle source, bool convert) {
-        const ssize_t length = PyObject_LengthHint(source.ptr(), 0);
-        if (length < 0) PyErr_Clear();
-        if (length > kMostEntries)
-            throw brushsvg::Error("list-too-long",
-                                  "a list of " + std::to_string(length) + " entries is longer than any that is read, " +
-                                      std::to_string(kMostEntries),
-                                  "", double(length), std::array<double, 2>{0.0, double(kMostEntries)});
-        return list_caster<std::vector<Value>, Value>::load(source, convert);
-    }
-};
-
-}  // namespace pybind11::detail
 
 void bind_profile(py::module_& m);
 void bind_student_t(py::module_& m);

@@ -5,6 +5,7 @@
 PYBIND11_MODULE(_core, m) {
     m.doc() = "The brush: simulation, inverse, marks. Millimetres, radians, paper frame.";
     m.attr("__version__") = BRUSHSVG_VERSION;
+    m.attr("MOST_ENTRIES") = kMostEntries;
 
     py::register_local_exception_translator([](std::exception_ptr p) {
         try {

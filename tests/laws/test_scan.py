@@ -3,6 +3,8 @@ a sentence that says what to do."""
 
 import json
 import re
+import subprocess
+import sys
 from functools import cache
 
 import cv2
@@ -227,13 +229,72 @@ def test_other_formats_and_cameras_held_on_their_side_read_the_same():
     ("data", "said"),
     [
         (b"", "photo-format .jpg"),
-        (b"\xff\xd8\xff\xe0 no JPEG", "photo-format .jpg"),
+        (b"no picture", "photo-format .jpg"),
+        (b"\xff\xd8\xff\xe0 no JPEG", "photo-damaged"),
         (b"\x00\x00\x00\x18ftypheic" + b"\x00" * 50, "photo-format HEIC JPEG"),
     ],
 )
 def test_what_is_no_picture_is_refused(data, said):
     with refused(said):
         read_chart_photos(a5(), [("", data)])
+
+
+def part_way(data: bytes, harm) -> bytes:
+    """What comes of `harm` done to what is left from the middle on."""
+    return data[: len(data) // 2] + harm(data[len(data) // 2 :])
+
+
+DAMAGE = {
+    "cut": lambda rest: b"",
+    "the last bytes lost": lambda rest: rest[:-20],
+    "a hole": lambda rest: rest[500:],
+    "zeros": lambda rest: bytes(500) + rest[500:],
+    "noise": lambda rest: np.random.default_rng(3).bytes(500) + rest[500:],
+}
+
+
+FILES = [
+    (".jpg", []),
+    (".jpg", [cv2.IMWRITE_JPEG_PROGRESSIVE, 1]),
+    (".jpg", [cv2.IMWRITE_JPEG_RST_INTERVAL, 8]),
+    (".png", []),
+    (".tif", [cv2.IMWRITE_TIFF_COMPRESSION, cv2.IMWRITE_TIFF_COMPRESSION_LZW]),
+    (".tif", [cv2.IMWRITE_TIFF_COMPRESSION, cv2.IMWRITE_TIFF_COMPRESSION_ADOBE_DEFLATE]),
+]
+
+
+@pytest.mark.parametrize(
+    ("suffix", "options", "harm"),
+    [(*file, harm) for file in FILES for harm in DAMAGE] + [(".webp", [cv2.IMWRITE_WEBP_QUALITY, 90], "cut")],
+)
+def test_a_picture_damaged_in_its_middle_is_refused_and_nothing_else_is_said(capfd, suffix, options, harm):
+    pixels = cv2.GaussianBlur(np.random.default_rng(2).integers(0, 256, (300, 400, 3), np.uint8), None, 2)
+    data = cv2.imencode(suffix, pixels, options)[1].tobytes()
+    assert read_photo(data).shape == pixels.shape
+    with refused("photo-damaged"):
+        read_photo(part_way(data, DAMAGE[harm]))
+    print("heard again", file=sys.stderr)
+    assert capfd.readouterr() == ("", "heard again\n")
+
+
+def test_bytes_that_a_camera_leaves_before_the_end_are_no_damage(capfd):
+    whole = cv2.imencode(".jpg", np.full((90, 90, 3), 200, np.uint8))[1].tobytes()
+    assert whole[-2:] == b"\xff\xd9"
+    assert np.array_equal(read_photo(whole[:-2] + b"\0\1\2" + whole[-2:]), read_photo(whole))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_picture_is_read_by_a_process_without_standard_error(tmp_path):
+    path = tmp_path / "p.jpg"
+    path.write_bytes(cv2.imencode(".jpg", np.full((90, 80, 3), 200, np.uint8))[1])
+    code = (
+        "import os, sys; os.close(2)\n"
+        "from brushsvg.scan.photo import read_photo\n"
+        "data = open(sys.argv[1], 'rb').read(); print(read_photo(data).shape)\n"
+        "try: os.fstat(2)\nexcept OSError: print('closed still')"
+    )
+    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, check=True)
+    assert done.stdout == "(90, 80, 3)\nclosed still\n"
 
 
 def hide(pixels, corners_mm, camera=SMALL, margin=1.5):

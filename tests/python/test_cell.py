@@ -331,3 +331,24 @@ def test_too_many_boxes_to_keep_out_of_are_told_by_their_number():
     with refused("out-of-range workspace.keep_out_mm 1001 1000") as refusal:
         parse_cell(text)
     assert refusal.value.code == "out-of-range"
+
+
+@pytest.mark.parametrize(
+    ("value", "where", "wanted"),
+    [
+        ("7", "workspace.keep_out_mm", "2 rows of 3 numbers"),
+        ("[[0, 0, 0], [1, 1, 1]]", "workspace.keep_out_mm[0]", "2 rows of 3 numbers"),
+        (
+            "[[[0, 0, 0], [1, 1, 1]], [[0, 0, 0], [1, 1]]]",
+            "workspace.keep_out_mm[1][1]",
+            "3 numbers, not [1, 1]",
+        ),
+        ("[[[0, 0, 0], [1, 'a', 1]]]", "workspace.keep_out_mm[0][1]", "a finite number, not a"),
+        ("[[]]", "workspace.keep_out_mm[0]", "2 rows of 3 numbers"),
+    ],
+)
+def test_boxes_of_another_shape_are_told_by_their_place_and_with_the_shape(value, where, wanted):
+    text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {value}")
+    with refused(f"wrong-type {where} {wanted}") as refusal:
+        parse_cell(text)
+    assert refusal.value.where.startswith("workspace.keep_out_mm")

@@ -1062,3 +1062,49 @@ def test_the_time_told_is_that_of_the_feeds_in_the_program(desk, capsys):
     text = (desk / "x.ngc").read_text()
     (desk / "x.ngc").write_text(text.replace("F1200.0", "F60.0"))
     assert time_s() > 3 * usual_s
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda text: b"\xef\xbb\xbf" + text.encode(), "line-unread 'line 1' 'byte order mark' U+FEFF"),
+        (lambda text: text.encode("utf-16"), "line-unread UTF-16"),
+        (lambda text: text.replace("\n", "\r\n").encode(), "line-unread 'line 1' Windows"),
+        (lambda text: text.replace("Z-", "Z\u2212", 1).encode(), "line-unread 'line 21' 'U+2212 MINUS SIGN'"),
+        (
+            lambda text: text.replace("title: two", "title: tw\xf6").encode("latin-1"),
+            "line-unread 'line 1' U+00F6",
+        ),
+    ],
+)
+def test_letters_that_an_editor_left_are_named(desk, capsys, spoil, said):
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    (desk / "two.ngc").write_bytes(spoil((desk / "two.ngc").read_text()))
+    status, out, ((file, told),) = in_json(capsys, "check", "two.ngc")
+    assert (status, out, file) == (1, "", "two.ngc") and agrees(told, said)
+
+
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
+@pytest.mark.parametrize(
+    ("word", "drawing"),
+    [("sheet", ("two.svg",)), ("warnings", ("two.svg",)), ("frame", ()), ("time", ()), ("length", ())],
+)
+def test_a_line_that_is_lost_from_a_header_is_named(desk, capsys, name, drawing, word):
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    text = (desk / program).read_text()
+    (line,) = re.findall(rf"(?m)^(?:\(| *# ){word}: .*$", text)
+    (desk / program).write_text(text.replace(f"{line}\n", ""))
+    status, _, told = in_json(capsys, "check", program, *drawing)
+    assert status == 1
+    (changed,) = [each for _, each in told if each.code == "program-changed"]
+    assert "lacks" in changed.sentence and line.strip()[:60] in changed.sentence
+    assert "line " not in changed.sentence.replace("the line", "")
+
+
+def test_a_line_that_no_header_has_is_named(desk, capsys):
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    text = (desk / "two.ngc").read_text()
+    (desk / "two.ngc").write_text(text.replace("(sheet", "(colour: red)\n(sheet"))
+    status, _, ((_, told),) = in_json(capsys, "check", "two.ngc")
+    assert status == 1 and agrees(told, "program-changed 'line 3' '(colour: red)' nothing")

@@ -390,6 +390,9 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "calibrate m.svg -o out.json",
         "calibrate m.json -o m.json",
         "brush show",
+        "convert a.svg out.json --from-stroke 2",
+        "convert a.svg out.json --z-offset 0.3",
+        "chart out.json --z-offset 0.3",
     ],
 )
 def test_wrong_usage(desk, capsys, words):

@@ -172,7 +172,9 @@ def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
         <glyph unicode="T" d="M 0 700 L 500 700"/></font></svg>"""
     )
     monkeypatch.setattr("brushsvg.cli.commands.text._INKSCAPES", desk / "fonts")
-    assert main(["text", "T", "t.svg", "--font", "Lines.svg"]) == 0
+    for name in ("Lines.svg", "Lines"):
+        assert main(["text", "T", f"by-{name}.svg", "--font", name]) == 0
+    assert (desk / "by-Lines.svg").read_bytes() == (desk / "by-Lines.svg.svg").read_bytes()
     capsys.readouterr()
     told = refusal(capsys, "text", "T", "t.svg", "--font", "./Lines.svg")
     assert told.code == "file-unreadable"

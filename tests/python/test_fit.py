@@ -5,6 +5,7 @@ import pytest
 from diagnostics import refused
 from scipy.optimize import curve_fit, linprog, lsq_linear, minimize
 
+import brushsvg
 from brushsvg import _core
 
 TRUTH = np.polynomial.Polynomial([3.1, 0.86, 0.31, -0.05, 0.0021])
@@ -191,3 +192,16 @@ def test_many_depths_above_a_floor_are_fitted_too(norm):
     value = np.maximum(0, truth(depth)) + np.random.default_rng(1).normal(0, 0.1, depth.size)
     fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 3, norm=norm, floor=0.0))
     np.testing.assert_allclose([fit.law(d) for d in depth], np.maximum(0, truth(depth)), atol=0.1)
+
+
+@pytest.mark.slow
+def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
+    rng = np.random.default_rng(1)
+    poses = np.column_stack([rng.uniform(0, 60, (300, 2)), -rng.uniform(0.5, 5, 300)])
+    plan = brushsvg.Plan("round-6", "", (60, 60), [brushsvg.Pass("jumps", poses)])
+    brush = brushsvg.find_brush("round-6")
+    marks = brushsvg.simulate(plan, brush)
+    brushsvg.trace_outlines(marks, brush)
+    with pytest.raises(brushsvg.Error) as refused:
+        _core.fit_marks([_core.PaintedMark("jumps", poses, marks.passes[0].outline_mm)])
+    assert (refused.value.code, refused.value.where) == ("fit-failed", "jumps")

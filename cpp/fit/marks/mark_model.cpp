@@ -15,6 +15,9 @@ constexpr double kLeastRingMm2 = 0.2;  // specks
 // Looks at instants in a whole fit, for each place and point there is. Marks of a brush take five to fifteen thousand;
 // those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
 constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
+// And of one mark: about as many as a sheet of fifty strokes takes. 9 m of jumps to and fro, painted as a brush would,
+// took ten times as many, and a minute.
+constexpr double kMostLooksOfOne = 2e8;
 
 /// From above the paper down to the first pose and from the last one up again, as a robot moves.
 Poses from_above(const Poses& poses, double above_mm) {
@@ -105,6 +108,11 @@ void MarkModel::refuse_endless() const {
     std::size_t which = 0;
     for (std::size_t i = 0; i < painted_.size(); ++i) {
         const double size = double(painted_[i].at.size()) + double(painted_[i].point_mm.rows());
+        if (double(looks_[i]) > kMostLooksOfOne)
+            throw Error("fit-failed",
+                        "the stroke is so long and lies so often over itself that its mark cannot be fitted: leave it "
+                        "out",
+                        painted_[i].stroke);
         looks += double(looks_[i]);
         most += kMostLooksEach * size;
         if (double(looks_[i]) <= worst * size) continue;

@@ -161,11 +161,23 @@ def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
         sentence = f"{where} has {len(value)} rows, more than {MOST_ROWS}"
         raise Error(sentence, where=where, code="out-of-range")
     if not isinstance(value, list) or (count is not None and len(value) != count):
-        wanted = "a list" if count is None else f"{count} {'numbers' if len(shape) == 1 else 'rows'}"
-        raise Error(f"{where} must be {wanted}, not {str(value)[:40]}", where=where, code="wrong-type")
+        raise Error(
+            f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}",
+            where=where.partition("[")[0],
+            code="wrong-type",
+        )
     if len(shape) == 1:
         return tuple(_number(entry, item, where) for item in value)
-    return tuple(_rows(entry, shape[1:], item, where) for item in value)
+    rows = enumerate(value)
+    return tuple(_rows(entry, shape[1:], item, f"{where}[{number}]") for number, item in rows)
+
+
+def _shape_in_words(shape: tuple) -> str:
+    """(None, 2, 3) is a list of lists of 2 rows of 3 numbers."""
+    if len(shape) == 1:
+        return "a list of numbers" if shape[0] is None else f"{shape[0]} numbers"
+    within = _shape_in_words(shape[1:])
+    return f"a list of rows of {within}" if shape[0] is None else f"{shape[0]} rows of {within}"
 
 
 def _lines(table) -> list[str]:

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import re
+import sys
+import tempfile
+import threading
+
 import cv2
 import numpy as np
 
@@ -9,6 +15,12 @@ from ..errors import Error
 
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 HEIC = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1", b"avif")  # brands of such files
+BEGIN = re.compile(rb"\xff\xd8\xff|\x89PNG\r|II\*\0|MM\0\*|RIFF....WEBP", re.DOTALL)  # files of PHOTOS
+# what libjpeg, libpng and libtiff say of pixels that they make up; bytes before a JPEG's end are many cameras' habit
+HARM = re.compile(
+    r"(?:Corrupt JPEG data: (?!\d+ extraneous bytes before marker 0xd9)|"
+    r"Premature end of JPEG|libpng error: |TIFF_Error ).*"
+)
 LARGEST_PX = 200_000_000
 STEPS_OF_50 = (
     105  # of the eight coarsest steps of a JPEG's brightness, at quality 50, summed: finer ones end at 255
@@ -30,10 +42,18 @@ def read_photo(data: bytes) -> np.ndarray:
             "Settings, Camera, Formats, Most Compatible)",
             code="photo-format",
         )
-    try:
-        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
-    except cv2.error:  # larger than OpenCV reads, or broken
-        pixels = None
+    pixels, said = _decoded(data)
+    harm = HARM.search(said)
+    if harm:
+        raise Error(
+            f"the picture is damaged or cut short, {harm[0].strip().rstrip('.')!r}: copy it from the camera once more",
+            code="photo-damaged",
+        )
+    if pixels is None and BEGIN.match(data):
+        raise Error(
+            "the picture cannot be read: it is damaged, cut short, too large or of an unusual kind",
+            code="photo-damaged",
+        )
     if pixels is None:
         raise Error(f"this is no picture that can be read; known are {' '.join(PHOTOS)}", code="photo-format")
     if pixels.shape[0] * pixels.shape[1] > LARGEST_PX:
@@ -42,6 +62,34 @@ def read_photo(data: bytes) -> np.ndarray:
             code="photo-too-large",
         )
     return pixels
+
+
+_one_at_a_time = threading.Lock()
+
+
+def _decoded(data: bytes) -> tuple[np.ndarray | None, str]:
+    """Pixels, and what the libraries below OpenCV say meanwhile: they tell of damage nowhere else but on the process's
+    standard error, and go on with grey."""
+    with _one_at_a_time, tempfile.TemporaryFile() as heard:
+        try:
+            kept = os.dup(2)
+        except OSError:  # there is none, as below a window
+            kept = None
+        if sys.stderr and kept is not None:
+            sys.stderr.flush()
+        os.dup2(heard.fileno(), 2)
+        try:
+            pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
+        except cv2.error:  # larger than OpenCV reads, or broken
+            pixels = None
+        finally:
+            if kept is None:
+                os.close(2)
+            else:
+                os.dup2(kept, 2)
+                os.close(kept)
+        heard.seek(0)
+        return pixels, heard.read().decode("utf-8", "replace")
 
 
 def jpeg_quality(data: bytes) -> float | None:

@@ -106,15 +106,14 @@ def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:
 
 
 def _of_array(path, id: str) -> np.ndarray:
+    _need_few(path, id)
     try:
         table = np.asarray(path)
         if np.iscomplexobj(table):
             table = np.stack([table.real, table.imag], axis=-1)
         cubics = np.asarray(table, dtype=float).reshape(len(table), 4, 2)
     except (TypeError, ValueError):
-        raise Error(
-            "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)", where=id, code="wrong-type"
-        ) from None
+        raise _no_cubics(id) from None
     broken = [k for k in range(1, len(cubics)) if not _meets(cubics[k - 1, 3], cubics[k, 0])]
     if broken:
         raise Error(
@@ -123,6 +122,35 @@ def _of_array(path, id: str) -> np.ndarray:
             code="wrong-type",
         )
     return cubics
+
+
+def _no_cubics(id: str) -> Error:
+    said = "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)"
+    return Error(said, where=id, code="wrong-type")
+
+
+def _need_few(path, id: str, levels: int = 3) -> int:
+    """Error for lists of more entries than are ever read, before numpy makes room for them; else how many there are."""
+    if not hasattr(path, "__len__") or isinstance(path, str | bytes):
+        return 1
+    if levels == 0:
+        raise _no_cubics(id)
+    count = path.size if isinstance(path, np.ndarray) else len(path)
+    if not isinstance(path, np.ndarray) and count <= _core.MOST_ENTRIES:
+        count = 0
+        for each in path:
+            count += _need_few(each, id, levels - 1)
+            if count > _core.MOST_ENTRIES:
+                break
+    if count > _core.MOST_ENTRIES:
+        raise Error(
+            f"a list of {count} entries is longer than any that is read, {_core.MOST_ENTRIES}",
+            where=id,
+            value=count,
+            range=(0, _core.MOST_ENTRIES),
+            code="list-too-long",
+        )
+    return count
 
 
 def _meets(end: np.ndarray, start: np.ndarray) -> bool:

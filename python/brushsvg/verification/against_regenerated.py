@@ -98,6 +98,10 @@ def differing_line(
         elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b):
             k += 1
         else:
+            if sentence := _differs_in_header(
+                ours, theirs, text.splitlines(), theirs_text.splitlines(), a, b
+            ):
+                return sentence
             if a and b and a.kind == b.kind == "lift":
                 a, b = _first_unlike(_of_lift(read.acts, ours, i), _of_lift(again.acts, theirs, k), like)
             elif a and b and a.kind == b.kind == "way" and like.is_stopped(ours[i + 1 :], theirs[k + 1 :]):
@@ -148,6 +152,17 @@ def _by_value(acts: list[Act]) -> dict[float, list[Act]]:
     return at
 
 
+def _differs_in_header(
+    ours: list[Act], theirs: list[Act], text: list[str], again: list[str], a: Act | None, b: Act | None
+) -> str | None:
+    """A line that only one of both headers has: they are sorted, and the line beside it says nothing of it."""
+    if b and _TOLD.match(b.text) and _header_word(b) not in map(_header_word, ours):
+        return f"its header lacks the line {again[b.line - 1].strip()[:60]!r}"
+    if a and _TOLD.match(a.text) and _header_word(a) not in map(_header_word, theirs):
+        return f"line {a.line}: {text[a.line - 1].strip()[:60]!r} is nothing that brushsvg would write in this header"
+    return None
+
+
 def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, like: _Alike) -> str:
     line, expected = (lines[act.line - 1] if act else "" for lines, act in ((ours, a), (theirs, b)))
     if not a:
@@ -187,9 +202,11 @@ def _with_header_sorted(acts: list[Act]) -> list[Act]:
     first = next((k for k, told in enumerate(is_told) if told), len(acts))
     last = next((k for k in range(first, len(acts)) if not is_told[k]), len(acts))
     header = {act.text: act for act in acts[first:last]}
-    return (
-        acts[:first] + sorted(header.values(), key=lambda act: act.text.partition(":")[0][:8]) + acts[last:]
-    )
+    return acts[:first] + sorted(header.values(), key=_header_word) + acts[last:]
+
+
+def _header_word(act: Act) -> str:
+    return act.text.partition(":")[0][:8]
 
 
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")

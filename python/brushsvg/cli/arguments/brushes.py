@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...drawing import READERS
 from . import values
 from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
-from .operands import PHOTOS, PICTURES, PROGRAMS, check_files, suffix_of
+from .operands import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:
@@ -49,6 +49,7 @@ def add_chart(commands) -> None:
 
 
 def _check_chart(args) -> None:
+    check_job(args)
     written = [(args.output, (".json", *PROGRAMS)), (args.page, (".pdf", ".svg")), (args.chart, (".json",))]
     check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 

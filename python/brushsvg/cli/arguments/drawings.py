@@ -13,6 +13,7 @@ from .operands import (
     check_drawing,
     check_extension,
     check_files,
+    check_job,
     suffix_of,
 )
 
@@ -34,6 +35,7 @@ def add_convert(commands) -> None:
 
 def _check_convert(args) -> None:
     check_drawing(args)
+    check_job(args)
     written = [
         (args.output, (".json", *PROGRAMS)),
         (args.preview, PICTURES),

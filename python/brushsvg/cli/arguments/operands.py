@@ -27,6 +27,16 @@ def check_drawing(args) -> None:
         args.parser.error("--lag needs --compensation constant")
 
 
+def check_job(args) -> None:
+    """Flags that only a program can follow: left out of a plan they would be lost without a word."""
+    for flag, value in (
+        ("--from-stroke", getattr(args, "from_stroke", 1) - 1),
+        ("--z-offset", args.z_offset),
+    ):
+        if value and suffix_of(args.output) == ".json":
+            args.parser.error(f"{flag} is for programs; a .json is the plan of the whole job, on the paper")
+
+
 def check_files(args, read, written) -> None:
     """read, written: (path or None, the extensions it may have or None for any). No file is written that is another."""
     for path, suffixes in (*read, *written):

@@ -25,13 +25,13 @@ from .prepare import prepare
 
 def check_file(args) -> None:
     from ...verification import against_plan, against_regenerated, simulate_program
-    from ...verification.readback import read_program
+    from ...verification.readback import read_program, text_of_file
     from ...verification.readback.header import made as made_of
     from ...verification.time_as_run import time_as_run_s
 
     check_places(args.preview)
     with about(args.program):
-        text = read_bytes(args.program).decode("latin-1")
+        text = text_of_file(read_bytes(args.program))
         made = made_of(text)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(args, kind) is None and name not in names:

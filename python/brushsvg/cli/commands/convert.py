@@ -24,7 +24,7 @@ def convert_file(args) -> None:
     cell = writer.painting_cell(suffix, work.options.cell)
     damaged = [] if args.lenient else [notice for notice in work.notices if notice.damaged]
     warn(args.input, [notice for notice in work.notices if notice not in damaged])
-    job = Job(args.z_offset, args.from_stroke if is_program else 1)
+    job = Job(args.z_offset, args.from_stroke)
     notes = outputs.notes(work)
     page = job_page_of(args.page, work) if args.page else None
     if args.order == "nearest":

@@ -32,9 +32,9 @@ def text_file(args) -> None:
 def _font(name: str) -> bytes:
     """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
     if not Path(name).exists():
-        known = _INKSCAPES / name
-        if Path(name).name == name and known.is_file():
-            return read_bytes(known)
+        for known in (_INKSCAPES / name, _INKSCAPES / f"{name}.svg"):
+            if Path(name).name == name and known.is_file():
+                return read_bytes(known)
         raise Error(
             "there is no such file; fonts of single lines come with Inkscape and are found by name, such as "
             f"EMSAllure.svg, where they lie in {_INKSCAPES}",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
 import re
+import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
@@ -115,6 +117,25 @@ def circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_m
     steps.append(Step(number, False, *end.tolist(), speed_mm_s, 0.0, place, (via,)))
 
 
+def text_of_file(data: bytes) -> str:
+    """With whatever letters an editor left in it, so that they can be named."""
+    if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        raise Error("it is written in UTF-16: brushsvg writes plain 7-bit text", code="line-unread")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _of_letter(letter: str, line: int) -> str:
+    if letter == "\ufeff":
+        return f"line {line} begins with a byte order mark (U+FEFF), which an editor put there: save it without one"
+    if letter == "\r":
+        return f"line {line} ends as on Windows, with a carriage return: brushsvg writes line feeds alone"
+    named = f"U+{ord(letter):04X} {unicodedata.name(letter, '')}".strip()
+    return f"line {line} has a letter {letter!r} ({named}): brushsvg writes plain 7-bit text"
+
+
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     """What a program of the cell's language does. Error with the line for what brushsvg would not have written."""
     from ...machine.posts import POSTS
@@ -124,10 +145,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
         raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}", code="program-format")
     if odd := re.search(r"[^\n -~]", text):
-        number = text.count("\n", 0, odd.start()) + 1
-        raise Error(
-            f"line {number} has a letter {odd[0]!r}: brushsvg writes plain 7-bit text", code="line-unread"
-        )
+        raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(("(", "#", "popup")):
             raise Error(

@@ -36,9 +36,10 @@ class Made:
 def made(text: str) -> Made:
     """Error when the header is not one of ours, or one of its numbers is damaged."""
     header = _header_of(text)
-    if not {"title", "brush", "cell"} <= set(header):
+    if missing := [word for word in ("title", "brush", "cell") if word not in header]:
+        lost = "" if len(missing) == 3 else ", or a line was lost"
         raise Error(
-            "its header does not name title, brush and cell: brushsvg did not write this program",
+            f"its header does not name {' and '.join(missing)}: brushsvg did not write this program{lost}",
             code="header-damaged",
         )
     sheet = _said(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
@@ -104,5 +105,5 @@ def _damaged(word: str, said: str) -> Error:
 def _header_of(text: str) -> dict[str, str]:
     """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
     told = re.compile(r"\((\w+): (.*)\)| *# (\w+):(?: (.*))?")
-    lines = (told.fullmatch(line.rstrip(" ")) for line in text.splitlines()[:100])
+    lines = (told.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     return {found[1] or found[3]: found[2] or found[4] or "" for found in lines if found}

@@ -1,0 +1,189 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "brushsvg/error.hpp"
+
+// How Python's lists and arrays become ours: as pybind11 does it, but nothing is made room for, and numpy is asked for
+// nothing, before it is known how much there is.
+
+namespace py = pybind11;
+
+/// No list is longer that anybody has a use for; the memory for a longer one is not even asked for.
+inline constexpr py::ssize_t kMostEntries = 10'000'000;
+
+/// What one argument holds so far: the lists within a list count together, a row of numbers as one entry.
+class Entries {
+ public:
+    Entries() {
+        if (depth_++ == 0) so_far_ = 0;
+    }
+    ~Entries() { --depth_; }
+    Entries(const Entries&) = delete;
+    Entries& operator=(const Entries&) = delete;
+
+    /// Error if there cannot be so many more.
+    static void expect(py::ssize_t more) {
+        const double all = double(so_far_) + double(more);
+        if (all > double(kMostEntries))
+            throw brushsvg::Error("list-too-long",
+                                  "a list of " + std::to_string(so_far_ + std::min(more, PY_SSIZE_T_MAX - so_far_)) +
+                                      " entries is longer than any that is read, " + std::to_string(kMostEntries),
+                                  "", all, std::array<double, 2>{0.0, double(kMostEntries)});
+    }
+    static void add(py::ssize_t more) {
+        expect(more);
+        so_far_ += more;
+    }
+
+ private:
+    static inline thread_local int depth_ = 0;
+    static inline thread_local py::ssize_t so_far_ = 0;
+};
+
+/// Numbers of any shape, one or an array of them, for `py::vectorize`.
+struct Numbers {
+    py::array_t<double, py::array::forcecast> values;
+};
+
+namespace pybind11::detail {
+
+using DoubleArray = array_t<double, array::c_style | array::forcecast>;
+
+/// An array of numbers, or null for anything else: complex ones, dates and words would only seem to be numbers, and
+/// None would be nan.
+inline DoubleArray numbers_of(handle source) {
+    const auto found = reinterpret_steal<object>(array::ensure(source).release());
+    if (!found || std::string("biuf").find(array(found).dtype().kind()) == std::string::npos)
+        return reinterpret_steal<DoubleArray>(handle());
+    const auto values = reinterpret_borrow<array>(found);
+    Entries::expect(values.ndim() == 2 ? values.shape(0) : values.size());
+    return DoubleArray::ensure(values);
+}
+
+/// Whether it is no list but makes an array of itself.
+inline bool is_array(handle source) {
+    return isinstance<array>(source) || hasattr(source, "__array__") || PyMemoryView_Check(source.ptr());
+}
+
+template <class Value>
+struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> {
+    bool load(handle source, bool convert) {
+        if (!object_is_convertible_to_std_vector(source)) return false;
+        if (!convert && !isinstance<sequence>(source)) return false;  // a generator can be read once only
+        const Entries entries;
+        ssize_t claimed = PyObject_LengthHint(source.ptr(), 0);
+        if (claimed < 0) {
+            PyErr_Clear();
+            claimed = 0;
+        }
+        Entries::expect(claimed);
+        this->value.clear();
+        this->value.reserve(std::size_t(claimed));
+        for (const handle one : reinterpret_borrow<iterable>(source)) {
+            Entries::add(1);  // it may go on beyond what it claims
+            make_caster<Value> read;
+            if (!read.load(one, convert)) return false;
+            this->value.push_back(cast_op<Value&&>(std::move(read)));
+        }
+        return true;
+    }
+};
+
+/// Without the generators, sets and dicts that pybind11 would make a tuple of.
+template <std::size_t N>
+struct type_caster<std::array<double, N>> : array_caster<std::array<double, N>, double, false, N> {
+    bool load(handle source, bool convert) {
+        return isinstance<sequence>(source) &&
+               array_caster<std::array<double, N>, double, false, N>::load(source, convert);
+    }
+};
+
+template <>
+struct type_caster<Numbers> {
+    PYBIND11_TYPE_CASTER(Numbers, const_name("numpy.typing.ArrayLike"));
+
+    bool load(handle source, bool convert) {
+        if (isinstance<sequence>(source) && !is_array(source)) {
+            make_caster<std::vector<double>> list;
+            if (!list.load(source, convert)) return false;
+            const auto& read = cast_op<std::vector<double>&>(list);
+            value.values = array_t<double>(ssize_t(read.size()), read.data());
+            return true;
+        }
+        const auto numbers = numbers_of(source);
+        if (numbers) value.values = numbers;
+        return bool(numbers);
+    }
+};
+
+/// (n, Columns) numbers: an array, or a list of rows.
+template <int Columns>
+struct rows_caster {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Columns, Eigen::RowMajor>;
+    using props = EigenProps<Rows>;
+    PYBIND11_TYPE_CASTER(Rows, props::descriptor);
+
+    bool load(handle source, bool convert) {
+        if (!convert && !isinstance<array_t<double>>(source)) return false;
+        const Entries entries;
+        if (is_array(source)) {
+            const auto numbers = numbers_of(source);
+            if (!numbers || numbers.ndim() != 2 || numbers.shape(1) != Columns) return false;
+            Entries::add(numbers.shape(0));
+            value = Eigen::Map<const Rows>(numbers.data(), numbers.shape(0), Columns);
+            return true;
+        }
+        make_caster<std::vector<std::array<double, Columns>>> list;
+        if (!list.load(source, convert)) return false;
+        const auto& read = cast_op<std::vector<std::array<double, Columns>>&>(list);
+        value.resize(Eigen::Index(read.size()), Columns);
+        for (std::size_t i = 0; i < read.size(); ++i)
+            for (int k = 0; k < Columns; ++k) value(Eigen::Index(i), k) = read[i][std::size_t(k)];
+        return true;
+    }
+
+    static handle cast(Rows&& rows, return_value_policy, handle) {
+        return eigen_encapsulate<props>(new Rows(std::move(rows)));
+    }
+    static handle cast(const Rows& rows, return_value_policy policy, handle parent) {
+        return policy == return_value_policy::reference_internal ? eigen_ref_array<props>(rows, parent)
+                                                                 : eigen_array_cast<props>(rows);
+    }
+};
+
+template <>
+struct type_caster<Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>> : rows_caster<2> {};
+template <>
+struct type_caster<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> : rows_caster<3> {};
+template <>
+struct type_caster<Eigen::Matrix<double, Eigen::Dynamic, 8, Eigen::RowMajor>> : rows_caster<8> {};
+
+/// A place or a direction.
+template <>
+struct type_caster<Eigen::Vector2d> {
+    PYBIND11_TYPE_CASTER(Eigen::Vector2d, const_name("tuple[float, float]"));
+
+    bool load(handle source, bool convert) {
+        make_caster<std::array<double, 2>> list;
+        if (!list.load(source, convert)) return false;
+        const auto& read = cast_op<std::array<double, 2>&>(list);
+        value = {read[0], read[1]};
+        return true;
+    }
+    static handle cast(const Eigen::Vector2d& place, return_value_policy, handle) {
+        return eigen_array_cast<EigenProps<Eigen::Vector2d>>(place);
+    }
+};
+
+}  // namespace pybind11::detail

@@ -1,0 +1,108 @@
+"""Lists and arrays longer than any that is read, within each other too: refused before room is made for them."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import brushsvg
+from brushsvg import _core
+
+SQUARE = np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])
+LONG = range(10**9)  # 8 GB, were it copied
+
+
+def all_rows(columns: int) -> np.ndarray:
+    """Ten thousand million rows that are one."""
+    return np.broadcast_to(0.0, (10**10, columns))
+
+
+CALLS = {
+    "a ring": lambda: brushsvg.area([LONG]),
+    "a ring that is one row": lambda: brushsvg.area([all_rows(2)]),
+    "a thousand rings": lambda: brushsvg.area([np.zeros((10**5, 2))] * 1000),
+    "rings beside rings": lambda: brushsvg.overlap([SQUARE], [SQUARE, LONG]),
+    "points": lambda: _core.convex_hull(LONG),
+    "poses": lambda: brushsvg.Pass("a", LONG),
+    "poses that are one": lambda: brushsvg.Pass("a", all_rows(3)),
+    "cubics": lambda: brushsvg.Stroke("a", all_rows(8)),
+    "a line": lambda: _core.fit_curve(LONG, 0.1),
+    "a footprint": lambda: _core.Footprint(1.0, LONG),
+    "rows within rows": lambda: setattr(brushsvg.Brush(), "covariance", [[0.0], LONG]),
+    "depths": lambda: brushsvg.find_brush("round-6").lag(LONG),
+    "depths that are one": lambda: brushsvg.find_brush("round-6").lag(np.broadcast_to(1.0, 10**10)),
+    "a path": lambda: brushsvg.stroke_from_path(LONG, 3.0),
+    "a path's points": lambda: brushsvg.stroke_from_path([[LONG, LONG]], 3.0),
+    "a path that is one cubic": lambda: brushsvg.stroke_from_path(all_rows(8), 3.0),
+}
+
+
+@pytest.mark.parametrize("what", CALLS)
+def test_what_is_longer_than_any_is_refused_within_lists_too(what):
+    with pytest.raises(brushsvg.Error) as refused:
+        CALLS[what]()
+    assert refused.value.code == "list-too-long"
+    assert refused.value.value > 10**7 == refused.value.range[1] == _core.MOST_ENTRIES
+
+
+UNLIKE = {
+    "rows of any length": lambda: brushsvg.area([[LONG, LONG]]),
+    "one row without end": lambda: brushsvg.Arc(1, 2, itertools.count(), 1),
+    "a place of any length": lambda: brushsvg.Arc(1, 2, LONG, 1),
+    "points without end": lambda: brushsvg.area([SQUARE, itertools.count()]),
+    "numbers with an imaginary part": lambda: brushsvg.area([SQUARE + 1j]),
+    "dates": lambda: brushsvg.area([SQUARE.astype("datetime64[s]")]),
+    "words": lambda: brushsvg.area([SQUARE.astype(str)]),
+    "numbers beyond any": lambda: brushsvg.area([[[10**400, 1]]]),
+    "nothing in place of a number": lambda: brushsvg.find_brush("round-6").lag(None),
+    "a dict": lambda: brushsvg.Pass("a", {}),
+    "three columns": lambda: brushsvg.area([np.zeros((4, 3))]),
+}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("what", UNLIKE)
+def test_what_is_no_array_of_numbers_is_refused(what):
+    with pytest.raises(TypeError):
+        UNLIKE[what]()
+
+
+def test_a_generator_without_end_is_left_at_the_most():
+    read = 0
+
+    def endless():
+        nonlocal read
+        while True:
+            read += 1
+            yield SQUARE
+
+    with pytest.raises(brushsvg.Error) as refused:
+        _core.area(endless())
+    assert (refused.value.code, read < 10**7) == ("list-too-long", True)
+
+
+@pytest.mark.parametrize(
+    "ring",
+    [
+        SQUARE,
+        SQUARE.tolist(),
+        [tuple(row) for row in SQUARE],
+        list(SQUARE),
+        SQUARE.astype(int),
+        SQUARE.astype(np.float32),
+        np.asfortranarray(SQUARE),
+        np.repeat(SQUARE, 2, axis=0)[::2],
+        memoryview(SQUARE),
+        np.ascontiguousarray(SQUARE[::-1])[::-1],
+    ],
+)
+def test_rows_may_come_in_any_form(ring):
+    assert brushsvg.area([ring]) == 81
+    poses = np.array(brushsvg.Pass("a", np.column_stack([np.asarray(ring), np.zeros(4)])).poses_mm)
+    assert np.array_equal(poses[:, :2], SQUARE)
+
+
+def test_laws_answer_in_the_shape_they_are_asked():
+    lag = brushsvg.find_brush("round-6").lag
+    assert isinstance(lag(3), float) and lag([1, 2]).shape == (2,)
+    assert lag(np.full((2, 3), 3.0)).tolist() == [[lag(3)] * 3] * 2
