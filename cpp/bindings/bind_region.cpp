@@ -1,5 +1,6 @@
 #include "bindings.hpp"
 #include "brushsvg/error.hpp"
+#include "brushsvg/excess_turning.hpp"
 #include "brushsvg/region.hpp"
 
 void bind_region(py::module_& m) {
@@ -24,6 +25,9 @@ void bind_region(py::module_& m) {
           "Distance [mm] of points (n, 2) from the outline, on whichever side of it.");
     m.def("area", &area, py::arg("rings"),
           "Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.");
+    m.def(
+        "excess_turning", &excess_turning, py::arg("mark"), py::arg("wanted"),
+        "How much more the outlines of a mark turn than those wanted, in full turns; each as a polygon within 0.1 mm.");
     m.def("overlap", &overlap, py::arg("rings_a"), py::arg("rings_b"), unlocked,
           "Area of the intersection over area of the union, each given as for unite; 1 when both are empty.");
 }

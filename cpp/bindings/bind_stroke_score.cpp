@@ -12,8 +12,9 @@ void bind_stroke_score(py::module_& m) {
                             R"(How well a pass paints its stroke.
 
 overlap: common over joint area; width_error_mm: mean absolute difference of widths across the line, None where none can
-be measured; worst: a WorstPlace.)")
+be measured; excess_turning: of the mark's outline, in full turns; worst: a WorstPlace.)")
         .def_readonly("overlap", &StrokeScore::overlap)
+        .def_readonly("excess_turning", &StrokeScore::excess_turning)
         .def_readonly("width_error_mm", &StrokeScore::width_error_mm)
         .def_readonly("worst", &StrokeScore::worst);
     m.def(

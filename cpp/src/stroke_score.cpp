@@ -6,6 +6,8 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "brushsvg/excess_turning.hpp"
+#include "brushsvg/target_mark.hpp"
 
 namespace brushsvg {
 namespace {
@@ -14,6 +16,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kLineMm = 0.01;
+constexpr double kRingMm = 0.01;
 constexpr double kLeastSquareMm = 0.5;   // in which paint and drawing differ most
 constexpr int kBlocks = 5;               // the worst place is looked for in steps of a fifth of its size
 constexpr double kEveryMm = 0.5;         // where widths are measured
@@ -164,6 +167,7 @@ StrokeScore stroke_score(const PassMarks& painted, const Stroke& wanted, const B
     const MarkOverlap seen = mark_overlap({painted}, {wanted}, brush);
     const MiddlePolyline line = flatten(wanted, kLineMm);
     return {common_area(seen).overlap(), width_error_mm(seen, line),
+            excess_turning(outline(painted, brush), wanted_outline(wanted, kRingMm)),
             worst_place(seen, std::max(kLeastSquareMm, median_half_width(line)))};
 }
 

@@ -7,6 +7,7 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/curve_fit.hpp"
 #include "brushsvg/error.hpp"
+#include "brushsvg/excess_turning.hpp"
 #include "brushsvg/footprint.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"

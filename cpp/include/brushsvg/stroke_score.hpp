@@ -22,6 +22,7 @@ struct StrokeScore {
     /// wide as the line says (its ends, where it crosses or touches itself) tell nothing of the brush's width and are
     /// left out; nothing left: none.
     std::optional<double> width_error_mm;
+    double excess_turning;  ///< of the mark's outline beyond the wanted one's [full turns], see excess_turning()
     WorstPlace worst;  ///< in a square half as wide as the stroke, at least 0.5 mm
 };
 

@@ -27,6 +27,7 @@ class Figures:
     overlap: area of intersection over area of union of predicted and wanted mark.
     centre_*: distance of the widest point from the middle line over taut rows.
     width_error_mm: mean absolute difference of predicted and wanted width across the middle line.
+    excess_turning: how much more the mark's outline turns than the wanted one's, in full turns; over all, the mean.
     drawn_mm, painted_mm: length of the middle line; of the TCP's path on the paper.
     """
 
@@ -40,6 +41,7 @@ class Figures:
     painted_mm: float
     poses: int
     worst: Worst | None = None
+    excess_turning: float | None = None
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,7 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
         centre_mean_mm=miss.mean_mm,
         centre_largest_mm=miss.largest_mm,
         width_error_mm=verdict.width_error_mm,
+        excess_turning=verdict.excess_turning,
         widths_out_of_reach=_out_of_reach(stroke, brush),
         drawn_mm=float(line[-1, 2]),
         worst=worst,
@@ -194,6 +197,7 @@ def _in_all(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
         centre_mean_mm=known("centre_mean_mm", mean),
         centre_largest_mm=known("centre_largest_mm", lambda values, _: max(values)),
         width_error_mm=known("width_error_mm", mean),
+        excess_turning=known("excess_turning", lambda values, _: float(np.mean(values))),
         widths_out_of_reach=known("widths_out_of_reach", lambda values, _: sum(values)),
         drawn_mm=known("drawn_mm", lambda values, _: sum(values)),
         painted_mm=sum(row.painted_mm for row in rows),
@@ -269,6 +273,7 @@ def to_text(report: Report) -> str:
         ("centre mean", [_figure(row.centre_mean_mm, 3) for row in rows]),
         ("largest", [_figure(row.centre_largest_mm, 3) for row in rows]),
         ("width error", [_figure(row.width_error_mm, 3) for row in rows]),
+        ("turning", [_figure(row.excess_turning, 2) for row in rows]),
         ("out of reach", [_figure(row.widths_out_of_reach, 0) for row in rows]),
         ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
         ("painted", [_figure(row.painted_mm, 1) for row in rows]),
@@ -290,6 +295,7 @@ def to_text(report: Report) -> str:
         "",
         "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
         "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        "Turning: of the mark's outline beyond that of the target mark, in full turns.",
         *_confidence_words(report.confidence),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]

@@ -1,0 +1,52 @@
+#include "brushsvg/excess_turning.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace brushsvg;
+
+namespace {
+
+/// A disc of 10 mm with a wave of so many turns along its edge.
+Ring wavy(double height_mm, int waves, int points = 720) {
+    Ring ring(points, 2);
+    for (int i = 0; i < points; ++i) {
+        const double angle = 2.0 * 3.14159265358979324 * i / points, r = 10.0 + height_mm * std::sin(waves * angle);
+        ring.row(i) << r * std::cos(angle), r * std::sin(angle);
+    }
+    return ring;
+}
+
+Ring corners(std::initializer_list<std::array<double, 2>> places) {
+    Ring ring(Eigen::Index(places.size()), 2);
+    Eigen::Index i = 0;
+    for (const auto& [x, y] : places) ring.row(i++) << x, y;
+    return ring;
+}
+
+}  // namespace
+
+TEST_CASE("convex outlines turn once, however many corners they have") {
+    const Rings disc{wavy(0.0, 0)}, coarse{wavy(0.0, 0, 60)}, square{corners({{0, 0}, {10, 0}, {10, 10}, {0, 10}})};
+    CHECK(excess_turning(disc, square) == doctest::Approx(0.0).epsilon(1e-9));
+    CHECK(excess_turning(coarse, disc) == doctest::Approx(0.0).epsilon(1e-9));
+    CHECK(excess_turning({}, {}) == 0.0);
+}
+
+TEST_CASE("a thorn turns there and back, a wave does so each time, and what is finer than a tenth does not count") {
+    const Rings square{corners({{0, 0}, {10, 0}, {10, 10}, {0, 10}})};
+    const Rings thorn{corners({{0, 0}, {10, 0}, {10, 10}, {5.5, 10}, {5, 12}, {4.5, 10}, {0, 10}})};
+    const double beside = std::atan2(2.0, 0.5), peak = 3.14159265358979324 - 2.0 * beside;
+    const double all =
+        (4.0 * 3.14159265358979324 / 2.0 + 2.0 * beside + std::abs(3.14159265358979324 - std::abs(peak)));
+    CHECK(excess_turning(thorn, square) == doctest::Approx(all / (2.0 * 3.14159265358979324) - 1.0).epsilon(1e-6));
+    CHECK(excess_turning({wavy(0.5, 20)}, {wavy(0.0, 0)}) > 2.0);
+    CHECK(std::abs(excess_turning({wavy(0.02, 20)}, {wavy(0.0, 0)})) < 0.01);
+}
+
+TEST_CASE("a hole counts like an outline") {
+    Ring hole = wavy(0.0, 0);
+    hole = hole.colwise().reverse().eval() / 2.0;
+    CHECK(excess_turning({wavy(0.0, 0), hole}, {wavy(0.0, 0)}) == doctest::Approx(1.0).epsilon(1e-9));
+}
