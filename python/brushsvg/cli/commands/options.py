@@ -37,6 +37,7 @@ class Choices:
     compensation: str | None
     lag: float | None
     tolerance: float | None
+    start: str | None
     z_offset: float | None
 
 
@@ -99,6 +100,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         lag_mm=chosen.lag,
         tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance)
         or preparation.Options.tolerance_mm,
+        start=chosen.start or preparation.Options.start,
         paths_as=chosen.paths_as,
         wide=chosen.wide or preparation.Options.wide,
         speed_mm_s=min(preparation.Options.speed_mm_s, cell.speeds.paint_mm_s),

@@ -103,6 +103,7 @@ _KNOWN = {
     "reload": ("reload", _yes),
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
+    "start": ("start", _one_of("exposed", "hidden", "auto")),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),
