@@ -214,25 +214,6 @@ bool lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, dou
     return true;
 }
 
-/// Arc length where the widest section stands while the footprint's front, on its way back, reaches the drawn
-/// beginning, half a width before the path's: where the mark widens to a blunt beginning within its own width, the last
-/// such place.
-double turning_place(const Stroke& stroke, const Brush& brush, double length, double last_mm) {
-    constexpr int n = 60;
-    const double h0 = half_width_at(stroke, 0.0);
-    double widest = h0;
-    for (const WidthKnot& knot : stroke.half_width) widest = std::max(widest, knot.half_width_mm);
-    const auto short_of = [&](double s) {
-        return s - front_of_widest(brush, depth_of(stroke, brush, s / length)) + h0;
-    };
-    const double step = std::min(2.0 * widest, last_mm) / n;
-    for (int i = n; i-- > 0;) {
-        const double before = short_of(i * step);
-        if (before < 0.0) return (i + before / (before - short_of((i + 1) * step))) * step;
-    }
-    return -short_of(0.0);
-}
-
 /// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
                                                 const Inverse& inverse, double last_mm, double step_tolerance) {
@@ -240,8 +221,10 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
     const auto lever = [&](double s) {
         return brush.lever_to_widest(depth_of(stroke, brush, std::clamp(s / line.length(), 0.0, 1.0)));
     };
-    const double turn_mm = turning_place(stroke, brush, line.length(), last_mm), e = lever(turn_mm);
-    if (!(e > 0.0) || turn_mm > last_mm) return {};
+    const double e = lever(0.0);
+    if (!(e > 0.0)) return {};
+    // there the front reaches the drawn beginning, half a width before the path's
+    const double turn_mm = front_of_widest(brush, depth_of(stroke, brush, 0.0)) - half_width_at(stroke, 0.0);
     // as far back as it goes on from, or what there is room for; less leaves a waist
     double from_mm = turn_mm + 2.0 * e;
     for (int tries = 0; from_mm > last_mm || !lies_inside(stroke, brush, line, std::max(from_mm, 0.0)); ++tries) {
@@ -428,13 +411,14 @@ Pass beginning_of(const Pass& pass, double length_mm) {
 
 /// The beginning that differs less from the wanted mark, near it.
 Beginning best_beginning(const Stroke& stroke, const Brush& brush, const Line& line, double step_tolerance) {
+    const double last_mm = painted_stretch(stroke, brush, line.length())[1];
+    if (!hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
+        return Beginning::exposed;
     bool turns = false;
     Pass exposed, hidden;
     closed_form(stroke, brush, line, Beginning::exposed, step_tolerance, turns).into(exposed);
     closed_form(stroke, brush, line, Beginning::hidden, step_tolerance, turns).into(hidden);
     const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth);
-    if (!(half > 0.0) || (exposed.poses_mm.rows() == hidden.poses_mm.rows() && exposed.poses_mm == hidden.poses_mm))
-        return Beginning::exposed;
     const Vector2d at = line.at(0.0).middle;
     const double side = 2.0 * kLookedAt * half, made = kMade * half + 4.0 * brush.lag(depth);
     const Window window{at.x() - 0.5 * side, at.y() - 0.5 * side, side, side};

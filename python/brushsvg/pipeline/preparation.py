@@ -39,7 +39,7 @@ class Options:
     lag_mm: float | None = None
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
-    start: str = "exposed"  # of strokes, where the drawing does not say: "exposed", "hidden", "auto"
+    start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "auto"
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does

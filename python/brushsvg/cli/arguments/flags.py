@@ -93,8 +93,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add(
         "--start",
         choices=("exposed", "hidden", "auto"),
-        help="of strokes: pointed, round (set down inside, moved back, turned over), or what suits each; default: "
-        "exposed",
+        help="of strokes: pointed, round (set down inside, moved back, turned over), or what suits each; default: auto",
     )
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
 
