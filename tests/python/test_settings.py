@@ -16,7 +16,10 @@ ALL = {
     "start": "hidden",
     "width_mm": 0.1,
 }
-WRITTEN = '{"brush":"b","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,"start":"hidden","width_mm":0.1}'
+WRITTEN = (
+    '{"brush":"b","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,'
+    '"start":"hidden","width_mm":0.1}'
+)
 
 
 def plan_with(settings):
