@@ -579,6 +579,6 @@ def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
     plan = core.compensate([said], ROUND, (99.0, 99.0), start="exposed").plan
     np.testing.assert_array_equal(plan.passes[0].poses_mm, hidden)
     wrong = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="soft"))
-    with pytest.raises(Error, match="exposed, hidden or auto") as refused:
+    with pytest.raises(Error) as refused:
         core.compensate([wrong], ROUND, (99.0, 99.0))
     assert (refused.value.where, refused.value.code) == ("s", "choice-unknown")

@@ -19,7 +19,7 @@ def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dic
 
 
 def document_settings(attributes: dict[str, str]) -> dict:
-    """What the root element says of the whole job, valid ones only: brush, cell, compensation, start, tolerance, wide."""
+    """What the root element says of the whole job: brush, cell, compensation, start, tolerance, wide; what is valid."""
     settings, _ = _read(attributes, _OF_THE_DOCUMENT | {name: _KNOWN[name] for name in ("brush", "start")})
     return settings
 
