@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 constexpr double kPi = 3.14159265358979323846;
 /// A turn in place counts as so much way per radian: it needs samples and controls of its own.
 constexpr double kWayPerRadian = 1.0;
+/// Neighbours with the patch at rest in one place and headings more than 120 degrees apart are those before and after
+/// the brush turns over: samples of a turn in place lie closer.
+constexpr double kTurnedOver = -0.5, kRestsMm = 0.01;
 /// A dab is given some way, or no factor could make it a stroke.
 constexpr double kLeastWayMm = 1.0;
 
@@ -121,6 +124,42 @@ double way_of(const PatchSamples& samples) {
     return way;
 }
 
+namespace {
+
+/// Rows of a trace as samples, those left out where nothing moves, and the way up to each.
+struct Rows {
+    PatchSamples samples;
+    std::vector<double> way;
+
+    Rows(const PassMarks& marks, std::size_t begin, std::size_t end, double heading_near) {
+        for (std::size_t i = begin; i < end; ++i) {
+            PatchSample row{marks.contact_mm.row(Index(i)).transpose(), marks.heading_rad[i], marks.depth_mm[i]};
+            row.heading_rad = unwrapped(row.heading_rad, samples.empty() ? heading_near : samples.back().heading_rad);
+            double step = 0.0;
+            if (!samples.empty()) {
+                step = (row.contact_mm - samples.back().contact_mm).norm() +
+                       kWayPerRadian * std::abs(row.heading_rad - samples.back().heading_rad);
+                if (step == 0.0) continue;
+            }
+            way.push_back(samples.empty() ? 0.0 : way.back() + step);
+            samples.push_back(row);
+        }
+    }
+    /// Evenly resampled: at least so many.
+    void into(PatchSamples& out, double step_mm, std::size_t least, std::size_t most) const {
+        const std::size_t n = std::clamp(std::size_t(std::ceil(way.back() / step_mm)) + 1, least, most);
+        std::size_t j = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double at = way.back() * double(i) / double(n - 1);
+            while (j + 2 < way.size() && way[j + 1] < at) ++j;
+            const double c = std::clamp((at - way[j]) / (way[j + 1] - way[j]), 0.0, 1.0);
+            out.push_back(between(samples[j], samples[j + 1], c));
+        }
+    }
+};
+
+}  // namespace
+
 PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, std::size_t most) {
     const PassMarks marks = simulate(pass, brush, 0.02, false);
     std::size_t begin = 0, end = marks.taut.size();
@@ -128,36 +167,27 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
     // the landing ends at a pose where the brush is about to be taut
     if (begin > 0 && begin < end && marks.pose[begin - 1] == std::floor(marks.pose[begin - 1])) --begin;
     while (end > begin && !marks.taut[end - 1]) --end;
-    PatchSamples rows;
-    std::vector<double> way;
-    for (std::size_t i = begin; i < end; ++i) {
-        PatchSample row{marks.contact_mm.row(Index(i)).transpose(), marks.heading_rad[i], marks.depth_mm[i]};
-        double step = 0.0;
-        if (!rows.empty()) {
-            row.heading_rad = unwrapped(row.heading_rad, rows.back().heading_rad);
-            step = (row.contact_mm - rows.back().contact_mm).norm() +
-                   kWayPerRadian * std::abs(row.heading_rad - rows.back().heading_rad);
-            if (step == 0.0) continue;
-        }
-        way.push_back(rows.empty() ? 0.0 : way.back() + step);
-        rows.push_back(row);
-    }
-    if (rows.empty()) return {};
-    if (way.back() < kLeastWayMm) {
-        rows = {rows.back(), rows.back()};
-        rows[0].contact_mm -= kLeastWayMm * direction(rows[1].heading_rad);
-        way = {0.0, kLeastWayMm};
-    }
-    const std::size_t n = std::clamp(std::size_t(std::ceil(way.back() / step_mm)) + 1, std::size_t(8), most);
+    if (begin == end) return {};
     PatchSamples out;
-    std::size_t j = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const double at = way.back() * double(i) / double(n - 1);
-        while (j + 2 < way.size() && way[j + 1] < at) ++j;
-        const double c = std::clamp((at - way[j]) / (way[j + 1] - way[j]), 0.0, 1.0);
-        out.push_back(between(rows[j], rows[j + 1], c));
+    double heading = marks.heading_rad[begin];
+    for (const TurnOver& turn : turns_over(marks)) {  // P rests there: what lies between both ends is not painted
+        const Rows rows(marks, begin, turn.first, heading);
+        if (rows.samples.size() > 1) rows.into(out, step_mm, 2, most);
+        begin = turn.last;
+        heading = out.empty() ? marks.heading_rad[begin] : out.back().heading_rad;
     }
+    Rows rows(marks, begin, end, heading);
+    if (rows.way.back() < kLeastWayMm && out.empty()) {
+        rows.samples = {rows.samples.back(), rows.samples.back()};
+        rows.samples[0].contact_mm -= kLeastWayMm * direction(rows.samples[1].heading_rad);
+        rows.way = {0.0, kLeastWayMm};
+    }
+    if (rows.samples.size() > 1) rows.into(out, step_mm, 8, most);
     return out;
+}
+
+bool turns_over(const PatchSample& a, const PatchSample& b) {
+    return std::cos(b.heading_rad - a.heading_rad) < kTurnedOver && (b.contact_mm - a.contact_mm).norm() < kRestsMm;
 }
 
 namespace {
@@ -167,7 +197,8 @@ PatchSamples turns_in_steps(const PatchSamples& samples) {
     PatchSamples out{samples[0]};
     for (std::size_t i = 1; i < samples.size(); ++i) {
         const PatchSample &a = samples[i - 1], &b = samples[i];
-        const int n = std::max(1, int(std::ceil(std::abs(b.heading_rad - a.heading_rad) / kTurnStepRad)));
+        const int n =
+            turns_over(a, b) ? 1 : std::max(1, int(std::ceil(std::abs(b.heading_rad - a.heading_rad) / kTurnStepRad)));
         for (int k = 1; k <= n; ++k) out.push_back(between(a, b, double(k) / n));
     }
     return out;
@@ -201,6 +232,11 @@ Poses poses_along(const PatchSamples& coarse, const Brush& brush, double toleran
     };
     while (from + 1 < samples.size()) {
         std::size_t to = from + 1;
+        if (turns_over(samples[from], samples[to])) {
+            turn_over(stance(samples[from]), stance(samples[to]), brush, list);
+            from = to;
+            continue;
+        }
         while (to + 1 < samples.size() && to - from < 64 && fits(from, to + 1)) ++to;
         list.add(tcp(samples[to]), samples[to].depth_mm);
         from = to;

@@ -49,7 +49,10 @@ double way_of(const PatchSamples& samples);
 /// The way of the patch that a pass draws, from where the brush is taut to where it was so last, evenly resampled.
 PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, std::size_t most);
 
-/// The pass that draws it: landing, q = P + r(depth) u, lift. Chords stay within the tolerance.
+/// Whether the brush turns over between neighbours.
+bool turns_over(const PatchSample& a, const PatchSample& b);
+
+/// The pass that draws it: landing, q = P + r(depth) u, turning over, lift. Chords stay within the tolerance.
 Poses poses_along(const PatchSamples& samples, const Brush& brush, double tolerance_mm);
 
 }  // namespace brushsvg::fit

@@ -8,9 +8,9 @@
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/target_mark.hpp"
-#include "brushsvg/thin_out.hpp"
 #include "outline_fit.hpp"
 #include "patch_path.hpp"
+#include "thin_out_after_turn.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -91,6 +91,7 @@ struct Tried {
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options) {
     RefinedPass closed;
     CompensateOptions how{Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s};
+    how.start = options.start;
     closed.plan = compensate(stroke, brush, how);
     how.few_poses = false;  // poses that lie beside the path would be taken for its bends
     const Pass dense = compensate(stroke, brush, how).pass;
@@ -121,7 +122,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         moved.plan.pass.poses_mm =
             poses_along(path.at(fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations, start)), brush,
                         kChords * options.tolerance_mm);
-        moved.plan.pass = thin_out(moved.plan.pass, brush, kThinned * options.tolerance_mm);
+        moved.plan.pass = thin_out_after_turn(moved.plan.pass, brush, kThinned * options.tolerance_mm);
         const Tried after(moved.plan.pass, stroke, wanted, brush);
         moved.overlap = after.overlap;
         const bool in_bounds = anywhere || (stays(after.painted_bounds, before.painted_bounds, 0.0) &&

@@ -4,14 +4,18 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "brushsvg/checkpoint.hpp"
+#include "brushsvg/coverage.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"
-#include "brushsvg/thin_out.hpp"
+#include "brushsvg/mark_overlap.hpp"
+#include "brushsvg/simulate.hpp"
 #include "landing.hpp"
 #include "middle_line.hpp"
+#include "thin_out_after_turn.hpp"
 #include "tolerance.hpp"
 #include "usable.hpp"
 
@@ -48,7 +52,8 @@ class Inverse {
     /// Depths where the widest section stands over the centre of friction.
     const std::vector<double>& crossings() const { return crossings_; }
 
-    void operator()(Samples& samples) const {
+    /// `first`: the heading at the first sample; none: along the line.
+    void operator()(Samples& samples, const std::optional<Vector2d>& first = {}) const {
         std::size_t begin = 0;
         while (begin + 1 < samples.size()) {
             const int sign = sign_of(samples, begin);
@@ -57,7 +62,7 @@ class Inverse {
             if (sign == 0)
                 follow_tangent(samples, begin, end);
             else if (sign > 0)
-                forwards(samples, begin, end);
+                forwards(samples, begin, end, begin == 0 && first ? *first : line_.tangent(samples[begin]));
             else
                 backwards(samples, begin, end);
             begin = end;
@@ -82,9 +87,9 @@ class Inverse {
         }
     }
     /// The widest section leads: the forward law with lever e, from the stretch's beginning.
-    void forwards(Samples& samples, std::size_t begin, std::size_t end) const {
+    void forwards(Samples& samples, std::size_t begin, std::size_t end, const Vector2d& heading) const {
         LagState<double> state;
-        state.heading = line_.tangent(samples[begin]);
+        state.heading = heading;
         start(samples, begin, ahead_, 1.0, state);
         for (std::size_t i = begin + 1; i <= end; ++i) step(samples, i - 1, i, ahead_, 1.0, state);
     }
@@ -177,20 +182,119 @@ Samples dab(const Stroke& stroke, const Line& line) {
     return {sample};
 }
 
-PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, double step_tolerance, bool& turns) {
-    const auto [s0, s1] = painted_stretch(stroke, brush, line.length());
+/// Steps of the way back at a hidden beginning, a few times as long as the widest section's lever.
+constexpr int kStepsBack = 12;
+/// Shorter ways back that are tried where the whole one has no room.
+constexpr int kShorter = 4;
+constexpr int kHalvings = 30;  // of a few mm: to rounding
+
+/// A hidden beginning: the brush is set down heading back along the line, and drawn back until the round front of its
+/// footprint reaches the drawn beginning. There it turns over, and P rests, so it goes on where the widest section is
+/// as far in front of P as it was behind.
+struct HiddenBeginning {
+    Samples back;
+    double on_from_mm;         ///< arc length where the widest section goes on
+    Eigen::Vector2d on_along;  ///< and the heading there
+};
+
+/// Whether the pointed rear of a footprint that is set down heading back along the line stays inside the stroke: each
+/// place on its axis is nearer to the line than it is to the edge, there where the rear is so narrow.
+bool lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm) {
+    constexpr int n = 6;
+    const Sample widest = line.at(widest_mm);
+    const Vector2d along = line.tangent(widest);
+    const double rear = brush.tip_to_widest(widest.depth);
+    for (int i = 1; i <= n; ++i) {
+        const double t = double(i) / n, s = widest_mm + t * rear;
+        const double half = half_width_at(stroke, std::min(1.0, s / line.length()));
+        const Vector2d on_line = s <= line.length() ? line.at(s).middle : line.at(line.length()).middle;
+        if ((widest.middle + t * rear * along - on_line).norm() > half - (1.0 - t) * brush.half_width(widest.depth))
+            return false;
+    }
+    return true;
+}
+
+/// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
+std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
+                                                const Inverse& inverse, double last_mm, double step_tolerance) {
+    if (stroke.closed || brush.is_rigid() || !(line.length() > 0.0)) return {};
+    const auto lever = [&](double s) {
+        return brush.lever_to_widest(depth_of(stroke, brush, std::clamp(s / line.length(), 0.0, 1.0)));
+    };
+    const double e = lever(0.0);
+    if (!(e > 0.0)) return {};
+    // there the front reaches the drawn beginning, half a width before the path's
+    const double turn_mm = front_of_widest(brush, depth_of(stroke, brush, 0.0)) - half_width_at(stroke, 0.0);
+    // as far back as it goes on from, or what there is room for; less leaves a waist
+    double from_mm = turn_mm + 2.0 * e;
+    for (int tries = 0; from_mm > last_mm || !lies_inside(stroke, brush, line, std::max(from_mm, 0.0)); ++tries) {
+        if (tries == kShorter) return {};
+        from_mm -= 2.0 * e / kShorter;
+    }
+
+    HiddenBeginning found;
+    for (int i = 0; i <= kStepsBack; ++i) {
+        const double s = from_mm + (turn_mm - from_mm) * i / kStepsBack;
+        Sample sample = line.at(std::max(s, 0.0));
+        if (!(lever(s) > 0.0)) return {};
+        if (s < 0.0) sample.middle += s * line.tangent(sample);  // a blunt front reaches less far than round caps do
+        found.back.push_back(sample);
+    }
+    inverse(found.back, -line.tangent(found.back.front()));
+    const Vector2d contact = found.back.back().contact;
+    // as few steps as the tolerance asks for: nobody thins them out
+    Samples few{found.back.front()};
+    for (std::size_t i = 1, from = 0; i + 1 < found.back.size(); ++i)
+        for (std::size_t k = from + 1; k <= i; ++k)
+            if (off_chord(found.back[from], found.back[i + 1], found.back[k]) > step_tolerance) {
+                few.push_back(found.back[i]);
+                from = i;
+            }
+    few.push_back(found.back.back());
+    found.back = few;
+    const auto beyond = [&](double s) { return (line.at(s).middle - contact).norm() - lever(s); };
+    double a = std::max(0.0, turn_mm + e), b = std::min(turn_mm + 4.0 * e, last_mm);
+    if (!(a < b) || beyond(a) > 0.0 || !(beyond(b) > 0.0)) return {};
+    for (int i = 0; i < kHalvings; ++i) {
+        const double s = 0.5 * (a + b);
+        (beyond(s) > 0.0 ? b : a) = s;
+    }
+    found.on_from_mm = b;
+    found.on_along = (line.at(b).middle - contact).normalized();
+    return found;
+}
+
+Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }
+
+PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
+                     bool& turns) {
+    auto [s0, s1] = painted_stretch(stroke, brush, line.length());
     const Inverse inverse(line, brush);
+    std::optional<HiddenBeginning> hidden;
+    if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
+    std::optional<Vector2d> first;
+    if (hidden) {
+        s0 = hidden->on_from_mm;
+        first = hidden->on_along;
+    }
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)
         samples = line.coarse(s0, s1, places_of_depths(stroke, brush, line.length(), inverse.crossings()));
     if (samples.size() < 2) {
+        hidden.reset();
         samples = dab(stroke, line);
         inverse(samples);
     } else {
-        refine_steps(line, samples, step_tolerance, inverse);
+        refine_steps(line, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
     }
     PoseList out;
-    land({samples.front().contact, samples.front().heading, samples.front().depth}, brush, out);
+    if (hidden) {
+        land(stance_of(hidden->back.front()), brush, out);
+        for (const Sample& sample : hidden->back) out.add(sample.tcp, sample.depth);
+        turn_over(stance_of(hidden->back.back()), stance_of(samples.front()), brush, out);
+    } else {
+        land(stance_of(samples.front()), brush, out);
+    }
     for (std::size_t i = 0; i < samples.size(); ++i) {
         turns = turns || !samples[i].taut;
         if (i > 0 && !brush.is_rigid()) {
@@ -205,7 +309,7 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
             out.add(samples[i].tcp, samples[i].depth);
         }
     }
-    lift({samples.back().contact, samples.back().heading, samples.back().depth}, brush, out);
+    lift(stance_of(samples.back()), brush, out);
     return out;
 }
 
@@ -287,10 +391,50 @@ constexpr double kThinShare = 0.9, kSurely = 0.9;
 /// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm.
 constexpr double kHairShare = 0.1;
 
+/// Half a side of the square about the beginning that is looked at, and how far the mark is made for it, in half
+/// widths; pixels on one half width. A pointed footprint reaches back by two half widths from its widest section.
+constexpr double kLookedAt = 3.0, kMade = 6.0, kPixels = 8.0;
+/// What hiding must win, in squares of the half width: of the 1.5 that a pointed beginning lacks, what one has to look
+/// for.
+constexpr double kWorthHiding = 0.2;
+
+/// The pass up to where its path is so long, the brush left on the paper.
+Pass beginning_of(const Pass& pass, double length_mm) {
+    Pass out;
+    out.stroke = pass.stroke;
+    Index n = std::min<Index>(2, pass.poses_mm.rows());
+    for (double way = 0.0; n < pass.poses_mm.rows() && way < length_mm; ++n)
+        way += (pass.poses_mm.row(n) - pass.poses_mm.row(n - 1)).norm();
+    out.poses_mm = pass.poses_mm.topRows(n);
+    return out;
+}
+
+/// The beginning that differs less from the wanted mark, near it.
+Beginning best_beginning(const Stroke& stroke, const Brush& brush, const Line& line, double step_tolerance) {
+    const double last_mm = painted_stretch(stroke, brush, line.length())[1];
+    if (!hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
+        return Beginning::exposed;
+    bool turns = false;
+    Pass exposed, hidden;
+    closed_form(stroke, brush, line, Beginning::exposed, step_tolerance, turns).into(exposed);
+    closed_form(stroke, brush, line, Beginning::hidden, step_tolerance, turns).into(hidden);
+    const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth);
+    const Vector2d at = line.at(0.0).middle;
+    const double side = 2.0 * kLookedAt * half, made = kMade * half + 4.0 * brush.lag(depth);
+    const Window window{at.x() - 0.5 * side, at.y() - 0.5 * side, side, side};
+    const Coverage wanted = wanted_coverage({stroke}, window, kPixels / half);
+    const auto differs = [&](const Pass& pass) {
+        Marks marks;
+        marks.passes = {simulate(beginning_of(pass, made), brush, 0.05 * half)};
+        return (coverage(marks, brush, window, kPixels / half) - wanted).cwiseAbs().sum() / (kPixels * kPixels);
+    };
+    return differs(hidden) < differs(exposed) - kWorthHiding ? Beginning::hidden : Beginning::exposed;
+}
+
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
               double tolerance_mm, Pass& pass, TrackingError& miss) {
-    const Pass fewer = thin_out(from, brush, share * tolerance_mm);
+    const Pass fewer = thin_out_after_turn(from, brush, share * tolerance_mm);
     const TrackingError remains = tracking_error_of(fewer, stroke, brush, tolerance_mm);
     if (remains.largest_mm > limit_mm) return false;
     pass = fewer;
@@ -299,6 +443,12 @@ bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& str
 }
 
 }  // namespace
+
+Beginning beginning_named(const std::string& name, const std::string& where) {
+    for (const auto& [known, value] : kBeginnings)
+        if (name == known) return value;
+    throw Error("choice-unknown", "a stroke's start is exposed, hidden or auto, not \"" + name + "\"", where);
+}
 
 CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
     check(stroke);
@@ -328,12 +478,14 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
+    Beginning start = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
+    if (start == Beginning::automatic) start = best_beginning(stroke, brush, line, step_tolerance);
     // the plan is simulated before it is handed over; finer steps as long as they help
     if (options.few_poses) step_tolerance *= kStepShare;
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = pass;
-        closed_form(stroke, brush, line, step_tolerance, turns).into(trial);
+        closed_form(stroke, brush, line, start, step_tolerance, turns).into(trial);
         if (options.few_poses && thin_out(trial, kThinShare, kSurely * options.tolerance_mm, stroke, brush,
                                           options.tolerance_mm, result.pass, result.miss)) {
             result.miss.has_turn_in_place = turns;

@@ -18,27 +18,30 @@ constexpr double kLiftSlackMm = 0.05;
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
 /// Steps of the depth, 128 in all, in which a lift comes as far inside: sooner it would need a move of its own.
 constexpr double kLiftEases = 8.0;
+/// What is left of the depth while the brush turns over. Its footprint is so small then that the way it goes round does
+/// not show, in a mark as fine as 1 mm; a paper that lies lower by half as much is touched still.
+constexpr double kTurnOverDepthMm = 0.5;
 /// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
-bool may_press_while_running(const Brush& brush, double depth) {
+bool may_press_while_running(const Brush& brush, double from, double depth) {
     const double reach = brush.lag(depth);
     for (int i = 1; i < 64; ++i) {
         const double t = i / 64.0;
-        if (t * reach > brush.lag(t * depth) + 1e-12) return false;
+        if (t * reach > brush.lag(from + t * (depth - from)) + 1e-12) return false;
     }
     return true;
 }
 
 }  // namespace
 
-void land(const Stance& first, const Brush& brush, PoseList& out) {
-    out.add(first.contact_mm, 0.0);
-    if (!may_press_while_running(brush, first.depth_mm)) out.add(first.contact_mm, first.depth_mm);
+void land(const Stance& first, const Brush& brush, PoseList& out, double from_mm) {
+    out.add(first.contact_mm, from_mm);
+    if (!may_press_while_running(brush, from_mm, first.depth_mm)) out.add(first.contact_mm, first.depth_mm);
     out.add(first.contact_mm + brush.lag(first.depth_mm) * first.heading, first.depth_mm);
 }
 
-void lift(const Stance& last, const Brush& brush, PoseList& out) {
+void lift(const Stance& last, const Brush& brush, PoseList& out, double until_mm) {
     if (brush.is_rigid()) {
-        out.add(last.contact_mm, 0.0);
+        out.add(last.contact_mm, until_mm);
         return;
     }
     const auto add = [&](double reach_mm, double depth) {
@@ -48,7 +51,7 @@ void lift(const Stance& last, const Brush& brush, PoseList& out) {
     // straight moves that stay inside the curve, but not far: each as long as some straight line does; the first begins
     // where the brush is taut, and comes inside on its way
     constexpr int n = 128;
-    const auto depth_at = [&](int k) { return last.depth_mm * (n - k) / n; };
+    const auto depth_at = [&](int k) { return until_mm + (last.depth_mm - until_mm) * (n - k) / n; };
     int from = 0;
     double at = brush.lag(last.depth_mm);
     while (from < n) {
@@ -72,6 +75,12 @@ void lift(const Stance& last, const Brush& brush, PoseList& out) {
         add(at, depth_at(to));
         from = to;
     }
+}
+
+void turn_over(const Stance& before, const Stance& after, const Brush& brush, PoseList& out) {
+    const double depth = std::min({kTurnOverDepthMm, before.depth_mm, after.depth_mm});
+    if (depth < before.depth_mm) lift(before, brush, out, depth);
+    land(after, brush, out, depth);
 }
 
 }  // namespace brushsvg

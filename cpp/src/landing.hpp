@@ -12,10 +12,15 @@ struct Stance {
     double depth_mm;
 };
 
-/// Touches down over P and runs up to P + r u while pressing: there the brush is taut, and P was not moved.
-void land(const Stance& first, const Brush& brush, PoseList& out);
+/// Touches down over P, or is there already at a depth, and runs up to P + r u while pressing: there the brush is taut,
+/// and P was not moved.
+void land(const Stance& first, const Brush& brush, PoseList& out, double from_mm = 0.0);
 
-/// Holds P and comes back along q = P + r(depth) u, a little inside: no tail.
-void lift(const Stance& last, const Brush& brush, PoseList& out);
+/// Holds P and comes back along q = P + r(depth) u, a little inside, until the depth is what is asked for: no tail.
+void lift(const Stance& last, const Brush& brush, PoseList& out, double until_mm = 0.0);
+
+/// Lifts the brush until it hardly touches, goes back over P and presses anew, heading elsewhere: P rests. At full
+/// depth the footprint would be swept round P, and where the handle passes beside it says which way.
+void turn_over(const Stance& before, const Stance& after, const Brush& brush, PoseList& out);
 
 }  // namespace brushsvg

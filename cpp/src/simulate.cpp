@@ -335,4 +335,18 @@ Ring widest_points(const PassMarks& marks, const Brush& brush) {
     return points;
 }
 
+std::vector<TurnOver> turns_over(const PassMarks& marks) {
+    require_usable(marks);
+    std::vector<TurnOver> out;
+    const std::size_t n = marks.taut.size();
+    for (std::size_t i = 1; i < n; ++i) {
+        if (marks.taut[i] || !marks.taut[i - 1]) continue;
+        const std::size_t first = i;
+        double least = marks.depth_mm[i];
+        for (; i < n && !marks.taut[i]; ++i) least = std::min(least, marks.depth_mm[i]);
+        if (i < n && least <= 0.5 * std::min(marks.depth_mm[first - 1], marks.depth_mm[i])) out.push_back({first, i});
+    }
+    return out;
+}
+
 }  // namespace brushsvg

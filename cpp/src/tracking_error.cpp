@@ -23,25 +23,39 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     const Ring widest = widest_points(marks, brush);
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     Nearest nearest(line);
-    // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does
+    // on its way back to a hidden beginning a blunt front goes beyond it
+    MiddlePolyline longer(line.rows() + 1, 4);
+    longer << line.row(0), line;
+    if (line.rows() > 1) longer.row(0).head<2>() -= line(0, 3) * (line.row(1) - line.row(0)).head<2>().normalized();
+    Nearest before_turn(longer);
+    // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and where
+    // the brush turns over it hardly touches
     std::size_t begin = 0, end = marks.taut.size();
     while (begin < end && !marks.taut[begin]) ++begin;
     while (end > begin && !marks.taut[end - 1]) --end;
     TrackingError miss;
     double before = 0.0, travelled = 0.0;  // by length and not by rows, which lie closer where a tolerance asks for it
     std::optional<Eigen::Vector2d> last;
-    along(widest, Index(begin), Index(end), kLookEveryMm, [&](const Eigen::Vector2d& point) {
-        const double d = nearest.distance(point);
-        if (d > miss.largest_mm) {
-            miss.largest_mm = d;
-            miss.at_mm = {point.x(), point.y()};
-        }
-        const double step = last ? (point - *last).norm() : 0.0;
-        miss.mean_mm += 0.5 * (before + d) * step;
-        travelled += step;
-        before = d;
-        last = point;
-    });
+    const auto look = [&](std::size_t from, std::size_t to, auto& nearest) {
+        last.reset();
+        along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {
+            const double d = nearest.distance(point);
+            if (d > miss.largest_mm) {
+                miss.largest_mm = d;
+                miss.at_mm = {point.x(), point.y()};
+            }
+            const double step = last ? (point - *last).norm() : 0.0;
+            miss.mean_mm += 0.5 * (before + d) * step;
+            travelled += step;
+            before = d;
+            last = point;
+        });
+    };
+    for (const TurnOver& turn : turns_over(marks)) {
+        look(begin, turn.first, before_turn);
+        begin = turn.last;
+    }
+    look(begin, end, nearest);
     miss.mean_mm = travelled > 0.0 ? miss.mean_mm / travelled : miss.largest_mm;
     miss.within_tolerance = miss.largest_mm <= tolerance_mm;
     return miss;

@@ -17,11 +17,12 @@ PREFIX = "data-brushsvg-"
 OWN = {  # what brushsvg does where the document says nothing
     "brush": "round-6",
     "compensation": "closed",
+    "start": "auto",
     "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3",
     "wide": "auto",
     "tolerance": "0.05mm",
 }
-NAMES = {"cell": "machine", "wide": "letters wider than the brush"}  # in the dialog
+NAMES = {"start": "beginnings", "cell": "machine", "wide": "letters wider than the brush"}  # in the dialog
 KEEP, TAKE_BACK = ("", "keep"), "default"
 TOLERANCE_MM = (1e-5, 10.0)
 

@@ -243,6 +243,32 @@ TEST_CASE("a line of very many short cubics is followed as one of few") {
     CHECK(bow(15000).largest_mm < 0.05);
 }
 
+TEST_CASE("a hidden beginning turns over where its patch rests") {
+    const Brush brush = shipped("round-6");
+    const double h = brush.half_width(4.0);
+    const Stroke s = stroke_of(polyline({V(30, 20), V(70, 20)}), {{0.0, h}});
+    CompensateOptions options;
+    options.start = Beginning::hidden;
+    const CompensatedPass hidden = compensate(s, brush, options);
+    CHECK(hidden.miss.within_tolerance);
+    const PassMarks marks = simulate(hidden.pass, brush);
+    const auto turns = turns_over(marks);
+    REQUIRE(turns.size() == 1);
+    const auto contact = [&](std::size_t row) { return V(marks.contact_mm.row(Eigen::Index(row)).transpose()); };
+    CHECK((contact(turns[0].first) - contact(turns[0].last)).norm() < 1e-6);
+    CHECK(std::abs(marks.heading_rad[turns[0].first - 1]) == doctest::Approx(kPi));
+    CHECK(std::abs(marks.heading_rad[turns[0].last]) < 1e-6);
+    const auto bounds = painted_bounds(marks, brush);
+    CHECK(bounds[0] == doctest::Approx(30.0 - h).epsilon(1e-3));  // the front, where round caps begin
+    CHECK(overlap_of(s, hidden.pass, brush) > 0.99);
+    CHECK(overlap_of(s, compensate(s, brush).pass, brush) < 0.98);
+    CHECK(turns_over(simulate(compensate(s, brush).pass, brush)).empty());
+
+    const Brush pen = shipped("rigid");
+    const Stroke line = stroke_of(polyline({V(30, 20), V(70, 20)}), {{0.0, pen.half_width(pen.paint_depth_mm)}});
+    CHECK(compensate(line, pen, options).pass.poses_mm == compensate(line, pen).pass.poses_mm);
+}
+
 TEST_CASE("what the brush cannot paint is refused, what it was not measured for is warned of once") {
     const Brush brush = shipped("round-6");
     const Cubics line = polyline({V(20, 20), V(60, 20)});

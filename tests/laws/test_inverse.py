@@ -10,6 +10,7 @@ from conftest import LAGS, WIDEST, make_brush, make_plan
 from scipy.integrate import solve_ivp
 
 core = pytest.importorskip("brushsvg._core")
+Error = pytest.importorskip("brushsvg").Error
 find_brush = pytest.importorskip("brushsvg.brush.library").find_brush
 
 ROUND = find_brush("round-6")
@@ -487,3 +488,97 @@ def test_compensation_turns_with_the_sheet():
     assert len(here) == len(there)
     assert there[:, :2] == pytest.approx(here[:, :2] @ [[c, s], [-s, c]] + [50, 20], abs=1e-6)
     assert there[:, 2] == pytest.approx(here[:, 2], abs=1e-6)
+
+
+# Beginnings ---------------------------------------------------------------------------------------
+
+
+def painted_region(poses):
+    """The mark by the slow reference: footprints placed along its events and between them, swept."""
+    reference = oracle.Reference(poses, LAG)
+    dragged = [
+        (d, np.asarray(each.outline_mm))
+        for d, each in zip(range(1, 11), ROUND.footprints.dragged, strict=True)
+    ]
+    outlines = []
+    heading = None
+    for pose in np.unique(
+        np.concatenate([np.linspace(0, len(poses) - 1, 40 * len(poses)), reference.events()])
+    ):
+        contact, now, _, pull = reference.at(pose)
+        heading = now if np.isfinite(now) else heading
+        depth = float(np.interp(pose, np.arange(len(poses)), -poses[:, 2]))
+        if heading is None or depth <= 0.0 or not np.isfinite(contact).all():
+            continue
+        shape = oracle.footprint_at(dragged, [], depth, pull)
+        outlines.append(oracle.placed(shape, contact, heading, 0.52 * depth))
+    return oracle.swept(outlines, True)
+
+
+def beginning(middle, half_width, start):
+    """Overlap of mark and wanted mark within two half widths of the path's first point, and the greatest distance of
+    paint beyond the wanted mark there."""
+    import shapely
+
+    found = core.compensate([stroke_of(middle, [(0.0, half_width)])], ROUND, (200.0, 200.0), start=start)
+    assert found.misses[0].within_tolerance
+    poses = np.asarray(found.plan.passes[0].poses_mm)
+    assert poses[0, 2] == poses[-1, 2] == 0.0
+    assert (poses[1:-1, 2] < 0.0).all()  # one touch
+    points = np.vstack([oracle.bezier(cubic, np.linspace(0, 1, 40)) for cubic in middle])
+    wanted = shapely.LineString(points).buffer(half_width, quad_segs=64)
+    near = shapely.Point(points[0]).buffer(2 * half_width)
+    mark = painted_region(poses)
+    here, meant = mark & near, wanted & near
+    beyond = shapely.hausdorff_distance(here | meant, meant)
+    return (here & meant).area / (here | meant).area, beyond
+
+
+@pytest.mark.parametrize("half_width", [0.8, 1.4, 2.0])
+@pytest.mark.parametrize("middle", [line((20, 20), (60, 20)), arc(25.0, 1.2), arc(12.0, 1.5)])
+def test_a_hidden_beginning_is_round_and_stays_inside_of_the_stroke(middle, half_width):
+    exposed, _ = beginning(middle, half_width, "exposed")
+    hidden, beyond = beginning(middle, half_width, "hidden")
+    assert exposed < 0.85
+    assert hidden > 0.93
+    assert beyond < 0.05 + 0.1 * half_width
+
+
+def poses_of(middle, half_width, **options):
+    found = core.compensate([stroke_of(middle, half_width)], ROUND, (200.0, 200.0), **options)
+    return np.asarray(found.plan.passes[0].poses_mm)
+
+
+@pytest.mark.parametrize(
+    ("middle", "half_width"),
+    [
+        (line((20, 20), (60, 20)), [(0.0, 0.4)]),  # the widest section trails
+        (line((20, 20), (60, 20)), [(0.0, 0.15), (0.5, 2.0), (1.0, 2.0)]),  # a taper
+        (line((20, 20), (22, 20)), [(0.0, 2.0)]),  # a dab
+        (line((20, 20), (22, 20), (22, 50)), [(0.0, 3.0)]),  # the tip would come out beyond the corner
+    ],
+)
+def test_what_cannot_be_hidden_is_exposed(middle, half_width):
+    exposed = poses_of(middle, half_width)
+    for start in ("hidden", "auto"):
+        np.testing.assert_array_equal(poses_of(middle, half_width, start=start), exposed)
+
+
+def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
+    bar = line((20, 20), (60, 20))
+    exposed, hidden = poses_of(bar, [(0.0, 2.0)]), poses_of(bar, [(0.0, 2.0)], start="hidden")
+    assert len(hidden) > len(exposed)
+    np.testing.assert_array_equal(poses_of(bar, [(0.0, 2.0)], start="auto"), hidden)
+    # drawn as the footprint is behind, pointed by 3.8 mm: nothing to hide
+    points = [[18, 20], [21.8, 18], [60, 18], [60, 22], [21.8, 22]]
+    pointed = stroke_of(bar, [(0.0, 2.0)])
+    pointed.wanted_mm = [np.array(points, float)]
+    plan = core.compensate([pointed], ROUND, (99.0, 99.0), start="auto").plan
+    np.testing.assert_array_equal(plan.passes[0].poses_mm, exposed)
+    said = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="hidden"))
+    plan = core.compensate([said], ROUND, (99.0, 99.0), start="exposed").plan
+    np.testing.assert_array_equal(plan.passes[0].poses_mm, hidden)
+    wrong = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="soft"))
+    with pytest.raises(Error) as refused:
+        core.compensate([wrong], ROUND, (99.0, 99.0))
+    assert (refused.value.where, refused.value.code) == ("s", "choice-unknown")

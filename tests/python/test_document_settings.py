@@ -54,6 +54,34 @@ def test_what_is_typed_wins_over_the_document(desk, capsys):
     assert (desk / "said.ngc").read_bytes() == (desk / "plain.ngc").read_bytes()
 
 
+def test_beginnings_are_said_of_the_job_and_of_strokes(desk, capsys):
+    def poses(text, *flags):
+        (desk / "s.svg").write_text(text)
+        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        return {each.stroke: each.poses_mm.tolist() for each in read_plan("s.json").passes}
+
+    exposed, hidden = poses(DRAWING, "--start", "exposed"), poses(DRAWING, "--start", "hidden")
+    assert all(len(hidden[name]) > len(exposed[name]) for name in "ab")
+    assert poses(DRAWING) == hidden  # what suits round ends
+    assert poses(on_root('start="exposed"')) == exposed
+    assert poses(on_root('start="exposed"'), "--start", "hidden") == hidden
+    of_one = DRAWING.replace('id="a"', 'id="a" data-brushsvg-start="exposed"')
+    assert poses(of_one, "--start", "hidden") == {"a": exposed["a"], "b": hidden["b"]}
+
+
+def test_a_program_tells_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
+    assert main(["convert", "d.svg", "d.ngc", "--start", "exposed"]) == 0
+    text = (desk / "d.ngc").read_text()
+    assert "(compensation: closed, tolerance 0.05 mm, start exposed)" in text
+    assert main(["check", "d.ngc", "d.svg"]) == 0
+    (desk / "d.ngc").write_text(text.replace(", start exposed)", ")"))
+    assert main(["check", "d.ngc", "d.svg"]) == 1
+    (desk / "d.ngc").write_text(text.replace(", start exposed)", ", start soft)"))
+    capsys.readouterr()
+    status, _, told = in_json(capsys, "check", "d.ngc", "d.svg")
+    assert status == 1 and [notice.code for _, notice in told] == ["header-damaged"]
+
+
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.toml", "../mine.toml", "no-such-cell"])
 def test_the_document_names_no_files(desk, capsys, file):
     (desk / "mine.toml").write_text("")

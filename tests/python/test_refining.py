@@ -20,7 +20,10 @@ BARS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="90mm" vi
 def works(tmp_path, text, **how):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(text)
-    return [prepare(drawing, Options(compensation=each, **how)) for each in ("closed", "refined")]
+    # hidden, a round beginning leaves nothing to refine
+    return [
+        prepare(drawing, Options(compensation=each, start="exposed", **how)) for each in ("closed", "refined")
+    ]
 
 
 def overlap(work, number):

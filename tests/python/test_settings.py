@@ -13,9 +13,13 @@ ALL = {
     "reload": True,
     "skip": False,
     "speed_mm_s": 7.0,
+    "start": "hidden",
     "width_mm": 0.1,
 }
-WRITTEN = '{"brush":"b","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,"width_mm":0.1}'
+WRITTEN = (
+    '{"brush":"b","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,'
+    '"start":"hidden","width_mm":0.1}'
+)
 
 
 def plan_with(settings):

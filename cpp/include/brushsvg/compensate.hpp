@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "brushsvg/brush.hpp"
@@ -17,12 +20,24 @@ enum class Compensation {
     closed     ///< q = m + (r - e) u, the article's law read backwards
 };
 
+/// How a stroke begins, in closed form. A stroke's own setting `start` says it by the same words.
+enum class Beginning {
+    exposed,  ///< pointed, as a footprint is behind
+    hidden,   ///< set down inside of the stroke, back to its beginning, turned over: round, as a footprint is in front
+    automatic,  ///< hidden where the mark lies better on the wanted one there for it, by more than can hardly be seen
+};
+inline constexpr std::array<std::pair<std::string_view, Beginning>, 3> kBeginnings{
+    {{"exposed", Beginning::exposed}, {"hidden", Beginning::hidden}, {"auto", Beginning::automatic}}};
+/// Error for another word.
+Beginning beginning_named(const std::string& name, const std::string& where);
+
 struct CompensateOptions {
     Compensation method = Compensation::closed;
-    double tolerance_mm = 0.05;    ///< of the widest point from the middle line, between poses too
-    std::optional<double> lag_mm;  ///< constant only; default the lag at the stroke's median depth
-    double speed_mm_s = 20.0;      ///< capped by the brush's own limit
-    bool few_poses = true;         ///< closed only: no more than the tolerance asks for, see thin_out.hpp
+    double tolerance_mm = 0.05;            ///< of the widest point from the middle line, between poses too
+    std::optional<double> lag_mm;          ///< constant only; default the lag at the stroke's median depth
+    double speed_mm_s = 20.0;              ///< capped by the brush's own limit
+    bool few_poses = true;                 ///< closed only: no more than the tolerance asks for, see thin_out.hpp
+    Beginning start = Beginning::exposed;  ///< closed only; where one cannot be hidden inside the stroke it is exposed
 };
 
 struct CompensatedPass {

@@ -15,6 +15,7 @@ struct Settings {
     std::optional<bool> reload;
     std::optional<bool> skip;
     std::optional<double> speed_mm_s;
+    std::optional<std::string> start;  ///< of the stroke: exposed, hidden, auto
     std::optional<double> width_mm;
     std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
 };
@@ -29,6 +30,7 @@ void each_setting(OneSettings& settings, Each&& each) {
     each("reload", settings.reload);
     each("skip", settings.skip);
     each("speed_mm_s", settings.speed_mm_s);
+    each("start", settings.start);
     each("width_mm", settings.width_mm);
 }
 

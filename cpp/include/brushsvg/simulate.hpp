@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "brushsvg/brush.hpp"
 #include "brushsvg/marks.hpp"
 #include "brushsvg/plan.hpp"
@@ -18,5 +20,12 @@ Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm = 0.02)
 
 /// Centre of the widest section at every row [mm]: m = p + e(d) u.
 Ring widest_points(const PassMarks& marks, const Brush& brush);
+
+/// Rows [first, last) where the brush is lifted to turn over: loose, and for a while pressed half as deep as before and
+/// after, or less.
+struct TurnOver {
+    std::size_t first, last;
+};
+std::vector<TurnOver> turns_over(const PassMarks& marks);
 
 }  // namespace brushsvg

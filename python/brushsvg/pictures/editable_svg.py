@@ -27,6 +27,7 @@ _SETTINGS = {
     "passes": "passes",
     "reload": "reload",
     "speed_mm_s": "speed",
+    "start": "start",
 }
 
 

@@ -92,7 +92,12 @@ def _quick_trial(brush, options: Options):
     def made(strokes):
         painted, wanted, _ = within_reach(strokes, brush, options.wide)
         done = _core.compensate(
-            painted, brush, tolerance_mm=options.tolerance_mm, few_poses=False, sheet_mm=(0.0, 0.0)
+            painted,
+            brush,
+            tolerance_mm=options.tolerance_mm,
+            few_poses=False,
+            sheet_mm=(0.0, 0.0),
+            start=options.start,
         )
         return _core.simulate(done.plan, brush).passes, wanted
 

@@ -15,7 +15,7 @@ from ..machine.writer import time_s, whole_program
 from ..pictures.animation import animation
 from ..pictures.marks_svg import marks_svg, overlap_svg
 from ..pictures.timeline import timeline
-from .preparation import Work
+from .preparation import Options, Work
 
 SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
 
@@ -24,7 +24,8 @@ def notes(work: Work) -> tuple[str, ...]:
     """Lines for a program's header: how it was made, and how much there is to know about it."""
     options = work.options
     lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
-    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}"
+    start = f", start {options.start}" if options.start != Options.start else ""
+    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}"
     damaged = sum(notice.damaged for notice in work.notices)
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     return (made, count) if work.strokes is not None else (count,)

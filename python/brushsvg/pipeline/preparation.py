@@ -41,6 +41,7 @@ class Options:
     lag_mm: float | None = None
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
+    start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "auto"
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
@@ -155,6 +156,7 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
             options.lag_mm,
             options.speed_mm_s,
             progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
+            start=options.start,
         )
 
     return compensated

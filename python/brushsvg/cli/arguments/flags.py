@@ -92,6 +92,11 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         type=values.tolerance,
         help="largest tracking error of the painted middle line; default: 0.05",
     )
+    add(
+        "--start",
+        choices=("exposed", "hidden", "auto"),
+        help="of strokes: pointed, round (set down inside, moved back, turned over), or what suits each; default: auto",
+    )
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
 
 

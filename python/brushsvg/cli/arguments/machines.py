@@ -90,7 +90,13 @@ def add_check(commands) -> None:
     check.add_argument("--json", action="store_true", help="figures as JSON")
     add_quiet(check)
     check.set_defaults(
-        run="check_file", parser=check, check=_check_check, lag=None, compensation=None, tolerance=None
+        run="check_file",
+        parser=check,
+        check=_check_check,
+        lag=None,
+        compensation=None,
+        tolerance=None,
+        start=None,
     )
 
 

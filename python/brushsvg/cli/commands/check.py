@@ -179,6 +179,7 @@ def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
             compensation=made.compensation,
             tolerance=made.tolerance_mm,
             lag=made.lag_mm,
+            start=made.start,
             z_offset=made.z_offset_mm,
             wide=wide,
         )

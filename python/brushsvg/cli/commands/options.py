@@ -39,6 +39,7 @@ class Choices:
     compensation: str | None
     lag: float | None
     tolerance: float | None
+    start: str | None
     z_offset: float | None
 
 
@@ -101,6 +102,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         lag_mm=chosen.lag,
         tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance)
         or preparation.Options.tolerance_mm,
+        start=chosen.start or preparation.Options.start,
         paths_as=chosen.paths_as,
         wide=chosen.wide or preparation.Options.wide,
         corners=chosen.corners or preparation.Options.corners,

@@ -14,12 +14,13 @@ PREFIX = "data-brushsvg-"
 def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:
     """Settings that an element says itself, as docs/drawings.md lists them, and what of them is not valid."""
     settings, problems = _read(attributes, _KNOWN | _OF_THE_DOCUMENT if is_root else _KNOWN)
-    return {key: value for key, value in settings.items() if key not in _OF_THE_DOCUMENT}, problems
+    of_job = _OF_THE_DOCUMENT.keys() | (_OF_JOB_ON_ROOT if is_root else set())
+    return {key: value for key, value in settings.items() if key not in of_job}, problems
 
 
 def document_settings(attributes: dict[str, str]) -> dict:
-    """What the root element says of the whole job: brush, cell, compensation, tolerance, wide; valid ones only."""
-    settings, _ = _read(attributes, _OF_THE_DOCUMENT | {"brush": _KNOWN["brush"]})
+    """What the root element says of the whole job: brush, cell, compensation, start, tolerance, wide; what is valid."""
+    settings, _ = _read(attributes, _OF_THE_DOCUMENT | {name: _KNOWN[name] for name in ("brush", "start")})
     return settings
 
 
@@ -103,6 +104,7 @@ _KNOWN = {
     "reload": ("reload", _yes),
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
+    "start": ("start", _one_of("exposed", "hidden", "auto")),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),
@@ -110,3 +112,4 @@ _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "tolerance": ("tolerance", _tolerance_mm),
     "wide": ("wide", _one_of("auto", "clamp", "passes", "refuse")),
 }
+_OF_JOB_ON_ROOT = {"start"}  # of a stroke elsewhere; here a flag counts more

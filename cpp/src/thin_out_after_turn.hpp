@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+
+#include "brushsvg/simulate.hpp"
+#include "brushsvg/thin_out.hpp"
+
+namespace brushsvg {
+
+/// thin_out() of what follows the last time that the brush turns over: where P rests then, fewer poses would put the
+/// brush down beside it.
+inline Pass thin_out_after_turn(const Pass& pass, const Brush& brush, double tolerance_mm) {
+    using Eigen::Index;
+    const PassMarks marks = simulate(pass, brush, 0.02, false);
+    const std::vector<TurnOver> turns = turns_over(marks);
+    if (turns.empty()) return thin_out(pass, brush, tolerance_mm);
+    Index kept = Index(std::ceil(marks.pose[turns.back().first]));  // the last pose where it is pressed least
+    for (Index i = kept; double(i) < marks.pose[turns.back().last]; ++i)
+        if (pass.poses_mm(i, 2) >= pass.poses_mm(kept, 2)) kept = i;
+    Pass rest = pass;
+    rest.poses_mm = pass.poses_mm.bottomRows(pass.poses_mm.rows() - kept);
+    for (Arc& arc : rest.arcs) {
+        arc.first -= kept;
+        arc.last -= kept;
+    }
+    rest = thin_out(rest, brush, tolerance_mm);
+    Pass out = rest;
+    out.poses_mm.resize(kept + rest.poses_mm.rows(), 3);
+    out.poses_mm << pass.poses_mm.topRows(kept), rest.poses_mm;
+    for (Arc& arc : out.arcs) {
+        arc.first += kept;
+        arc.last += kept;
+    }
+    return out;
+}
+
+}  // namespace brushsvg
