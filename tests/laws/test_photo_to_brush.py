@@ -70,7 +70,7 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
     assert main(["calibrate", files[0], "--chart", files[1], "-o", files[2], "--picture", files[3]]) == 0
     told = capsys.readouterr()
     assert "written; 24 strokes read, 6 markers within 0.0" in told.err
-    assert "all edges may lie 0.02 mm off together" in told.out
+    assert "all edges may lie 0.01 mm off together" in told.out
     found = find_brush(desk / "own.json")
     off = {}
     for law in ("lag", "half_width"):

@@ -137,6 +137,20 @@ def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
         assert abs(mean) < most_mm and rms < 0.09, (stroke, mean, rms)
 
 
+def test_paint_that_is_lighter_than_the_paper_is_read():
+    """On coloured paper, whose markers are printed black as ever; it once was no paint."""
+    marks = painted_marks()
+    card = photograph.Sheet.__new__(photograph.Sheet)
+    card.size_mm, card.shown = A5, page().shown * np.float32([0.45, 0.3, 0.35])
+    for rings in marks.values():
+        card.paint(rings, np.array([0.85, 0.84, 0.8]))
+    found = read(photograph.exposed(card, replace(SMALL, light=(0.2, -0.2))))
+    assert not found.marks.missing and not found.marks.joined
+    for stroke, rings in marks.items():
+        mean, rms = off_mm(found.marks.outlines_mm[stroke], rings)
+        assert abs(mean) < 0.03 and rms < 0.09, (stroke, mean, rms)
+
+
 def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
     """Blur takes from the middle of a narrow mark, too: half way up to what is left there once lay 0.05 mm outside."""
     marks = dict(painted_marks())

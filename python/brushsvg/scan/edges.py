@@ -67,9 +67,14 @@ def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labe
 
 
 def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room]) -> np.ndarray:
-    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back."""
+    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back; paint
+    is darker than paper, or lighter."""
     light = cv2.LUT(flat.pixels, LIGHT)
-    taken = 1.0 - light / np.maximum(_paper(light, print_, flat.px_per_mm), 1e-3)
+    is_lighter = _is_lighter(light, print_, flat.px_per_mm)
+    paper = _paper(light, print_, flat.px_per_mm, is_lighter)
+    taken = 1.0 - light / np.maximum(paper, 1e-3)
+    if is_lighter:
+        taken = -taken
     inside = np.zeros_like(print_)
     for room in rooms:
         c0, r0, c1, r1 = _window(flat, room.box_mm, 0.0)
@@ -83,19 +88,47 @@ def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room]) -> np.ndarray:
     return paint
 
 
-def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> np.ndarray:
-    """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm."""
+def _per_mm(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """The light at a pixel per mm, and which of these are printed on."""
     rows, columns = light.shape[:2]
     size = (max(8, round(columns / px_per_mm)), max(8, round(rows / px_per_mm)))
     coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
-    covered = cv2.resize(print_.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
+    return coarse, cv2.resize(print_.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
+
+
+def _is_lighter(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> bool:
+    """Whether what differs from most of the sheet, whose light changes slowly, is lighter."""
+    coarse, covered = _per_mm(light, print_, px_per_mm)
+    rim = int(np.ceil(RIM_MM))
+    covered[:rim] = covered[-rim:] = covered[:, :rim] = covered[:, -rim:] = True
+    rows, columns = np.nonzero(~covered)
+    number = np.sqrt(coarse.mean(axis=2)[~covered])
+    x, y = columns / coarse.shape[1] - 0.5, rows / coarse.shape[0] - 0.5
+    slow = np.column_stack([np.ones_like(x), x, y, x * x, x * y, y * y])
+    off = number - np.median(number)
+    for _ in range(6):
+        kept = np.abs(off) <= max(3 * float(np.median(np.abs(off))), 0.02)
+        off = number - slow @ np.linalg.lstsq(slow[kept], number[kept], rcond=None)[0]
+    least = 0.5 * FAINTEST * float(np.median(number))
+    return bool(off[off > least].sum() > -off[off < -least].sum())
+
+
+def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float, is_lighter: bool) -> np.ndarray:
+    """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm."""
+    rows, columns = light.shape[:2]
+    coarse, covered = _per_mm(light, print_, px_per_mm)
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BROADEST_MM, BROADEST_MM))
-    bright = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
-    bare = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) > PAPER) & ~covered
+    if is_lighter:
+        no_print = np.where(covered[..., None], np.float32(1.0), coarse)
+        around = cv2.morphologyEx(no_print, cv2.MORPH_OPEN, kernel, borderType=cv2.BORDER_REPLICATE)
+        bare = ((around / np.maximum(coarse, 1e-3)).min(axis=2) > PAPER) & ~covered
+    else:
+        around = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
+        bare = ((coarse / np.maximum(around, 1e-3)).min(axis=2) > PAPER) & ~covered
     weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
     mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
     is_lit = weight[..., None] > 0.02
-    even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), bright).astype(np.float32)
+    even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), around).astype(np.float32)
     return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR)
 
 
@@ -121,7 +154,7 @@ def _contrast(taken: np.ndarray) -> np.ndarray:
 
 _NO_PAINT = (
     "no paint is found where the strokes should be: is this the painted page, "
-    "and is its paint darker than paper?"
+    "and does its paint differ from the paper?"
 )
 
 
