@@ -42,6 +42,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .pictures.marks_png import marks_png
     from .pictures.marks_svg import marks_svg
     from .pipeline.json_files import read_marks, read_plan
+    from .strokes.corners import lifted_at_corners
     from .strokes.extraction import strokes
     from .strokes.path_objects import path_from_pass, path_from_stroke, stroke_from_path
     from .strokes.width_limits import within_reach
@@ -67,6 +68,7 @@ _HOME = {
     "read_marks": "pipeline.json_files",
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
+    "lifted_at_corners": "strokes.corners",
     "within_reach": "strokes.width_limits",
     "marks_png": "pictures.marks_png",
     "marks_svg": "pictures.marks_svg",
@@ -116,6 +118,7 @@ __all__ = [
     "find_brush",
     "find_cell",
     "flatten",
+    "lifted_at_corners",
     "marks_png",
     "marks_svg",
     "overlap",

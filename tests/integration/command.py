@@ -7,7 +7,10 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from diagnostics import heard
+
 from brushsvg.brush.library import SHIPPED
+from brushsvg.errors import Notice
 
 COMMAND = Path(sys.executable).with_name("brushsvg")
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
@@ -21,9 +24,15 @@ class Done:
     out: str
     err: tuple[str, ...]
 
+    @property
+    def told(self) -> list[tuple[str, Notice]]:
+        """Of `--messages json`, with the file that each is about."""
+        return heard(self.err)
+
 
 def brushsvg(*words, cwd, status=None, env=None, before=(), timeout_s=60, **settings) -> Done:
-    """Run the installed command; status: what must come back. stderr holds only lines of ours, always.
+    """Run the installed command; status: what must come back. stderr holds only lines of ours, always; of JSON where
+    that was asked for.
 
     before: words of a program that starts it. env: changes to the environment, None removes.
     """
@@ -39,7 +48,8 @@ def brushsvg(*words, cwd, status=None, env=None, before=(), timeout_s=60, **sett
         **settings,
     )
     err = tuple(done.stderr.splitlines())
-    assert all(line.startswith("brushsvg: ") for line in err), done.stderr
+    ours = ("brushsvg: ", '{"file": ') if "--messages" in words else "brushsvg: "
+    assert all(line.startswith(ours) for line in err), done.stderr
     assert "this should not happen" not in done.stderr, done.stderr
     if status is not None:
         assert done.returncode == status, (words, done.returncode, done.stderr)
@@ -69,3 +79,9 @@ def refused(folder, *words, status=1, **settings):
     assert len(done.err) == 1, done.err
     assert listing(folder) == before
     return done.err[0].removeprefix("brushsvg: ")
+
+
+def refusal(folder, *words, **settings) -> tuple[str, Notice]:
+    """The same for programs: the file and what is told of it."""
+    (told,) = heard([refused(folder, "--messages", "json", *words, **settings)])
+    return told

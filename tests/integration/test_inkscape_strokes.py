@@ -161,9 +161,9 @@ def test_widths_can_be_edited(plugin, inkscape, tmp_path):
 @pytest.mark.parametrize(
     ("body", "told"),
     [
-        (SOUND, "There is no filled shape"),
-        (f"{OPEN}</svg>", "the drawing holds nothing to paint"),
-        (f'{OPEN}<text id="word" x="20" y="20"> </text></svg>', "the drawing holds nothing to paint"),
+        (SOUND, "no filled shape"),
+        (f"{OPEN}</svg>", "nothing to paint"),
+        (f'{OPEN}<text id="word" x="20" y="20"> </text></svg>', "nothing to paint"),
     ],
 )
 def test_what_cannot_be_converted_is_told(plugin, tmp_path, body, told):

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 from command import brushsvg
+from diagnostics import agrees
 from drawings import SVG
 
 DRAWN = {f"{SVG}{tag}" for tag in ("path", "line", "circle", "ellipse", "polyline", "rect")}
@@ -98,21 +99,19 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
 
 def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
     """Numbers beside the strokes of a character, depths the brush was not measured at: nothing else."""
-    done = brushsvg("convert", drawing(source), "again.ngc", "--quiet", cwd=tmp_path, status=0)
-    warnings = [line.split(": ", 2)[2] for line in done.err]
+    words = ("--messages", "json", "convert", drawing(source), "again.ngc", "--quiet")
+    told = brushsvg(*words, cwd=tmp_path, status=0).told
+    count = 0
     if source == "kanji-eternity":
-        texts, depths = warnings  # five of one kind, five of another, folded
-        assert texts.startswith("text 1 and 4 like it: text is not read")
+        (_, texts), (_, depths) = told  # five of one kind, five of another, folded
+        assert agrees(texts, "text-unread", "text 1 and 4 like it")
         strokes = ids_in_order(drawing(source))
-        assert depths.startswith(
-            f"{strokes[0]} and {len(strokes) - 1} like it: depth 0.94 mm is outside the range"
-        )
-        told = len(strokes) + 5
+        assert agrees(depths, "depth-not-measured 0.94", f"{strokes[0]} and {len(strokes) - 1} like it")
+        count = len(strokes) + 5
     else:
-        assert warnings == []
-        told = 0
+        assert told == []
     program = (converted(source) / "program.ngc").read_text(encoding="ascii")
-    assert f"(warnings: {told})" in program
+    assert f"(warnings: {count})" in program
 
 
 def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp_path):

@@ -1,7 +1,6 @@
 """Where nothing can be written, or not enough: one sentence, and all is as it was before."""
 
 import os
-import re
 import resource
 import shutil
 import subprocess
@@ -9,17 +8,18 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from command import COMMAND, SOUND, brushsvg, listing, refused
+from command import COMMAND, SOUND, brushsvg, listing, refusal, refused
+from diagnostics import agrees
 
 
 def test_output_into_a_directory_that_is_not_there(desk):
-    told = refused(desk, "convert", "sound.svg", "no/where/out.ngc")
-    assert told == "no/where/out.ngc: the file cannot be written: its directory does not exist"
-    told = refused(desk, "convert", "sound.svg", "out.ngc", "--preview", "no/where/out.png")
-    assert told.startswith("no/where/out.png: ")
+    file, told = refusal(desk, "convert", "sound.svg", "no/where/out.ngc")
+    assert file == "no/where/out.ngc" and agrees(told, "file-unwritable 'does not exist'")
+    file, told = refusal(desk, "convert", "sound.svg", "out.ngc", "--preview", "no/where/out.png")
+    assert file == "no/where/out.png" and agrees(told, "file-unwritable 'does not exist'")
     (desk / "out.ngc").mkdir()
-    told = refused(desk, "convert", "sound.svg", "out.ngc")
-    assert told == "out.ngc: the file cannot be written: it is a directory"
+    file, told = refusal(desk, "convert", "sound.svg", "out.ngc")
+    assert file == "out.ngc" and agrees(told, "file-unwritable 'is a directory'")
 
 
 @pytest.fixture
@@ -52,15 +52,12 @@ def test_without_the_right_to_write_or_read(as_nobody):
     folder.chmod(0o555)
 
     def told(*words):
-        done = brushsvg(*words, cwd=folder, status=1, **settings)
-        assert len(done.err) == 1
-        return done.err[0]
+        ((_, notice),) = brushsvg("--messages", "json", *words, cwd=folder, status=1, **settings).told
+        return notice
 
-    assert "out.ngc: the file cannot be written: its directory is not writable" in told(
-        "convert", "sound.svg", "out.ngc"
-    )
-    assert "permission denied" in told("convert", "sound.svg", "open/old.ngc")
-    assert "permission denied" in told("convert", "secret.svg", "open/out.ngc")
+    assert agrees(told("convert", "sound.svg", "out.ngc"), "file-unwritable directory writable")
+    assert agrees(told("convert", "sound.svg", "open/old.ngc"), "file-unwritable 'permission denied'")
+    assert agrees(told("convert", "secret.svg", "open/out.ngc"), "file-unreadable 'permission denied'")
     assert (folder / "open" / "old.ngc").read_text() == "kept\n"
     assert sorted(os.listdir(folder / "open")) == ["old.ngc"]
     assert sorted(os.listdir(folder)) == ["open", "secret.svg", "sound.svg"]
@@ -74,8 +71,8 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
-    told = refused(desk, "convert", "sound.svg", out, preexec_fn=limit)
-    assert re.match(rf"{out}: .*cannot be written: file too large", told)
+    file, told = refusal(desk, "convert", "sound.svg", out, preexec_fn=limit)
+    assert file == out and agrees(told, "file-unwritable 'file too large'")
 
 
 def test_standard_output_that_is_closed_or_full(desk):
@@ -119,8 +116,9 @@ def full_disk(desk):
 )
 def test_a_full_disk_leaves_nothing(desk, full_disk, words):
     before = listing(desk)
-    done = brushsvg("convert", "sound.svg", *words, cwd=desk, before=full_disk, status=1)
-    assert len(done.err) == 1
-    assert "cannot be written: no space left on device" in done.err[0]
+    words = ("--messages", "json", "convert", "sound.svg", *words)
+    done = brushsvg(*words, cwd=desk, before=full_disk, status=1)
+    ((_, told),) = done.told
+    assert agrees(told, "file-unwritable 'no space left'")
     assert done.out == "filler old.ngc kept\n"
     assert listing(desk) == before

@@ -122,12 +122,12 @@ def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("line", "0", "0", "5cm", "5cm", "brushwrite", "o.ngc"), "layer 1 has no pen width"),
-        (("read", "x.svg", "brushwrite", "o.xyz"), "the extension '.xyz' is neither"),
+        (("line", "0", "0", "5cm", "5cm", "brushwrite", "o.ngc"), "layer 1"),
+        (("read", "x.svg", "brushwrite", "o.xyz"), ".xyz"),
         (("read", "x.svg", "brush", "--brush", "broom"), "broom"),
         (
             ("read", "x.svg", "brushwrite", "--width", "3cm", "o.ngc"),
-            "is outside the range [0.000, 8.400] mm",
+            "[0.000, 8.400] mm",
         ),
         (("read", "x.svg", "brushwrite", "--cell", "nowhere", "o.ngc"), "nowhere"),
         (("brushwrite", "o.ngc"), "nothing"),

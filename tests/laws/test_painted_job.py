@@ -5,6 +5,7 @@ import json
 import numpy as np
 import photograph
 import pytest
+from diagnostics import in_json, is_told
 from photograph import BLUE, INK, Camera
 from shapely import affinity
 from shapely.geometry import Polygon
@@ -92,9 +93,10 @@ def test_wider_paint_and_a_missing_stroke_are_told(job, capsys):
         if name != "line"
     }
     (folder / "wide.jpg").write_bytes(shown(page, wider))
-    status, told = compare(folder, capsys, "wide.jpg", "--json")
-    rows = {row["stroke"]: row for row in json.loads(told.out)["strokes"]}
-    assert status == 0 and "line: no paint is found" in told.err
+    words = ("compare", folder / "wide.jpg", folder / "four.svg", "--json")
+    status, out, told = in_json(capsys, *words)
+    rows = {row["stroke"]: row for row in json.loads(out)["strokes"]}
+    assert status == 0 and is_told(told, "mark-missing", "line"), told
     assert not rows["line"]["found"] and rows["line"]["missing"] == 1
     for name in ("bow", "cross", "bar"):
         assert rows[name]["wider_mm"] == pytest.approx(0.3, abs=0.05)
@@ -149,8 +151,8 @@ def test_photographs_of_two_sheets_are_refused(job, capsys):
     moved = {name: [ring + np.array([1.5, 0.0]) for ring in rings] for name, rings in painted.items()}
     (folder / "two.jpg").write_bytes(shown(page, moved))
     words = ["compare", *(str(folder / name) for name in ("photo.jpg", "two.jpg", "four.svg"))]
-    assert main([*words, "--quiet"]) == 1
-    assert "compare each sheet by itself" in capsys.readouterr().err
+    status, _, told = in_json(capsys, *words, "--quiet")
+    assert status == 1 and is_told(told, "photos-differ"), told
     (folder / "aside.jpg").write_bytes(
         shown(page, painted, Camera((1500, 1050), tilt_deg=(-8.0, 6.0), fill=0.9))
     )
@@ -170,8 +172,9 @@ def test_a_blot_is_told(job, capsys):
 def test_scripts_can_ask_for_an_overlap(job, capsys):
     folder = job[0]
     assert compare(folder, capsys, "photo.jpg", "--at-least", "0.2")[0] == 0
-    status, told = compare(folder, capsys, "photo.jpg", "--at-least", "0.99")
-    assert status == 1 and "below 0.99" in told.err
+    words = ("compare", folder / "photo.jpg", folder / "four.svg", "--at-least", "0.99")
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and is_told(told, "overlap-low 0.99"), told
 
 
 def test_other_pictures_are_refused(job, capsys):
@@ -185,14 +188,14 @@ def test_other_pictures_are_refused(job, capsys):
     sheet = photograph.page(of_a_chart)
     (folder / "chart.jpg").write_bytes(photograph.photograph(sheet, Camera(size_px=(1050, 1500))))
     (folder / "none.jpg").write_bytes(photograph.encoded(np.full((600, 800, 3), 200, np.uint8)))
-    for name, words in (
-        ("bare.jpg", "no paint is found"),
-        ("elsewhere.jpg", "is this the painted page of this job?"),
-        ("chart.jpg", "the page of another job"),
-        ("none.jpg", "no marker"),
+    for name, code in (
+        ("bare.jpg", "photo-without-paint"),
+        ("elsewhere.jpg", "photo-of-another-job"),
+        ("chart.jpg", "photo-of-another-chart"),
+        ("none.jpg", "photo-markers-missing"),
     ):
-        status, told = compare(folder, capsys, name)
-        assert status == 1 and words in told.err and "Traceback" not in told.err, (name, told.err)
+        status, _, ((_, told),) = in_json(capsys, "compare", folder / name, folder / "four.svg")
+        assert (status, told.code) == (1, code), (name, told)
 
 
 def test_the_page_names_its_plan(job, tmp_path, capsys):

@@ -8,6 +8,7 @@ import numpy as np
 import painter
 import pytest
 import shapely
+from diagnostics import refused
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -18,7 +19,6 @@ from brushsvg.calibration import mark_report  # noqa: E402
 from brushsvg.calibration.from_marks import _refuse_undetermined, brush_of, calibrate_marks, expected_brush  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.mark_report import report  # noqa: E402
-from brushsvg.errors import Error  # noqa: E402
 
 DEPTHS = np.linspace(0.2, 1.0, 5)
 
@@ -87,7 +87,7 @@ def test_a_round_tail_is_seen_in_the_marks(seed):
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
     outline = np.array(made.brush.footprints.dragged[-1].outline_mm)
     assert np.sum(outline[:, 0] < 0.3 * made.brush.tip_to_widest(brush.deepest)) > 10, "an egg, no drop"
-    assert "with a round tail fit these marks" in report(made)
+    assert "round tail" in report(made)
 
 
 def test_a_sheet_scanned_at_another_scale_is_refused():
@@ -96,10 +96,9 @@ def test_a_sheet_scanned_at_another_scale_is_refused():
     plan, marks = as_file(strokes, painted)
     for mark in marks:
         mark["outline_mm"] = [(0.97 * np.array(ring)).tolist() for ring in mark["outline_mm"]]
-    with pytest.raises(
-        Error, match=r"the sheet is (2\.[5-9]|3\.[0-5])\d \+- \d.\d\d % smaller than the plan"
-    ):
+    with refused("marks-scaled smaller") as caught:
         calibrate_marks(read_painted(plan, marks, None), "b")
+    assert re.search(r" (2\.[5-9]|3\.[0-5])\d \+- \d.\d\d % smaller", caught.value.sentence)
 
 
 def test_displacements_come_back():
@@ -113,9 +112,7 @@ def test_displacements_come_back():
 def test_more_displacement_than_expected_is_said():
     _, strokes, painted = sheet(3, displacement=2.5)
     told = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
-    assert re.search(
-        r'displacement_mm is 2\.\d in x.* standard deviation of 1, .*\{"displacement_mm": 3\}', told
-    )
+    assert re.search(r'displacement_mm is 2\.\d in x.* of 1, .*\{"displacement_mm": 3\}', told)
     _, _, usual = calibrated(3)
     assert "expected" not in report(usual)
 
@@ -133,17 +130,14 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
     [
         (found(), ""),
         (found([(1.2, -1.2)] * 4), ""),
-        (
-            found(shift=(1.0, -7.0)),
-            'placement_mm is 7, expected was a standard deviation of 2, which biases the laws: give "expected": ',
-        ),
-        (found(height=-1.31), '{"height_mm": 2} if that is how exact the sheet is'),
-        (found(height=2.0), "height_mm is 2, expected was a standard deviation of 0.3"),
-        (found(turn=0.11), "turn_deg is 6.3, expected was a standard deviation of 1.1"),
+        (found(shift=(1.0, -7.0)), 'placement_mm is 7, .* of 2, .*give "expected": '),
+        (found(height=-1.31), '{"height_mm": 2} if '),
+        (found(height=2.0), "height_mm is 2, .* of 0.3"),
+        (found(turn=0.11), "turn_deg is 6.3, .* of 1.1"),
     ],
 )
 def test_what_lies_far_beyond_what_was_expected_is_said(made, said):
-    assert said in "".join(mark_report._unexpected(made))
+    assert re.search(said, "".join(mark_report._unexpected(made)))
     assert bool(said) == bool(mark_report._unexpected(made))
 
 
@@ -151,7 +145,7 @@ def test_marks_unlike_their_predictions_are_said(monkeypatch):
     _, _, made = calibrated(3)
     assert "outside the range [0.5, 1]" not in report(made)
     monkeypatch.setattr(mark_report, "overlaps", lambda _: (0.3, 0.36))
-    assert "painted and predicted marks overlap by 0.36, outside the range [0.5, 1]" in report(made)
+    assert " 0.36, outside the range [0.5, 1]" in report(made)
 
 
 @pytest.mark.parametrize("widths", [1.0, 1.3])
@@ -186,11 +180,9 @@ def test_blots_and_gaps_are_masked():
 def test_depths_that_nobody_painted_are_refused():
     _, strokes, painted = sheet(3)
     done = read_painted(*as_file(strokes, painted), None)
-    with pytest.raises(
-        Error, match=r"were painted to a depth of 4\.51\d* mm.* \"depth_range_mm\": \[0, 4\.51"
-    ) as refusal:
+    with refused("depth-not-measured", "depth_range_mm") as caught:
         calibrate_marks(done, "b", (0.0, 1.6 * done.deepest_mm))
-    assert refusal.value.where == "depth_range_mm"
+    assert re.search(r' 4\.51\d* mm.* "depth_range_mm": \[0, 4\.51', caught.value.sentence)
 
 
 def test_a_law_that_is_left_open_is_refused_with_its_number():
@@ -202,11 +194,8 @@ def test_a_law_that_is_left_open_is_refused_with_its_number():
         covariance[3, 3] = (share * 12.0 / 1000.0 / 1.96) ** 2
         _refuse_undetermined(brush_of(laws, "b", (0.0, 10.0), covariance), SimpleNamespace(remarks=[]))
 
-    with pytest.raises(
-        Error, match=r"do not determine the lag: 12\.0 \+- 14\.4 mm \(95 %\) at depth 10 mm: paint curved"
-    ) as refusal:
+    with refused("law-undetermined '12.0 +- 14.4 mm' 10 curved", "lag"):
         open_by(1.2)
-    assert (refusal.value.where, refusal.value.code) == ("lag", "law-undetermined")
     open_by(0.7)  # open in the last tenth alone
 
 
@@ -302,7 +291,7 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     framed = calibrate_marks(read_painted(plan, marks, None), "b")
     assert max(framed.round_tail_gain, alone.round_tail_gain) < -40
     assert framed.fit.left_aside > 0.1
-    assert "of the edge points are masked outliers, outside the range [0, 10] %" in report(framed)
+    assert re.search(r"masked outliers.* \[0, 10\] %", report(framed))
     assert "masked outliers" not in report(alone)
     for law in ("lag", "tip_gap", "half_width"):
         np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)

@@ -11,12 +11,23 @@ from brushsvg.cli import main
 from brushsvg.errors import Error, Notice
 
 
-def agrees(told: Error | Notice, expected: str) -> bool:
+def agrees(told: Error | Notice, expected: str, where: str | None = None) -> bool:
     """expected: a code, then numbers and names that the element or the sentence gives, each as a whole word; with
-    blanks in it, in quotes."""
+    blanks in it, in quotes. where: the element it must be about."""
     code, *parts = shlex.split(expected)
     text = f"{told.where}: {told if isinstance(told, Error) else told.told}"
-    return told.code == code and all(_stands_in(part, text) for part in parts)
+    return told.code == code and where in (None, told.where) and all(_stands_in(part, text) for part in parts)
+
+
+def is_told(told, expected: str, where: str | None = None) -> bool:
+    """Whether one of these agrees; told: notices, with their files as in_json gives them or without."""
+    notices = (each[1] if isinstance(each, tuple) else each for each in told)
+    return any(agrees(each, expected, where) for each in notices)
+
+
+def are_told(told, *expected: str) -> bool:
+    """Whether it is these, in this order, and nothing else."""
+    return len(told) == len(expected) and all(map(agrees, told, expected))
 
 
 def _stands_in(part: str, text: str) -> bool:
@@ -31,18 +42,23 @@ def refused(expected: str, where: str | None = None):
     with pytest.raises(Error) as caught:
         yield caught
     told = caught.value
-    assert agrees(told, expected), (expected, told.code, told.where, str(told))
-    assert where is None or told.where == where
+    assert agrees(told, expected, where), (expected, told.code, told.where, str(told))
 
 
 def in_json(capsys, *words) -> tuple[int, str, list[tuple[str, Notice]]]:
     """Exit status, standard output, and what was told with the file that it is about."""
     status = main(["--messages", "json", *map(str, words)])
     output, errors = capsys.readouterr()
-    told = [json.loads(line) for line in errors.splitlines() if line.startswith("{")]
-    return status, output, [(each.pop("file"), _notice(each)) for each in told]
+    return status, output, heard(errors.splitlines())
 
 
-def _notice(told: dict) -> Notice:
+def heard(lines) -> list[tuple[str, Notice]]:
+    """What `--messages json` told in these lines, each with the file that it is about."""
+    told = [json.loads(line) for line in lines if line.startswith("{")]
+    return [(each.pop("file"), read(each)) for each in told]
+
+
+def read(told: dict) -> Notice:
+    """A notice of `--messages json`, or of a report in JSON."""
     sentence = told["sentence"].removesuffix(f"; {told['advice']}")
     return Notice(**(told | {"sentence": sentence}))

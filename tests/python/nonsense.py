@@ -260,6 +260,7 @@ ARGUMENTS = {
         brushes,
         ["auto", "clamp", "passes", "refuse", "varnish"],
     ],
+    "lifted_at_corners": [lambda: ([each] for each in some_strokes()), brushes],
     "write_cell": [cells],
     "write_marks": [marks],
     "write_plan": [plans],

@@ -14,6 +14,7 @@ LANGUAGES = {
     "ur5e": ".script",
     "jaka-zu3": ".jks",
 }
+RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 
 
 def call(capsys, *words):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnostics import are_told
 from programs import problems
 
 from brushsvg import _core
@@ -105,9 +106,7 @@ def test_blends_that_move_the_mark_too_far_are_refused():
     brush = find_brush("round-6")
     plan, marks = marks_and_plan(brush)
     wide = replace(find_cell(), blending=Blending(2.0))
-    ((where, sentence),) = problems(plan, brush, marks, wide, 0.05)
-    assert where == "angle"
-    assert "cutting corners by up to 2 mm, as cell linuxcnc-3axis does, moves the mark by" in sentence
+    assert are_told(problems(plan, brush, marks, wide, 0.05), "shifted-by-blends angle 2 linuxcnc-3axis")
     assert problems(plan, brush, marks, wide, 5.0) == []
     assert problems(plan, brush, marks, as_exact_as(wide, 0.05), 0.05) == []
 

@@ -10,7 +10,8 @@ import cv2
 import numpy as np
 import pytest
 import shapely
-from diagnostics import refused
+from diagnostics import agrees, in_json, refused
+from programs import RUNNABLE
 
 from brushsvg import _core, find_brush
 from brushsvg.brush.perturbed import with_lag
@@ -136,10 +137,10 @@ def test_a_program_for_every_cell(name, tmp_path, capsys):
     suffix = POSTS[find_cell(name).language].extensions[0]
     out = tmp_path / f"chart{suffix}"
     assert main(["chart", str(out), "--cell", name]) == 0
-    assert "strokes on 210 x 297 mm, depths" in capsys.readouterr().out
+    assert " on 210 x 297 mm, depths" in capsys.readouterr().out
     assert out.stat().st_size > 10_000
     assert main(["check", str(out), "--cell", name]) == 0
-    assert "nothing forbids to run it" in capsys.readouterr().out
+    assert RUNNABLE in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("sheet", all_but_the_first_slow(["a5", "letter", "300x200"]))
@@ -209,13 +210,19 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
     assert np.hypot(*(points - bar.at_mm - [bar.length_mm, 1.1]).T).min() < 0.01
 
 
-def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("command", ["chart plan.json --sheet a5", "convert a.svg plan.json"])
+def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
+    """It was told as a mistake of ours."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50">'
+        '<path d="M20 20h50" stroke="#000" stroke-width="3"/></svg>'
+    )
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    plan, page = str(tmp_path / "plan.json"), tmp_path / "page"
-    assert main(["chart", plan, "--sheet", "a5", "--page", f"{page}.pdf"]) == 1
-    assert "pages as PDF need matplotlib: install with" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-    assert main(["chart", plan, "--sheet", "a5", "--page", f"{page}.svg"]) == 0
+    status, _, ((file, told),) = in_json(capsys, *command.split(), "--page", "page.pdf")
+    assert (status, file) == (1, "page.pdf") and agrees(told, "package-missing PDF matplotlib")
+    assert [each.name for each in tmp_path.iterdir()] == ["a.svg"]
+    assert main([*command.split(), "--page", "page.svg"]) == 0
 
 
 def test_a_file_of_before_is_read():
@@ -330,8 +337,8 @@ def test_no_depth_is_rounded_beyond_the_brush(deepest):
 
 @pytest.mark.parametrize("sheet", ["9x9", "1x5000"])
 def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
-    assert main(["chart", str(tmp_path / "c.json"), "--sheet", sheet]) == 1
-    assert "too small for the markers in its corners" in capsys.readouterr().err
+    status, _, ((_, told),) = in_json(capsys, "chart", tmp_path / "c.json", "--sheet", sheet)
+    assert status == 1 and agrees(told, "sheet-too-small markers"), told
 
 
 def test_same_chart_each_time():

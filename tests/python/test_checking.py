@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnostics import agrees, in_json, refused
-from programs import LANGUAGES, call
+from programs import LANGUAGES, RUNNABLE, call
 
 from brushsvg import _core
-from brushsvg.errors import Error
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
 from brushsvg.pipeline import preparation
@@ -97,8 +96,9 @@ def test_a_dangerous_program_is_told_by_line(desk, fault):
 def test_a_program_deeper_than_the_brush_is_refused(desk):
     work = preparation.prepare("two.svg")
     text, cell = text_of(work, "linuxcnc-3axis")
-    with pytest.raises(Error, match=r"depth 11\.\d+ mm of pose 1 is outside the range"):
+    with refused("depth-out-of-range 'pose 1'") as caught:
         ran(edited(r"Z-\d\.\d+", "Z-11.5")(text), cell, work)
+    assert " 11." in caught.value.sentence
 
 
 UNREADABLE = {
@@ -138,7 +138,7 @@ def test_the_command_compares_with_the_drawing(desk, capsys):
     status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--preview", "two.png")
     assert (status, len(err)) == (0, 1) and err[0].startswith("brushsvg: two.png: written"), err
     assert re.search(r"(?m)^all +0\.9\d\d ", out)
-    assert out.endswith("two.ngc: nothing forbids to run it\n")
+    assert out.endswith(f"two.ngc: {RUNNABLE}\n")
     assert (desk / "two.png").exists()
     status, out, _ = call(capsys, "check", "two.ngc")
     assert status == 0 and re.search(r"(?m)^all +- ", out), (
@@ -278,7 +278,7 @@ def test_a_plan_is_a_drawing_too(desk, capsys):
         assert call(capsys, "convert", "plan.json", f"two{suffix}", "--cell", cell)[0] == 0
         status, out, err = call(capsys, "check", f"two{suffix}", "plan.json")
         assert (status, err) == (0, [])
-        assert out.endswith(f"two{suffix}: nothing forbids to run it\n")
+        assert out.endswith(f"two{suffix}: {RUNNABLE}\n")
     assert call(capsys, "check", "two.ngc", "two.svg")[0] == 1, "it was made without compensation"
     plan = json.loads((desk / "plan.json").read_text())
     plan["passes"][1]["poses_mm"][2][0] += 0.5
@@ -768,13 +768,14 @@ def test_whatever_was_changed_is_told(desk, capsys, suffix):
     """Seen by comparing with the drawing's own plan, and with what would be written for the same strokes."""
     cell = {".script": ("--cell", "ur5e"), ".nc": ("--cell", "grbl-servo")}.get(suffix, ())
     drawing = DRAWING.replace("h-12", "h-12 l12 2")  # a corner too sharp for anything but a turn in place
+    turn = ("--corners", "turn")
     (desk / "two.svg").write_text(drawing)
-    assert call(capsys, "convert", "two.svg", f"two{suffix}", *cell)[0] == 0
+    assert call(capsys, "convert", "two.svg", f"two{suffix}", *cell, *turn)[0] == 0
     text = (desk / f"two{suffix}").read_text()
-    assert call(capsys, "check", f"two{suffix}", "two.svg")[0] == 0
+    assert call(capsys, "check", f"two{suffix}", "two.svg", *turn)[0] == 0
     for edit, said in CHANGED[suffix]:
         (desk / f"two{suffix}").write_text(edit(text))
-        status, _, told = in_json(capsys, "check", f"two{suffix}", "two.svg")
+        status, _, told = in_json(capsys, "check", f"two{suffix}", "two.svg", *turn)
         assert (status, any(agrees(each, said) for _, each in told)) == (1, True), (said, told)
 
 
@@ -1041,12 +1042,12 @@ def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
 def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, digit):
     (desk / "two.svg").write_text(DRAWING.replace("h-12", "h-12 l12 2"))
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", program, "--cell", name, "--corners", "turn")[0] == 0
     text = (desk / program).read_text()
     depth = re.search(r"(?m)^G[23] X\S+ Y\S+ Z(\S+) ", text)[1]
     off = f"{float(depth) + float(digit):.{len(digit) - 2}f}"
     (desk / program).write_text(edited(rf"(?m)^(G[23] X\S+ Y\S+ Z){depth} ", rf"\g<1>{off} ")(text))
-    status, _, err = call(capsys, "check", program, "two.svg")
+    status, _, err = call(capsys, "check", program, "two.svg", "--corners", "turn")
     assert (status, err) == (0, []), err
 
 

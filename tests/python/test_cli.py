@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from diagnostics import agrees, heard, in_json, is_told
 
 from brushsvg.brush.library import SHIPPED
 from brushsvg.cli import commands, main
@@ -184,45 +185,68 @@ def test_flags_reach_the_plan(desk, capsys):
     assert len(finer["passes"][0]["poses_mm"]) > len(default["passes"][0]["poses_mm"])
 
 
-REFUSED = {
-    "no file": ("missing.svg", None, [], r"brushsvg: missing\.svg: .*no such file"),
-    "no plan file": ("missing.json", None, [], r"brushsvg: missing\.json: there is no such file"),
-    "not XML": ("x.svg", "moo", [], r"brushsvg: x\.svg: "),
-    "empty drawing": ("x.svg", drawing(), [], r"brushsvg: x\.svg: .*nothing to paint"),
+REFUSED = {  # file, what it holds, flags, what is told of which file and element
+    "no file": ("missing.svg", None, [], "file-unreadable", "missing.svg", ""),
+    "no plan file": ("missing.json", None, [], "file-unreadable", "missing.json", ""),
+    "not XML": ("x.svg", "moo", [], "not-xml", "x.svg", ""),
+    "empty drawing": ("x.svg", drawing(), [], "nothing-to-paint", "x.svg", ""),
     "width out of reach": (
         "x.svg",
         drawing(LINE.replace('"3"', '"30"')),
         [],
-        r"brushsvg: x\.svg: line: .*(15|30).*\[.*\]",
+        "width-out-of-reach 30.000 [0.000, 8.400]",
+        "x.svg",
+        "line",
     ),
     "off the sheet": (
         "x.svg",
         drawing(LINE.replace("M20 40", "M-3 40")),
         [],
-        r"brushsvg: x\.svg: line: the mark reaches [34]\.\d\d mm beyond the left edge of the sheet",
+        "mark-off-sheet left",
+        "x.svg",
+        "line",
     ),
-    "damaged": ("x.svg", drawing(LINE, '<path id="bad" d="M1 nan" stroke="#000"/>'), [], r"x\.svg: bad: "),
-    "unknown brush": ("a.svg", None, ["--brush", "broom"], r"brushsvg: broom: .*'broom'"),
-    "not a plan": ("x.json", '{"format": "brushsvg/brush", "version": 1}', [], r"brushsvg: x\.json: "),
-    "not text": ("x.json", b"\xff\xfe\x00", [], r"brushsvg: x\.json: .*"),
+    "damaged": (
+        "x.svg",
+        drawing(LINE, '<path id="bad" d="M1 nan" stroke="#000"/>'),
+        [],
+        "geometry-damaged",
+        "x.svg",
+        "bad",
+    ),
+    "unknown brush": ("a.svg", None, ["--brush", "broom"], "brush-unknown broom", "broom", ""),
+    "not a plan": (
+        "x.json",
+        '{"format": "brushsvg/brush", "version": 1}',
+        [],
+        "format-unknown",
+        "x.json",
+        "format",
+    ),
+    "not text": ("x.json", b"\xff\xfe\x00", [], "not-json", "x.json", ""),
     "plan of an unknown version": (
         "x.json",
         '{"format": "brushsvg/plan", "version": 99, "brush": "round-6", "sheet_mm": [9, 9], "passes": []}',
         [],
-        r"brushsvg: x\.json: .*99",
+        "version-unknown 99",
+        "x.json",
+        "version",
     ),
 }
 
 
 @pytest.mark.parametrize("case", REFUSED)
 def test_refused_with_one_sentence_and_nothing_written(desk, capsys, case):
-    name, content, flags, words = REFUSED[case]
+    name, content, flags, said, file, where = REFUSED[case]
     if content is not None:
         (desk / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     before = listing(desk)
-    status, out, err = run(capsys, "convert", name, "out.ngc", "--report", "out.txt", *flags)
+    words = ("convert", name, "out.ngc", "--report", "out.txt", *flags)
+    status, out, err = run(capsys, *words)
     assert (status, out, len(err)) == (1, "", 1), err
-    assert re.search(words, err[0]), err[0]
+    status, out, ((about, told),) = in_json(capsys, *words)
+    assert (status, out, about) == (1, "", file) and agrees(told, said, where), (about, told)
+    assert err == [": ".join(part for part in ("brushsvg", file, where, told.told) if part)]
     assert listing(desk) == before
 
 
@@ -237,34 +261,27 @@ def edited_plan(desk, **changes):
 
 
 @pytest.mark.parametrize(
-    ("changes", "words"),
+    ("changes", "said"),
     [
-        (
-            {"speed_mm_s": 30},
-            "x.json: line: speed 30 mm/s is outside the range [0.000001, 25.0] mm/s of brush round-6",
-        ),
-        (
-            {"poses_mm": [[30, 30, 0], [200, 30, 0]]},
-            "x.json: line: the TCP goes 50.00 mm beyond the right edge",
-        ),
-        ({"sheet_mm": [120, 20]}, "x.json: line: the mark reaches"),
-        ({"poses_mm": [[30, 30, 0], [50, 30, -12], [60, 30, 0]]}, "x.json: line: depth 12.0"),
+        ({"speed_mm_s": 30}, "speed-out-of-range 30 [0.000001, 25.0] round-6"),
+        ({"poses_mm": [[30, 30, 0], [200, 30, 0]]}, "tool-off-sheet 50.00 right"),
+        ({"sheet_mm": [120, 20]}, "mark-off-sheet upper"),
+        ({"poses_mm": [[30, 30, 0], [50, 30, -12], [60, 30, 0]]}, "depth-out-of-range 12.000 10.0]"),
     ],
 )
-def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, words):
+def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):
     edited_plan(desk, **changes)
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
-    assert status == 1
-    assert any(words in line for line in err), err
+    status, _, told = in_json(capsys, "convert", "x.json", "out.ngc")
+    assert (status, {file for file, _ in told}) == (1, {"x.json"})
+    assert is_told(told, said, "line"), told
     assert not (desk / "out.ngc").exists()
 
 
 def test_whoever_only_looks_is_warned(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
-    status, _, err = run(capsys, "predict", "x.json", "out.svg")
+    status, _, told = in_json(capsys, "predict", "x.json", "out.svg")
     assert status == 0
-    assert any("speed 30 mm/s" in line for line in err)
-    assert any("beyond the upper edge of the sheet" in line for line in err)
+    assert is_told(told, "speed-out-of-range 30") and is_told(told, "mark-off-sheet upper"), told
     status, out, _ = run(capsys, "report", "x.json")
     assert status == 0
     assert "line: speed 30 mm/s" in out
@@ -282,10 +299,9 @@ def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
     assert status == 1
     assert [line.split(": ")[2] for line in err] == ["worse", "worse", "off", "worse", "worse"]
     hint = "; --lenient draws what is sound"
-    assert err[-1] == (
-        "brushsvg: x.svg: worse: d is damaged at character 17: found 'nan 4'; read up to there" + hint
-    )
-    assert not any(hint in line for line in err[:-1])
+    assert err[-1].endswith(hint) and not any(hint in line for line in err[:-1])
+    _, told = in_json(capsys, "convert", "x.svg", "out.ngc")[2][-1]
+    assert agrees(told, "geometry-damaged 17 'nan 4'", "worse") and told.damaged
     assert not any(word in line for line in err for word in ("drawn", "painted", "ignored"))
     (desk / "x.svg").write_text(drawing(off))
     assert not any("--lenient" in line for line in run(capsys, "convert", "x.svg", "out.ngc")[2])
@@ -300,31 +316,25 @@ def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
         assert err[0].startswith("brushsvg: x.svg: bad: ")
         assert err[1].startswith(f"brushsvg: {words[2]}: written; ")
         assert "--lenient" not in err[0]
-    assert "(warnings: 1, 1 of them damaged geometry)" in (desk / "out.ngc").read_text()
+    assert re.search(r"^\(warnings: 1, 1 .*damaged", (desk / "out.ngc").read_text(), re.MULTILINE)
 
 
 def test_a_plan_keeps_its_brush(desk, capsys):
     edited_plan(desk, brush_sha256="0" * 64)
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc", "--quiet")
-    assert (status, err) == (
-        0,
-        ["brushsvg: x.json: brush_sha256: the plan was made with another file of brush round-6"],
-    )
-    status, _, err = run(
-        capsys, "predict", "plan.json", "out.png", "--brush", "rigid", "--compensation", "none"
-    )
-    assert err[0] == "brushsvg: plan.json: --compensation has no effect on a plan, whose poses are fixed"
+    status, _, ((file, told),) = in_json(capsys, "convert", "x.json", "out.ngc", "--quiet")
+    assert (status, file) == (0, "x.json") and agrees(told, "plan-of-other-brush round-6", "brush_sha256")
+    words = ("predict", "plan.json", "out.png", "--brush", "rigid", "--compensation", "none")
+    (file, told), *_ = in_json(capsys, *words)[2]
+    assert file == "plan.json" and agrees(told, "flag-without-effect --compensation")
     (desk / "mine.json").write_text("{}")
     edited_plan(desk, brush="mine.json")
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
-    assert (status, err[0].split(": ")[:2]) == (1, ["brushsvg", "mine.json"])
+    status, _, ((file, told),) = in_json(capsys, "convert", "x.json", "out.ngc")
+    assert (status, file) == (1, "mine.json") and agrees(told, "key-missing format")
     edited_plan(desk, brush="my-brush")
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc")
-    assert (status, len(err)) == (1, 1)
-    assert "my-brush" in err[0]
-    status, _, err = run(capsys, "convert", "x.json", "out.ngc", "--brush", "round-6", "--quiet")
-    assert (status, len(err)) == (0, 1)
-    assert "made for brush my-brush, not for round-6" in err[0]
+    status, _, ((_, told),) = in_json(capsys, "convert", "x.json", "out.ngc")
+    assert status == 1 and agrees(told, "brush-unknown my-brush")
+    status, _, ((_, told),) = in_json(capsys, "convert", "x.json", "out.ngc", "--brush", "round-6", "--quiet")
+    assert status == 0 and agrees(told, "plan-of-other-brush my-brush round-6", "brush")
 
 
 @pytest.mark.parametrize(
@@ -399,13 +409,9 @@ def test_wrong_usage(desk, capsys, words):
     ],
 )
 def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
-    status = main(["--messages", "json", *command.split(), out, *flags.split()])
-    refusal = json.loads(capsys.readouterr().err)
-    assert (status, refusal["code"], refusal["advice"]) == (1, "program-format", "give --cell")
-    suffix = Path(out).suffix.lower()
-    assert refusal["file"] == out, "not the drawing"
-    assert refusal["sentence"].startswith(f"the extension '{suffix}' is neither .json")
-    assert refusal["sentence"].endswith(f"; {suffix} is for cell {cells}; give --cell")
+    status, _, ((file, told),) = in_json(capsys, *command.split(), out, *flags.split())
+    assert (status, file, told.advice) == (1, out, "give --cell"), "of this file, not of the drawing"
+    assert agrees(told, f"program-format {Path(out).suffix.lower()} {cells}"), told
     for cell in cells.split(" or "):  # which is true of each
         assert run(capsys, "height", out, "--cell", cell)[0] == 0
 
@@ -423,9 +429,7 @@ def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
         "depth-not-measured",
     )
     assert told["sentence"].endswith(f"; {told['advice']}") and not told["damaged"]
-    assert run(capsys, *words) == (0, "", [f"brushsvg: thin.svg: p1 and 4 like it: {told['sentence']}"])
-    assert main(["--messages", "json", "convert", "no.svg", "x.ngc"]) == 1
-    assert json.loads(capsys.readouterr().err)["code"] == "file-unreadable"
+    assert run(capsys, *words) == (0, "", [f"brushsvg: thin.svg: {told['where']}: {told['sentence']}"])
     (desk / "odd.svg").write_text(drawing(LINE, '<image id="i"/>'))
     (warned,) = json.loads(run(capsys, "report", "odd.svg", "--json")[1])["warnings"]
     assert (warned["where"], warned["code"]) == ("i", "element-unread")
@@ -433,17 +437,20 @@ def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
 
 def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
     (desk / "folder.png").mkdir()
-    for words, reason in (
-        (["convert", "a.svg", "no/where/out.ngc"], "its directory does not exist"),
-        (["convert", "a.svg", "out.ngc", "--preview", "folder.png"], "it is a directory"),
-        (["convert", "a.svg", "out.ngc", "--report", "no/where/out.txt"], "its directory does not exist"),
-        (["predict", "a.svg", "folder.png"], "it is a directory"),
-        (["animate", "a.svg", "no/where/out.html"], "its directory does not exist"),
+    for words, name, reason in (
+        (["convert", "a.svg", "no/where/out.ngc"], "no/where/out.ngc", "does not exist"),
+        (["convert", "a.svg", "out.ngc", "--preview", "folder.png"], "folder.png", "is a directory"),
+        (
+            ["convert", "a.svg", "out.ngc", "--report", "no/where/out.txt"],
+            "no/where/out.txt",
+            "does not exist",
+        ),
+        (["predict", "a.svg", "folder.png"], "folder.png", "is a directory"),
+        (["animate", "a.svg", "no/where/out.html"], "no/where/out.html", "does not exist"),
     ):
         before = listing(desk)
-        status, _, err = run(capsys, *words)
-        assert (status, len(err)) == (1, 1)
-        assert f"the file cannot be written: {reason}" in err[0]
+        status, _, ((file, told),) = in_json(capsys, *words)
+        assert (status, file) == (1, name) and agrees(told, f"file-unwritable '{reason}'"), told
         assert listing(desk) == before
 
 
@@ -457,13 +464,10 @@ def test_several_outputs_are_written_all_or_none(desk, capsys, full):
         else:
             (desk / name).write_text("old")
     before = sorted(os.listdir(desk))
-    status, _, err = run(
+    status, _, ((file, told),) = in_json(
         capsys, "convert", "a.svg", outputs[0], "--preview", outputs[1], "--report", outputs[2]
     )
-    assert (status, err) == (
-        1,
-        [f"brushsvg: {full}: the file cannot be written: no space left on device"],
-    )
+    assert (status, file) == (1, full) and agrees(told, "file-unwritable 'no space left'"), told
     assert all((desk / name).read_text() == "old" for name in outputs if name != full)
     assert sorted(os.listdir(desk)) == before
 
@@ -476,13 +480,9 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
 def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
-    status, _, err = run(capsys, "convert", "x.svg", "out.ngc", "--quiet")
-    assert (status, len(err)) == (0, 1)
-    assert re.fullmatch(
-        r"brushsvg: x.svg: line: tracking error \d\.\d+ mm near x \d+\.\d, y \d+\.\d mm, above the tolerance of "
-        r"0.05 mm: it turns too sharply there for the brush",
-        err[0],
-    )
+    status, _, ((_, told),) = in_json(capsys, "convert", "x.svg", "out.ngc", "--quiet", "--corners", "turn")
+    assert status == 0 and agrees(told, "off-middle-line 0.05 sharply", "line"), told
+    assert re.search(r" \d\.\d+ mm near x \d+\.\d, y \d+\.\d mm", told.sentence)
     flags = ("--compensation", "none", "--quiet")
     assert run(capsys, "convert", "x.svg", "out.ngc", *flags) == (0, "", [])
 
@@ -500,22 +500,25 @@ def test_brush_commands(desk, capsys):
 
 
 @pytest.mark.parametrize(
-    ("key", "value"),
+    ("key", "value", "code"),
     [
-        ("version", 2),
-        ("format", "brushsvg/plan"),
-        ("lag", {"coefficients": [3.1, 0.86, 0.31, -0.05, 0.00021]}),  # as the article prints them
-        ("depth_range_mm", [5, 1]),
+        ("version", 2, "version-unknown"),
+        ("format", "brushsvg/plan", "format-unknown"),
+        (
+            "lag",
+            {"coefficients": [3.1, 0.86, 0.31, -0.05, 0.00021]},
+            "law-negative",
+        ),  # as the article prints them
+        ("depth_range_mm", [5, 1], "not-ascending"),
     ],
 )
-def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value):
+def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value, code):
     brush = json.loads((SHIPPED / "round-6.json").read_text())
     brush[key] = value
     (desk / "mine.json").write_text(json.dumps(brush))
     for words in (["brush", "check", "mine.json"], ["convert", "a.svg", "out.ngc", "--brush", "mine.json"]):
-        status, out, err = run(capsys, *words)
-        assert (status, out, len(err)) == (1, "", 1)
-        assert err[0].startswith("brushsvg: mine.json: ")
+        status, out, ((file, told),) = in_json(capsys, *words)
+        assert (status, out, file, told.code) == (1, "", "mine.json", code)
     assert not (desk / "out.ngc").exists()
 
 
@@ -638,8 +641,11 @@ def test_a_reader_who_leaves_early_is_no_error(desk):
 def test_a_full_disk_under_stdout_is_said(desk):
     with open("/dev/full", "wb") as full:
         done = spawn("report", "a.svg", stdout=full, stderr=subprocess.PIPE)
-    assert done.returncode == 1
+        as_json = spawn("--messages", "json", "report", "a.svg", stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == as_json.returncode == 1
     assert done.stderr == b"brushsvg: standard output: no space left on device\n"
+    ((file, told),) = heard(as_json.stderr.decode().splitlines())
+    assert file == "standard output" and agrees(told, "file-unwritable 'no space left'")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
@@ -670,6 +676,8 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--origin",
         "--as",
         "--wide",
+        "--corners",
+        "--join",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
     assert flags == choices | job | {"--help", "--page", "--preview", "--report", "--quiet"}
@@ -693,26 +701,20 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
     text = (Path(commands.__file__).parents[2] / "data" / "cells" / "grbl-3axis.toml").read_text()
-    for old, new, said in (
-        (
-            "press_mm_s = 6.0",
-            "press_mm_s = 0",
-            "speeds.press_mm_s: speeds.press_mm_s 0 is outside the range [0.01, 5000]",
-        ),
-        ("name =", "nom =", "nom: a cell has no key nom; known here: name, description, language, decimals"),
+    for old, new, where, said in (
+        ("press_mm_s = 6.0", "press_mm_s = 0", "speeds.press_mm_s", "out-of-range 0 '[0.01, 5000]'"),
+        ("name =", "nom =", "nom", "key-unknown nom decimals"),
     ):
         (desk / "my.toml").write_text(text.replace(old, new))
-        assert run(capsys, "cell", "check", "my.toml") == (1, "", [f"brushsvg: my.toml: {said}"])
+        status, out, ((file, told),) = in_json(capsys, "cell", "check", "my.toml")
+        assert (status, out, file) == (1, "", "my.toml") and agrees(told, said, where), told
     (desk / "my.toml").write_text(text.replace("paint_mm_s = 40.0", "paint_mm_s = 9"))
     assert run(capsys, "convert", "a.svg", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
-    status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
-    assert status == 1 and any("beyond the right edge of the workspace" in line for line in err)
-    for cell, said in (
-        ("mine", "cell 'mine' is not known; known are grbl-3axis"),
-        ("no.toml", "there is no such file"),
-    ):
-        status, _, err = run(capsys, "convert", "a.svg", "x.ngc", "--cell", cell)
-        assert status == 1 and said in err[0]
+    status, _, told = in_json(capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
+    assert status == 1 and is_told(told, "tool-off-sheet right"), told
+    for cell, said in (("mine", "cell-unknown mine grbl-3axis"), ("no.toml", "file-unreadable")):
+        status, _, ((_, told),) = in_json(capsys, "convert", "a.svg", "x.ngc", "--cell", cell)
+        assert status == 1 and agrees(told, said), told
     assert not (desk / "x.ngc").exists()

@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import pytest
+from diagnostics import agrees, in_json, is_told, read
 
 from brushsvg.cli import main
 
@@ -28,28 +29,29 @@ def desk(tmp_path, monkeypatch):
 
 
 def plan(desk, capsys, *words, drawing="d.svg"):
+    """Its passes, and what was told."""
     capsys.readouterr()
-    status = main(["convert", drawing, "plan.json", "--quiet", *words])
-    err = capsys.readouterr().err.splitlines()
-    assert status == 0, err
-    return json.loads((desk / "plan.json").read_text())["passes"], err
+    status, _, told = in_json(capsys, "convert", drawing, "plan.json", "--quiet", *words)
+    assert status == 0, told
+    return json.loads((desk / "plan.json").read_text())["passes"], [notice for _, notice in told]
 
 
 def refusal(capsys, *words):
-    assert main(list(words)) == 1
-    (line,) = capsys.readouterr().err.splitlines()
-    return line
+    status, _, ((_, told),) = in_json(capsys, *words)
+    assert status == 1
+    return told
 
 
 def test_layers_and_selections(desk, capsys):
-    passes, err = plan(desk, capsys, "--layer", "Ink")
-    assert ([each["stroke"] for each in passes], err) == (["a"], [])
-    passes, err = plan(desk, capsys, "--select", "#b, text")
+    passes, told = plan(desk, capsys, "--layer", "Ink")
+    assert ([each["stroke"] for each in passes], told) == (["a"], [])
+    passes, (told,) = plan(desk, capsys, "--select", "#b, text")
     assert [each["stroke"] for each in passes] == ["b"]
-    assert len(err) == 1 and "--export-text-to-path" in err[0]
-    said = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
-    assert said == "brushsvg: d.svg: layer: there is no layer 'Blue'; there are: Ink, Red"
-    assert "matches no element" in refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
+    assert agrees(told, "text-unread --export-text-to-path", "t")
+    told = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
+    assert agrees(told, "layer-unknown Blue Ink Red", "layer")
+    told = refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
+    assert agrees(told, "selector-matches-nothing #c")
 
 
 def test_an_empty_choice_is_wrong_usage(desk, capsys):
@@ -63,15 +65,14 @@ def test_compressed_drawings(desk, capsys):
     (desk / "z.svg").write_bytes(packed)
     plain, _ = plan(desk, capsys)
     assert plan(desk, capsys, drawing="d.svgz")[0] == plan(desk, capsys, drawing="z.svg")[0] == plain
-    for damaged, why in (
-        (packed[:-40], "cut short"),
-        (b"\x1f\x8b\x08\0", "cut short"),
-        (packed[:20] + b"????" + packed[24:], "is damaged"),
-        (gzip.compress(b" " * 70_000_000), "unpacks to more than 64000000 bytes"),
+    for damaged, said in (
+        (packed[:-40], "svgz-damaged 'cut short'"),
+        (b"\x1f\x8b\x08\0", "svgz-damaged 'cut short'"),
+        (packed[:20] + b"????" + packed[24:], "svgz-damaged 'is damaged'"),
+        (gzip.compress(b" " * 70_000_000), "file-too-large 64000000"),
     ):
         (desk / "z.svgz").write_bytes(damaged)
-        said = refusal(capsys, "convert", "z.svgz", "x.json")
-        assert "the file is compressed (SVGZ)" in said and why in said
+        assert agrees(refusal(capsys, "convert", "z.svgz", "x.json"), said), said
 
 
 def test_the_exit_status_does_not_depend_on_who_reads(desk):
@@ -96,9 +97,10 @@ def test_size_and_place(desk, capsys):
 
 def test_flags_have_no_effect_on_a_plan(desk, capsys):
     plan(desk, capsys)
-    assert main(["convert", "plan.json", "p2.json", "--fit", "50x50", "--layer", "Ink"]) == 0
-    err = capsys.readouterr().err
-    assert "--fit has no effect on a plan" in err and "--layer has no effect on a plan" in err
+    status, _, told = in_json(capsys, "convert", "plan.json", "p2.json", "--fit", "50x50", "--layer", "Ink")
+    assert status == 0
+    for flag in ("--fit", "--layer"):
+        assert is_told(told, f"flag-without-effect {flag}"), told
 
 
 def test_settings_steer_the_plan(desk, capsys):
@@ -107,17 +109,17 @@ def test_settings_steer_the_plan(desk, capsys):
     )
     text = text.replace('id="a"', 'id="a" data-brushsvg-brush="rigid"')
     (desk / "d.svg").write_text(text)
-    passes, err = plan(desk, capsys)
+    passes, told = plan(desk, capsys)
     assert [(each["stroke"], each["speed_mm_s"]) for each in passes] == [("b", 7), ("b#2", 7), ("a", 20)]
     assert passes[0]["settings"] == {"order": -1, "passes": 2, "speed_mm_s": 7}
-    assert any("asks for brush rigid, all is painted with round-6" in line for line in err)
+    assert is_told(told, "brush-asked-for rigid round-6", "a"), told
     (desk / "d.svg").write_text(text.replace('speed="7"', 'speed="26"'))
-    assert main(["convert", "d.svg", "out.ngc"]) == 1
-    assert "speed 26 mm/s is outside the range [0.000001, 25.0]" in capsys.readouterr().err
+    status, _, told = in_json(capsys, "convert", "d.svg", "out.ngc")
+    assert status == 1 and is_told(told, "speed-out-of-range 26 [0.000001, 25.0]"), told
 
 
 def test_dxf_needs_its_units(desk, capsys):
-    assert "--units mm" in refusal(capsys, "convert", "d.dxf", "x.json")
+    assert agrees(refusal(capsys, "convert", "d.dxf", "x.json"), "unit-unknown '--units mm'")
     passes, _ = plan(desk, capsys, "--units", "in", "--width", "3", drawing="d.dxf")
     assert [each["layer"] for each in passes] == ["INK"]
     assert main(["convert", "d.dxf", "x.json", "--units", "mm", "--select", "g"]) == 2
@@ -130,13 +132,13 @@ def test_import_draws_what_was_understood(desk, capsys):
             assert (desk / f"seen{suffix}").read_bytes().startswith(start)
     assert main(["import", "d.svg", "seen.svg", "--layer", "Ink"]) == 0
     words = re.findall(r"<text[^>]*>([^<]*)<", (desk / "seen.svg").read_text())
-    assert "1  a: 3 mm, Ink" in words and not any("text is not read" in word for word in words)
+    assert "1  a: 3 mm, Ink" in words and not any("not read" in word for word in words)
 
 
 def test_import_shows_damage_that_convert_refuses(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L"))
-    assert main(["convert", "d.svg", "x.json", "--layer", "Red"]) == 1
-    assert "b: d is damaged at character 13" in capsys.readouterr().err
+    status, _, told = in_json(capsys, "convert", "d.svg", "x.json", "--layer", "Red")
+    assert status == 1 and is_told(told, "geometry-damaged 13", "b"), told
     assert main(["import", "d.svg", "seen.png"]) == 0
     assert main(["convert", "d.svg", "x.json", "--layer", "Ink"]) == 0, "damage elsewhere does not count"
 
@@ -145,20 +147,22 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     (desk / "f.svg").write_text(
         DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', "")
     )
-    assert "nothing to paint" in refusal(capsys, "convert", "f.svg", "x.json", "--as", "stroke")
+    told = refusal(capsys, "convert", "f.svg", "x.json", "--as", "stroke")
+    assert told.code == "nothing-to-paint"
     assert main(["import", "f.svg", "seen.png", "--as", "stroke"]) == 0
     capsys.readouterr()
     bar = '<path id="bar" d="M20 20H70V26H20Z"/><rect id="wide" x="20" y="35" width="60" height="12"/>'
     (desk / "bar.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{bar}</svg>'
     )
-    passes, err = plan(desk, capsys, "--wide", "clamp", drawing="bar.svg")
+    passes, told = plan(desk, capsys, "--wide", "clamp", drawing="bar.svg")
     assert [each["stroke"] for each in passes] == ["bar", "wide"]
-    assert "painted at the nearest" in err[0]
+    assert agrees(told[0], "width-out-of-reach 12 nearest", "wide"), told
     for flags in ((), ("--wide", "passes")):
-        passes, err = plan(desk, capsys, *flags, drawing="bar.svg")
+        passes, _ = plan(desk, capsys, *flags, drawing="bar.svg")
         assert [each["stroke"] for each in passes] == ["bar", "wide", *(f"wide~{k}" for k in range(2, 6))]
-    assert "wide: width 12 mm" in refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
+    told = refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
+    assert agrees(told, "width-out-of-reach 12", "wide") and "nearest" not in told.told
 
 
 def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
@@ -170,7 +174,8 @@ def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
     monkeypatch.setattr("brushsvg.cli.commands.text._INKSCAPES", desk / "fonts")
     assert main(["text", "T", "t.svg", "--font", "Lines.svg"]) == 0
     capsys.readouterr()
-    assert "no such file" in refusal(capsys, "text", "T", "t.svg", "--font", "./Lines.svg")
+    told = refusal(capsys, "text", "T", "t.svg", "--font", "./Lines.svg")
+    assert told.code == "file-unreadable"
 
 
 def test_text(desk, capsys):
@@ -178,12 +183,12 @@ def test_text(desk, capsys):
       <glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>"""
     (desk / "font.svg").write_text(font)
     assert main(["text", "T\\nTT", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
-    passes, err = plan(desk, capsys, drawing="t.svg")
-    assert (len(passes), err) == (6, [])
-    assert "no such file; fonts of single lines come with Inkscape" in refusal(
-        capsys, "text", "T", "t.svg", "--font", "none.svg"
-    )
-    assert "has no glyph for" in refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
+    passes, told = plan(desk, capsys, drawing="t.svg")
+    assert (len(passes), told) == (6, [])
+    told = refusal(capsys, "text", "T", "t.svg", "--font", "none.svg")
+    assert agrees(told, "file-unreadable Inkscape")
+    told = refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
+    assert agrees(told, "nothing-to-paint U+0078")
     for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2
 
@@ -196,23 +201,23 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
 
     drawing(0.3)
     for command in (("convert", "w.svg", "x.json"), ("predict", "w.svg", "x.png")):
-        assert main([*command, "--quiet"]) == 0
-        (line,) = capsys.readouterr().err.splitlines()
-        assert line.startswith(
-            "brushsvg: w.svg: p0 and 5 like it: depth 0.36 mm is outside the range [1.0, 10.0] mm"
-        )
-        assert line.endswith("; --width MM gives all strokes one width")
-    passes, err = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
-    assert len(passes) == 6 and len(err) == 1 and err[0].endswith("was measured")
+        status, _, ((file, told),) = in_json(capsys, *command, "--quiet")
+        assert (status, file) == (0, "w.svg")
+        assert agrees(told, "depth-not-measured 0.36 [1.0, 10.0]", "p0 and 5 like it")
+        assert told.advice.startswith("--width MM")
+    passes, (told,) = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
+    assert len(passes) == 6 and (told.code, told.advice) == ("depth-not-measured", "")
     drawing(30)
-    assert "p0: width 30.000 mm is outside the range" in refusal(capsys, "convert", "w.svg", "x.json")
+    told = refusal(capsys, "convert", "w.svg", "x.json")
+    assert agrees(told, "width-out-of-reach 30.000", "p0")
     drawing('2" transform="translate(-30)')
-    assert "p0 and 5 like it: the mark reaches" in refusal(capsys, "convert", "w.svg", "x.json")
+    told = refusal(capsys, "convert", "w.svg", "x.json")
+    assert agrees(told, "mark-off-sheet left", "p0 and 5 like it")
 
 
 def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L32 63"))
-    assert main(["predict", "d.svg", "x.svg"]) == 0
+    assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     text = (desk / "x.svg").read_text()
     assert 'data-made="round-6, closed"' in text
     missed = re.findall(r'data-stroke="(.)" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
@@ -224,7 +229,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
     """0.095 mm in place of 0.05 was red, of a brush whose lag is known to 0.58 mm."""
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
-    assert main(["predict", "d.svg", "x.svg"]) == 0
+    assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     assert "b: tracking error " in capsys.readouterr().err
     text = (desk / "x.svg").read_text()
     ((miss, marked),) = re.findall(r'data-stroke="b" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
@@ -236,15 +241,16 @@ def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     text = DRAWING.replace('id="b"', 'id="b" stroke-width="30"')
     bad = "".join(f'<path id="c{k}" stroke-width="{20 + k}" d="M30 {70 + k} H90"/>' for k in range(5))
     (desk / "d.svg").write_text(text.replace("</svg>", bad + "</svg>"))
-    assert main(["report", "d.svg", "--json"]) == 1
-    out, err = capsys.readouterr()
+    status, out, told = in_json(capsys, "report", "d.svg", "--json")
+    assert status == 1
     report = json.loads(out)
     assert [each["where"] for each in report["refused"]] == ["b", "c0", "c1", "c2", "c3", "c4"]
-    assert "width 22.000 mm is outside the range" in report["refused"][3]["sentence"]
+    assert agrees(read(report["refused"][3]), "width-out-of-reach 22.000")
     assert [each["stroke"] for each in report["strokes"]] == ["a"]
-    assert err.splitlines()[-1].startswith("brushsvg: d.svg: b and 5 like it: width 30.000 mm is outside")
+    assert agrees(told[-1][1], "width-out-of-reach 30.000", "b and 5 like it")
     assert main(["report", "d.svg"]) == 1
-    assert "Left out, since they cannot be painted: 6\n  b: width 30.000 mm" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert re.search(r"^Left out.*: 6\n  b: .*30\.000 mm", out, re.MULTILINE), out
     assert main(["convert", "d.svg", "x.ngc"]) == 1
     assert not (desk / "x.ngc").exists()
 
@@ -256,7 +262,7 @@ def test_a_report_names_outlines_that_are_too_wide_and_refused(desk, capsys):
     assert main(["report", "d.svg", "--json", "--wide", "refuse"]) == 1
     report = json.loads(capsys.readouterr().out)
     assert [each["where"] for each in report["refused"]] == ["fat", "line"]
-    assert report["refused"][0]["sentence"].startswith("width 14 mm of its outline is outside the range")
+    assert agrees(read(report["refused"][0]), "width-out-of-reach 14 outline")
     assert [each["stroke"] for each in report["strokes"]] == ["a", "b"]
     assert main(["report", "d.svg", "--select", "#fat", "--wide", "refuse"]) == 1
     assert main(["report", "d.svg", "--all-brushes", "--wide", "refuse"]) == 0
@@ -280,9 +286,6 @@ def test_ends_at_less_depth_than_was_measured_are_said_once(desk, capsys):
     (desk / "drops.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{drops}{hair}</svg>'
     )
-    _, err = plan(desk, capsys, drawing="drops.svg")
-    depths = [line for line in err if "measured" in line]
-    assert len(depths) == 2
-    assert "5 strokes begin or end at less depth" in depths[1]
-    assert "than the 1 mm from which on brush round-6 was measured" in depths[1]
-    assert "hair: depth" in depths[0]
+    _, told = plan(desk, capsys, drawing="drops.svg")
+    hair, ends = (each for each in told if each.code in ("depth-not-measured", "ends-not-measured"))
+    assert agrees(hair, "depth-not-measured", "hair") and agrees(ends, "ends-not-measured 5 1 round-6")

@@ -14,7 +14,17 @@ from brushsvg.brush.library import find_brush
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "python" / "brushsvg"
 LIBRARY = ROOT / "cpp"
+TESTS = ROOT / "tests"
 CODE = re.compile("[a-z]+(-[a-z]+)*")
+FOUR_WORDS = re.compile(r"(?<![\w-])[A-Za-z][a-z]+(?: [a-z]+(?:'[a-z]+)?){3}(?![\w-])")
+QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code tells them
+    "integration/command.py": 1,  # what a mistake of ours begins with
+    "integration/test_inkscape_program.py": 6,  # dialogs of the extension itself
+    "integration/test_inkscape_settings.py": 8,
+    "python/test_checking.py": 3,  # lines of a program's header and end
+    "python/test_jaka.py": 1,
+    "python/test_rooms.py": 7,  # for who works on the sources
+}
 
 
 def codes_in(node: ast.AST):
@@ -89,3 +99,32 @@ def test_python_is_told_the_codes_of_the_library():
     line = _core.Stroke("a", [[0, 0, 1, 0, 2, 0, 9, 0]], half_width=[(0, 0.05), (1, 0.05)])
     (warned,) = _core.compensate([line], brush, (50, 50)).warnings
     assert (warned.where, warned.code) == ("a", "depth-not-measured")
+
+
+def expected_by(tree: ast.AST):
+    """Assertions, match= and cases of parametrize."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assert):
+            yield node.test
+        elif isinstance(node, ast.keyword) and node.arg == "match":
+            yield node.value
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(".parametrize"):
+            yield from node.args
+
+
+def texts_in(node: ast.AST):
+    """But for the names of cases, which are keys."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    for child in node.values if isinstance(node, ast.Dict) else ast.iter_child_nodes(node):
+        yield from texts_in(child)
+
+
+def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
+    """diagnostics.py says how: sentences may be worded anew."""
+    found = {}
+    for file in sorted(TESTS.rglob("*.py")):
+        trees = expected_by(ast.parse(file.read_text(encoding="utf-8")))
+        if quoted := [text for tree in trees for text in texts_in(tree) if FOUR_WORDS.search(text)]:
+            found[file.relative_to(TESTS).as_posix()] = quoted
+    assert {file: len(quoted) for file, quoted in found.items()} == QUOTED, found

@@ -3,6 +3,7 @@
 import gzip
 
 import pytest
+from diagnostics import agrees, in_json, is_told
 
 from brushsvg import Settings, read_plan
 from brushsvg.cli import commands, main
@@ -21,8 +22,11 @@ def desk(tmp_path, monkeypatch):
 
 
 def refusal_of(capsys, *words):
-    assert main(list(words)) == 1
-    return capsys.readouterr().err
+    """All that is told of the drawing."""
+    capsys.readouterr()
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and {file for file, _ in told} == {next(each for each in words if ".svg" in each)}
+    return [notice for _, notice in told]
 
 
 def on_root(*settings):
@@ -54,11 +58,9 @@ def test_what_is_typed_wins_over_the_document(desk, capsys):
 def test_the_document_names_no_files(desk, capsys, file):
     (desk / "mine.toml").write_text("")
     (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
-    told = refusal_of(capsys, "convert", "d.svg", "x.ngc")
-    assert told == (
-        f"brushsvg: d.svg: svg: data-brushsvg-cell asks for cell '{file}', which does not come along; known are "
-        f"{', '.join(cell_names())}; give --cell\n"
-    )
+    (told,) = refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    said = f"cell-unknown data-brushsvg-cell {file} {' '.join(cell_names())}"
+    assert agrees(told, said, "svg") and told.advice == "give --cell"
 
 
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.json", "no-such-brush"])
@@ -73,13 +75,12 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
         ("border", "d.svg", "x.ngc"),
         ("chart", "x.json", "--drawing", "d.svg"),
     ):
-        assert refusal_of(capsys, *words) == (
-            f"brushsvg: d.svg: svg: data-brushsvg-brush asks for brush '{file}', which does not come along; known are "
-            "rigid, round-6; give --brush\n"
-        )
+        (told,) = refusal_of(capsys, *words)
+        assert agrees(told, f"brush-unknown data-brushsvg-brush {file} rigid round-6", "svg"), words
+        assert told.advice == "give --brush"
     assert not (desk / "x.json").exists()
-    assert main(["convert", "d.svg", "x.ngc", "--brush", "round-6"]) == 0
-    assert f"asks for brush {file}, all is painted with round-6" in capsys.readouterr().err
+    status, _, told = in_json(capsys, "convert", "d.svg", "x.ngc", "--brush", "round-6")
+    assert status == 0 and is_told(told, f"brush-asked-for {file} round-6"), told
     assert main(["report", "d.svg", "--all-brushes"]) == 0
 
 
@@ -118,48 +119,47 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
     assert said == (desk / "typed.ngc").read_bytes() != (desk / "filled.ngc").read_bytes()
     assert main(["check", "said.ngc", "said.svg"]) == 0
     (desk / "no.svg").write_text(FAT.format('data-brushsvg-wide="refuse"'))
-    assert "width 14 mm of its outline is outside" in refusal_of(capsys, "convert", "no.svg", "x.ngc")
+    assert is_told(refusal_of(capsys, "convert", "no.svg", "x.ngc"), "width-out-of-reach 14 outline", "bar")
 
 
 @pytest.mark.parametrize(
-    ("setting", "sentence"),
+    ("setting", "said"),
     [
-        ('compensation="most"', "data-brushsvg-compensation: 'most' is none of none, constant, closed"),
-        ('tolerance="11mm"', "data-brushsvg-tolerance: 11 mm is outside the range [1e-05, 10] mm"),
-        ('wide="very"', "data-brushsvg-wide: 'very' is none of auto, clamp, passes, refuse"),
-        ('cell=""', "data-brushsvg-cell: it is empty"),
-        ('machine="x"', "data-brushsvg-machine is not known; known: width, speed"),
+        ('compensation="most"', "data-brushsvg-compensation most none, constant, closed"),
+        ('tolerance="11mm"', "data-brushsvg-tolerance 11 '[1e-05, 10] mm'"),
+        ('wide="very"', "data-brushsvg-wide very auto, clamp, passes, refuse"),
+        ('cell=""', "data-brushsvg-cell empty"),
+        ('machine="x"', "data-brushsvg-machine width speed"),
     ],
 )
-def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, sentence):
+def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, said):
     (desk / "d.svg").write_text(on_root(setting))
-    assert sentence in refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    (told,) = refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    assert agrees(told, f"setting-invalid {said}"), told
     assert main(["convert", "d.svg", "x.ngc", "--lenient"]) == 0
 
 
 @pytest.mark.parametrize(
     ("name", "data", "said"),
     [
-        ("x.svg", b"", "the file is empty"),
-        ("x.svg", bytes(range(256)), "this is not XML"),
-        ("x.svg", b"<html/>", "the root element is <html>, not <svg>"),
-        ("x.svgz", b"\x1f\x8b moo", "what it holds is damaged"),
-        ("x.dxf", None, "there is no such file"),
+        ("x.svg", b"", "file-empty"),
+        ("x.svg", bytes(range(256)), "not-xml"),
+        ("x.svg", b"<html/>", "not-svg <html>"),
+        ("x.svgz", b"\x1f\x8b moo", "svgz-damaged damaged"),
+        ("x.dxf", None, "file-unreadable"),
     ],
 )
 def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, said):
     if data is not None:
         (desk / name).write_bytes(data)
-    capsys.readouterr()
-    assert main(["chart", "x.json", "--drawing", name]) == 1
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"brushsvg: {name}: ") and said in line
+    status, _, ((file, told),) = in_json(capsys, "chart", "x.json", "--drawing", name)
+    assert (status, file) == (1, name) and agrees(told, said), told
     assert not (desk / "x.json").exists()
 
 
 def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
-    assert "data-brushsvg-cell is not known" in refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    assert is_told(refusal_of(capsys, "convert", "d.svg", "x.ngc"), "setting-invalid data-brushsvg-cell", "a")
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
     assert main(["convert", "d.svg", "x.json"]) == 0
     assert [each.settings for each in read_plan(desk / "x.json").passes] == [Settings(), Settings()]

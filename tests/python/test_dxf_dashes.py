@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
+from diagnostics import agrees, are_told, refused
 from dxf_text import circle, drawing, encoded, only, read
 
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.dxf import linetypes, read_dxf
 from brushsvg.drawing.dxf.library import ezdxf
-from brushsvg.errors import Error
 
-NOT_READ = "the line type is not read: its lines count as unbroken"
 PATTERNS = {
     "DASHED": [15.0, 10.0, -5.0],
     "DOTTED": [5.0, 0.0, -5.0],
@@ -38,10 +37,6 @@ def spans(element):
     return [(round(s.cubics[0, 0, 0], 9), round(s.cubics[-1, 3, 0], 9)) for s in element.subpaths]
 
 
-def said(design):
-    return [(notice.where, notice.sentence, notice.layer) for notice in design.notices]
-
-
 @pytest.mark.parametrize(
     ("name", "dashes"),
     [
@@ -58,7 +53,7 @@ def test_each_dash_is_a_stroke(name, dashes):
     (element,) = design.elements
     assert spans(element) == dashes
     assert element.stroke_width_mm == 0.5
-    assert said(design) == [(element.id, f"it is dashed: {len(dashes)} strokes, one for each dash", "0")]
+    assert are_told(design.notices, f"dashed {element.id} {len(dashes)}") and design.notices[0].layer == "0"
 
 
 def test_patterns_scale_with_the_drawing_the_entity_and_the_unit_but_not_with_blocks():
@@ -117,7 +112,8 @@ def test_what_is_no_plain_pattern_counts_as_unbroken(name):
 
     design = read(typed(draw))
     assert [len(element.subpaths) for element in design.elements] == [1, 1]
-    assert said(design) == [(name, NOT_READ, None)]
+    (notice,) = design.notices
+    assert agrees(notice, "dashes-unread", name) and notice.layer is None
 
 
 @pytest.mark.parametrize(
@@ -129,7 +125,8 @@ def test_scales_that_are_none(drawing_scale, scale):
     data = encoded(document).replace(b"\n 48\n0.5\n", f"\n 48\n{scale}\n".encode())
     design = read_dxf(data, ReadOptions(sheet_mm=(100.0, 100.0)))
     assert len(design.elements[0].subpaths) == 1
-    assert said(design) == [("DASHED", NOT_READ, None)]
+    (notice,) = design.notices
+    assert agrees(notice, "dashes-unread", "DASHED") and notice.layer is None
 
 
 def test_unbroken_and_filled_shapes_are_as_they_were():
@@ -144,7 +141,7 @@ def test_lines_of_changing_width_stay_whole():
     rows = [(0, 0, 1, 3), (99, 0, 0, 0)]
     design = read(typed(lambda m: m.add_lwpolyline(rows, format="xyse", dxfattribs={"linetype": "DASHED"})))
     assert len(design.elements[0].subpaths) == 1
-    assert [sentence for _, sentence, _ in said(design)] == ["its dashes are not read: its width varies"]
+    assert are_told(design.notices, "dashes-unread width")
 
 
 def test_too_many_dashes_are_refused(monkeypatch):
@@ -154,11 +151,9 @@ def test_too_many_dashes_are_refused(monkeypatch):
         for k in range(2):
             msp.add_line((0, k), (0.0012, k), {"linetype": "TINY"})
 
-    with pytest.raises(
-        Error,
-        match=r"dashes of 2e-06 mm would make 600 strokes where 400 are left of the drawing's limit\nin LINE-",
-    ):
+    with refused("drawing-too-large 2e-06 600 400") as caught:
         read(typed(draw))
+    assert caught.value.where.startswith("LINE-")
 
 
 def test_clipped_blocks_are_named():
@@ -172,8 +167,10 @@ def test_clipped_blocks_are_named():
             clip.disable_clipping()
     design = read(document)
     assert [spans(element) for element in design.elements] == [[(0, 99)]] * 2
-    first = design.elements[0].id.split("/")[0]
-    assert said(design) == [(first, "its clipping (XCLIP) is not read: it counts as whole", "0")]
+    (notice,) = design.notices
+    assert (
+        agrees(notice, "clipping-unread XCLIP", design.elements[0].id.split("/")[0]) and notice.layer == "0"
+    )
 
 
 def corners(element):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+from diagnostics import agrees
 from svg_text import read
 
 from brushsvg import _core, find_brush
@@ -136,7 +137,7 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
     assert len(made) > 1
     _, _, notices = within_reach(made, brush, "passes")
     assert [notice.where for notice in notices] == [each.id for each in made]
-    assert notices[1].sentence.endswith("painted in the passes of its shape's first stroke")
+    assert agrees(notices[1], "width-out-of-reach 'first stroke'")
     apart = of("M5 5H30V45H5ZM60 5H85V45H60Z")
     passes, _, _ = within_reach(apart, brush, "passes")
     assert {each.id.split("~")[0] for each in passes} == {"p/1", "p/2"}
@@ -150,7 +151,7 @@ def test_what_stays_unpainted_is_told():
     passes, _, (notice,) = within_reach([stroke], blunt, "passes")
     left = share_left(region(stroke.wanted_mm), passes)
     assert left == pytest.approx((4 - np.pi) * HALF_MM**2 / 16**2, abs=0.002)
-    assert f"; {100 * left:.2g} % of the shape stay unpainted, with gaps up to 1.4 mm wide" in notice.sentence
+    assert agrees(notice, f"width-out-of-reach '{100 * left:.2g} % of' unpainted 1.4")
     (stroke,) = of(SQUARE)
     assert share_left(region(stroke.wanted_mm), within_reach([stroke], blunt, "passes")[0]) < 0.02
 

@@ -123,7 +123,7 @@ def test_comments_are_ascii_closed_and_never_commands():
     title = "Caf\u00e9 \u6c38 (draft) 50% #5220\nG0 Z-50 " + "x" * 300
     text = text_of(("MSG, (probe)\r\nM3", *TWO[0][1:]), header=(f"title: {title}",))
     comments = [line for line in text.splitlines() if line.startswith("(")]
-    assert comments[0].startswith("(title: Cafe ? [draft] 50% #5220 G0 Z-50 x")
+    assert comments[0].startswith("(title: Cafe ? [draft] 50% #5220 G0 Z-50")
     assert comments[1] == "(stroke 1 of 1: MSG, [probe]  M3)"
     for line in comments:
         assert re.fullmatch(r"\([a-z]+[: ][^()]*\)", line)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from diagnostics import refused
 from svg_text import read
 
-from brushsvg import Error
 from brushsvg.drawing.layout import AS_DRAWN, Layout, arrange, bounds_mm
 
 BODY = """<g inkscape:groupmode="layer" inkscape:label="Ink"><path id="a" d="M10 10H30V20" stroke-width="4"/>
@@ -37,7 +37,7 @@ def test_layers():
     assert ids("Ink/Fine") == ["b"]
     assert [n.where for n in arrange(read(BODY), Layout(layers=("Ink",))).notices] == ["t"]
     assert ids("Fine") == ids("ink/fine") == ["b"]
-    with pytest.raises(Error, match="there is no layer 'Inks'; there are: Ink, Ink/Fine"):
+    with refused("layer-unknown Inks Ink Ink/Fine"):
         ids("Inks")
 
 
@@ -71,7 +71,7 @@ def test_scale_is_about_the_middle_and_origin_names_the_corner():
 
 
 def test_what_cannot_be_fitted():
-    with pytest.raises(Error, match="strokes 12 mm wide do not fit 10 x 10 mm"):
+    with refused("drawing-does-not-fit 12 '10 x 10 mm'"):
         box(Layout(fit_mm=(10, 10), width_mm=12.0))
-    with pytest.raises(Error, match="without a size"):
+    with refused("drawing-does-not-fit 'without a size'"):
         box(Layout(fit_mm=(10, 10), width_mm=2.0), '<path d="M5 5z"/>')

@@ -8,6 +8,7 @@ import ezdxf
 import numpy as np
 import pytest
 import svgpathtools
+from diagnostics import refused
 
 import brushsvg
 
@@ -71,25 +72,24 @@ def test_a_stroke_of_a_path_is_painted_and_its_way_comes_back_as_one():
 @pytest.mark.parametrize(
     ("path", "width_mm", "said"),
     [
-        ("M0 0 L10 0 M20 0 L30 0", 2, "2 unbroken lines"),
-        ("", 2, "no unbroken lines"),
-        ("M0 0 L10 x", 2, "damaged at 'x'"),
-        ("M0 0 L1e9 0", 2, "beyond 1e6 mm"),
-        (svgpathtools.Path(), 2, "no unbroken lines"),
-        (svgpathtools.parse_path("M0 0 L10 0 M20 0 L30 0"), 2, "2 unbroken lines"),
-        (np.zeros((2, 3)), 2, "shape"),
-        (None, 2, "shape"),
-        (np.array([[0, 0, 1, 0, 2, 0, 3, 0], [4, 0, 5, 0, 6, 0, 7, 0]]), 2, "cubic 2 does not begin"),
-        (np.array([[0, 0, 1, 0, 2, 0, np.nan, 0]]), 2, "finite"),
-        (np.zeros((0, 8)), 2, "no middle line"),
-        ("M0 0 L10 0", 0, "outside the range (0"),
-        ("M0 0 L10 0", np.nan, "outside the range (0"),
+        ("M0 0 L10 0 M20 0 L30 0", 2, "wrong-type 2 lines"),
+        ("", 2, "wrong-type 'no unbroken lines'"),
+        ("M0 0 L10 x", 2, "geometry-damaged x"),
+        ("M0 0 L1e9 0", 2, "geometry-out-of-range 1e6"),
+        (svgpathtools.Path(), 2, "wrong-type 'no unbroken lines'"),
+        (svgpathtools.parse_path("M0 0 L10 0 M20 0 L30 0"), 2, "wrong-type 2 lines"),
+        (np.zeros((2, 3)), 2, "wrong-type shape"),
+        (None, 2, "wrong-type shape"),
+        (np.array([[0, 0, 1, 0, 2, 0, 3, 0], [4, 0, 5, 0, 6, 0, 7, 0]]), 2, "wrong-type 2"),
+        (np.array([[0, 0, 1, 0, 2, 0, np.nan, 0]]), 2, "not-finite"),
+        (np.zeros((0, 8)), 2, "stroke-empty"),
+        ("M0 0 L10 0", 0, "out-of-range 0 (0"),
+        ("M0 0 L10 0", np.nan, "out-of-range nan (0"),
     ],
 )
 def test_what_is_no_stroke_is_refused(path, width_mm, said):
-    with pytest.raises(brushsvg.Error) as refused:
+    with refused(said):
         brushsvg.stroke_from_path(path, width_mm)
-    assert said in str(refused.value)
 
 
 def test_drawings_that_are_open_already_are_read_as_their_files_are(tmp_path):
@@ -119,5 +119,5 @@ def test_an_ezdxf_document_is_read_as_its_file_is(tmp_path):
 
 def test_what_is_neither_file_nor_document_is_refused():
     for wrong in (None, 3, io.BytesIO(b"x"), object()):
-        with pytest.raises(brushsvg.Error, match="neither the path of a drawing nor an open one"):
+        with refused("drawing-format path ezdxf ElementTree"):
             brushsvg.read_drawing(wrong)

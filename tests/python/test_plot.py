@@ -4,10 +4,10 @@ import sys
 
 import numpy as np
 import pytest
+from diagnostics import in_json
 
 from brushsvg import find_brush
 from brushsvg.brush.plot import brush_picture, law_band
-from brushsvg.cli import main
 
 
 @pytest.mark.parametrize("name", ["round-6", "rigid"])
@@ -37,7 +37,7 @@ def test_bands():
 
 def test_without_matplotlib_the_command_to_run_is_said(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert main(["brush", "plot", "round-6", str(tmp_path / "out.svg")]) == 1
-    said = f"pictures of laws need matplotlib: install with  {sys.executable} -m pip install matplotlib\n"
-    assert capsys.readouterr().err.endswith(said)
+    status, _, ((_, told),) = in_json(capsys, "brush", "plot", "round-6", tmp_path / "out.svg")
+    assert (status, told.code) == (1, "package-missing")
+    assert told.sentence.endswith(f" {sys.executable} -m pip install matplotlib")
     assert not list(tmp_path.iterdir())

@@ -36,7 +36,7 @@ def test_it_is_copied_from_the_source_tree_and_replaces_an_older_one(profile, ca
     profile.mkdir(parents=True)
     (profile / "brushsvg_gone.inx").write_text("old")
     assert main(["install-plugin", "inkscape"]) == 0
-    assert capsys.readouterr().out.startswith(f"{profile}: installed; start Inkscape again")
+    assert capsys.readouterr().out.startswith(f"{profile}: installed")
     files = installed(profile)
     assert files.pop("brushsvg-executable.txt") is not None
     expected = {path.name: path.read_bytes() for path in SOURCE.iterdir() if path.is_file()}
@@ -104,10 +104,8 @@ def test_what_inkscapes_python_lacks_is_told_with_its_package(tmp_path, script, 
         check=False,
     )
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == (
-        f"{sys.executable}, which Inkscape runs extensions with, lacks {module}: install the package "
-        f"python3-{module} on Debian and Ubuntu, else with  {sys.executable} -m pip install {module}\n"
-    )
+    assert done.stderr.startswith(f"{sys.executable}, ") and f"python3-{module} " in done.stderr
+    assert done.stderr.endswith(f"  {sys.executable} -m pip install {module}\n")
 
 
 def test_where_inkscape_looks(monkeypatch):

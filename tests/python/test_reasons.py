@@ -42,7 +42,7 @@ def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
         (
             stroke([(30, 40), (30, 40)], 2.0),
             "shorter-than-footprint",
-            "too short for the brush: a dab",
+            "a dab",
             (30, 40),
         ),
         (stroke([(30, 40), (60, 40)], 8, wanted=box(22, 32, 68, 48)), "wider-than-brush", "16 mm wide", None),
@@ -55,7 +55,7 @@ def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
             "90 degrees",
             None,
         ),
-        (stroke(arc(20.0, 1.0, 200), 1.5, True), "off-middle-line", "tracking error up to 0.0", None),
+        (stroke(arc(20.0, 1.0, 200), 1.5, True), "off-middle-line", "up to 0.0", None),
         (stroke([(20, 40), (70, 40)], 2.0), "stroke-start", "", (19, 40)),
         (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "stroke-end", "", None),
     ],
@@ -67,15 +67,14 @@ def test_the_reason_is_told(wanted, code, says, near):
         assert worst.place_mm == pytest.approx(near, abs=3.0)
 
 
-@pytest.mark.parametrize(
-    ("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider than the pen", "thinner than the pen"]
-)
+@pytest.mark.parametrize(("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider", "thinner"])
 def test_a_brush_of_one_width_is_told_to_be_one(half, is_missing):
     """The middle of a line 4 mm wide was said to be 0.04 mm off, where the pen paints 1 mm."""
     bend = np.column_stack([np.linspace(20, 100, 60), 60 + 5 * np.sin(np.linspace(0, 6, 60))])
     worst = found(stroke(bend, half), name="rigid")
     assert worst.is_missing == is_missing
-    assert worst.reason == f"{2 * half:g} mm wide there, the one width of the brush is 1 mm"
+    assert worst.code == "one-width"
+    assert f"{2 * half:g} mm" in worst.reason and "1 mm" in worst.reason
 
 
 def test_a_round_nib_is_not_pointed_behind():
@@ -87,7 +86,7 @@ def test_a_round_nib_is_not_pointed_behind():
 def test_a_coarse_tolerance_is_the_reason():
     """With 5 mm it was the footprint on bends, where the middle was 2.5 mm off."""
     worst = found(stroke(arc(20.0, 1.0, 200), 2.0, True), "closed", tolerance_mm=5.0)
-    assert worst.code == "coarse-tolerance" and "the tolerance is 5 mm: tracking error up to" in worst.reason
+    assert worst.code == "coarse-tolerance" and "5 mm" in worst.reason
     fine = found(stroke(arc(20.0, 1.0, 200), 2.0, True), "closed")
     assert fine.code != "coarse-tolerance"
 

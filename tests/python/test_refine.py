@@ -6,6 +6,7 @@ import threading
 
 import numpy as np
 import pytest
+from diagnostics import refused
 from small_drawings import gains, line, overlaps
 
 from brushsvg import Error, _core, cli, find_brush
@@ -83,7 +84,7 @@ def test_ctrl_c_is_heard():
 
 
 def test_an_unknown_way_is_refused():
-    with pytest.raises(Error, match="none, constant, closed or refined"):
+    with refused("choice-unknown none constant closed refined"):
         _core.compensate(curves(1), BRUSH, SHEET, "best")
 
 

@@ -73,7 +73,7 @@ def test_a_refined_plan_tells_of_strokes_left_in_closed_form(tmp_path):
     """Nothing is refined on a thread, and its misses were told with --compensation closed only."""
     text = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"><path id="z"
         d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.2"/></svg>"""
-    closed, refined = works(tmp_path, text)
+    closed, refined = works(tmp_path, text, corners="turn")
     assert any("turns too sharply" in notice.sentence for notice in closed.notices)
     assert refined.notices == closed.notices
 

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from programs import call, program
+from diagnostics import refused
+from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
-from brushsvg.errors import Error
 from brushsvg.machine.cell import Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
@@ -104,28 +104,25 @@ def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, cap
     assert call(capsys, "convert", "a.svg", "a.nc", "--cell", "mine.toml")[0] == 0
     status, out, err = call(capsys, "check", "a.nc", "a.svg", "--cell", "mine.toml")
     assert (status, err) == (0, []), err
-    assert "nothing forbids to run it" in out
+    assert RUNNABLE in out
 
 
 def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
     coarse = replace(
         CELL, servo=Servo(((-10.0, 0.0), (5.0, 50.0))), heights=replace(CELL.heights, clearance_mm=0.5)
     )
-    with pytest.raises(
-        Error, match=r"clearance_mm 0\.5 is outside the range \[0\.6, 5\] mm: one value"
-    ) as refusal:
+    with refused("cell-heights 0.5 '[0.6, 5] mm'", "heights.clearance_mm"):
         parse_cell(write_cell(coarse))
-    assert refusal.value.where == "heights.clearance_mm"
 
 
 @pytest.mark.parametrize(
-    ("z_offset", "words"),
+    ("z_offset", "height"),
     [
-        (2.0, r"height 7\.0 mm is outside the range \[-10, 5\] mm of the servo"),  # the safe height
-        (-9.0, r"height -11\.0 mm is outside the range \[-10, 5\] mm of the servo"),  # the deepest pose
+        (2.0, "7.0"),  # the safe height
+        (-9.0, "-11.0"),  # the deepest pose
     ],
 )
-def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, words):
+def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, height):
     """They would silently become the table's ends: travel through the paint, strokes that stay thin."""
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
@@ -137,9 +134,9 @@ def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, 
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     assert list(program(plan, brush, CELL, (), Job(-8.0)).sections())
-    with pytest.raises(Error, match=words):
+    with refused(f"servo-out-of-range {height} '[-10, 5] mm'"):
         program(plan, brush, CELL, (), Job(z_offset))
-    with pytest.raises(Error, match="of the servo of cell grbl-servo"):
+    with refused("servo-out-of-range grbl-servo"):
         border((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
 
 
@@ -161,7 +158,7 @@ def test_the_output_is_never_switched_off():
     code = [line for line in text.splitlines() if line and not line.startswith("(")]
     assert code.index("G1 F3000.0") < code.index("M3 S800")
     assert not re.search(r"(?m)^(G0|M5|M2|M30)", text)
-    assert text.endswith("(end: the brush is held up)\n")
+    assert text.splitlines()[-1].startswith("(end: ")
 
 
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
@@ -179,10 +176,7 @@ def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
 def test_a_way_too_steep_for_values_that_change_along_with_it_is_refused():
     """Its parts were shorter than the last decimal: all its heights came at once, at a feed that grbl does not run."""
     steep = [(20, 20, 0), (20.0008, 20, -4), (40, 20, -4), (40, 20, 0)]
-    sentence = (
-        r"near x 20\.0, y 20\.0 mm the height changes by 4\.00 mm over 0\.0008 mm: too steep for the servo"
-    )
-    with pytest.raises(Error, match=sentence):
+    with refused("too-steep 'x 20.0, y 20.0 mm' 4.00 0.0008"):
         text_of(("a", steep, 20.0), cell="grbl-servo")
     for width in (0.0004, 0.05):  # the lift alone, and what every part of is left
         steep[1] = (20 + width, 20, -4)

@@ -35,7 +35,8 @@ def test_too_large_a_drawing_is_advised_to_shrink():
     found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
     assert found.best == 0.35
-    assert "0.98 at 0.35 times this size, in place of 0.00 (tried; --scale 0.35)" in size_advice.advice(found)
+    advice = size_advice.advice(found)
+    assert re.search(r"0\.98 at 0\.35 times .* 0\.00 .*--scale 0\.35\)", advice), advice
     assert "--scale 0.7)" in size_advice.advice(found, 2.0)
     assert "--scale" not in size_advice.advice(found, None)
 
@@ -43,8 +44,8 @@ def test_too_large_a_drawing_is_advised_to_shrink():
 def test_a_drawing_of_the_right_size_is_left_alone():
     found = size_advice.best_size([line(150, 1.5)] * 40, BRUSH, painted)
     assert (found.best, found.tried, found.strokes) == (1.0, size_advice.FEW, 40)
-    assert size_advice.advice(found).startswith("Size: none from 0.35 to 2.8")
-    assert "tried on 6 of 40 strokes" in size_advice.advice(found)
+    advice = size_advice.advice(found)
+    assert "none from 0.35 to 2.8" in advice and "6 of 40 strokes" in advice
 
 
 def test_what_looks_better_is_tried_as_it_is_made():
@@ -86,11 +87,11 @@ SHEET = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" vi
 def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
     """0.7 times was advised for 0.82 in place of 0.69, where dabs refined come to 0.86, and to 0.83 at that size."""
     text = f'{SHEET}<g stroke="#000" stroke-linecap="round">{DABS}</g></svg>'
-    assert "at 0.7 times this size" in said(tmp_path, text)[1]
+    assert " at 0.7 times " in said(tmp_path, text)[1]
     overlap, advice = said(tmp_path, text, compensation="refined")
     if "in place of" in advice:
         assert f"in place of {overlap:.2f}" in advice
-    assert "at 0.7 times this size" not in advice
+    assert " at 0.7 times " not in advice
 
 
 def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
@@ -102,7 +103,7 @@ def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
     for wide in ("passes", "auto"):
         overlap, advice = said(tmp_path, text, wide=wide)
         assert overlap > 0.99
-        assert advice.startswith("Size: none from 0.5 to 1.4")
+        assert "none from 0.5 to 1.4" in advice
 
 
 def test_scaling_a_stroke_scales_all_of_it():
@@ -158,7 +159,7 @@ def test_refused_strokes_count_against_a_brush(drawing, capsys):
 def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
     status, out, err = ran(capsys, "report", drawing(20))
     assert status == 1
-    assert re.search(r"Size: the overlap .* at 0\.\d+ times this size", out)
+    assert re.search(r"Size: .* at 0\.\d+ times ", out)
     assert "width 20" in err
 
 
@@ -181,7 +182,7 @@ def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
     [
         (["--brush", "rigid", "--brush", "round-6"], "needs --all-brushes"),
         (["--all-brushes", "--preview", "x.png"], "shows one brush"),
-        (["--preview", "x.pdf"], "does not end in"),
+        (["--preview", "x.pdf"], ".png"),
     ],
 )
 def test_wrong_usage(drawing, capsys, words, said):

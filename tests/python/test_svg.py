@@ -1,5 +1,6 @@
 import math
 import random
+import re
 import subprocess
 import sys
 import tracemalloc
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 import svgpathtools
 import tinycss2
-from diagnostics import agrees
+from diagnostics import agrees, refused
 
 from brushsvg.drawing import ReadOptions, read_drawing
 from brushsvg.drawing.svg import read_svg
@@ -17,7 +18,6 @@ from brushsvg.drawing.svg.css_selectors import declarations
 from brushsvg.drawing.svg.path_data import parse_path
 from brushsvg.drawing.svg.path_to_cubics import trace
 from brushsvg.drawing.svg.transform import IDENTITY, multiply, parse_transform
-from brushsvg.errors import Error
 
 NAMESPACES = (
     'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" '
@@ -140,12 +140,6 @@ def test_segments_without_length_vanish_among_others():
     assert np.array_equal(closed[0, 0], closed[-1, 3])
 
 
-def is_told(one, told: str) -> bool:
-    """Whether a notice or refusal has this code and names these data: "code data"."""
-    code, _, data = told.partition(" ")
-    return one.code == code and data in one.sentence
-
-
 @pytest.mark.parametrize("seed", range(12))
 def test_arcs_stay_within_the_tolerance_after_the_transform(seed):
     rng = random.Random(seed)
@@ -225,8 +219,9 @@ def test_damaged_paths_are_read_up_to_the_error(d, cubics, character, found):
     (notice,) = design.notices
     assert notice.damaged
     assert notice.where == "bad"
-    assert f"at character {character}: found " in notice.sentence
-    assert (repr(found) if found != "the end" else found) in notice.sentence
+    code = "geometry-out-of-range" if re.search("1e[379]", d) else "geometry-damaged"
+    assert agrees(notice, f"{code} {character}", "bad")
+    assert notice.sentence.split("found ")[1].startswith(found if found == "the end" else repr(found))
     (subpath,) = design.elements[0].subpaths
     assert len(subpath.cubics) == cubics
     assert np.abs(subpath.cubics).max() < 1e3
@@ -350,7 +345,7 @@ def test_transforms(text, point):
 
 @pytest.mark.parametrize("text", ["translate(1 2),,rotate(3)", "translate(1 2),", ",translate(1 2)"])
 def test_transforms_that_browsers_ignore_are_damaged(text):
-    with pytest.raises(Error, match="transform is damaged at character"):
+    with refused("transform-unread damaged character"):
         parse_transform(text)
 
 
@@ -439,19 +434,18 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
     [
         ("", "size-unknown"),
         ('width="10mm"', "size-unknown"),
-        ('viewBox="0 0 10"', "viewbox-invalid four numbers"),
-        ('viewBox="0 0 nan 5"', "viewbox-invalid four numbers"),
-        ('viewBox="0 0 0 5"', "viewbox-invalid no area"),
-        ('width="0" height="5"', "out-of-range width 0 mm is outside the range (0, 1000000] mm"),
-        ('width="5" height="-1mm"', "out-of-range height -1 mm"),
-        ('width="5" height="1e9mm"', "out-of-range height 1e+09 mm"),
-        ('width="5 furlongs" height="5"', "not-a-length width: '5 furlongs'"),
+        ('viewBox="0 0 10"', "viewbox-invalid four"),
+        ('viewBox="0 0 nan 5"', "viewbox-invalid four"),
+        ('viewBox="0 0 0 5"', "viewbox-invalid area"),
+        ('width="0" height="5"', "out-of-range width 0 '(0, 1000000] mm'"),
+        ('width="5" height="-1mm"', "out-of-range height -1"),
+        ('width="5" height="1e9mm"', "out-of-range height 1e+09"),
+        ('width="5 furlongs" height="5"', "not-a-length width '5 furlongs'"),
     ],
 )
 def test_pages_that_are_refused(page, told):
-    with pytest.raises(Error) as refused:
+    with refused(told):
         read('<line x2="1" stroke="red"/>', page)
-    assert is_told(refused.value, told)
 
 
 # Style.
@@ -519,8 +513,9 @@ def test_colours_are_inherited_and_current():
     assert [element.colour for element in read(body).elements] == ["#0000ff", "#00ff00"]
     design = read('<path id="p" d="M0 0H5" stroke="#12"/>')
     assert design.elements[0].colour == "#ff0000"
-    assert "'#12' is not a colour" in design.notices[0].sentence
-    assert "'url(#a' is not a colour" in read('<path d="M0 0H5" stroke="url(#a"/>').notices[0].sentence
+    assert agrees(design.notices[0], "colour-invalid '#12'", "p")
+    unclosed = read('<path d="M0 0H5" stroke="url(#a"/>').notices[0]
+    assert agrees(unclosed, "colour-invalid 'url(#a'")
 
 
 @pytest.mark.parametrize(
@@ -592,20 +587,19 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         (
             GRADIENT + '<path id="p" d="M0 0H5" stroke="url(#g)"/>',
             "p",
-            "paint-unread #g is not read: it counts as #000000",
+            "paint-unread #g #000000",
         ),
         (
             GRADIENT + '<path id="p" d="M0 0H5" stroke="url(\'#g\') red"/>',
             "p",
-            "paint-unread #g is not read: it counts as #ff0000",
+            "paint-unread #g #ff0000",
         ),
     ],
 )
 def test_what_is_not_read_is_named(body, where, told):
     design = read(FIRST + body)
-    named = [notice for notice in design.notices if notice.where == where]
-    assert len(named) == 1
-    assert is_told(named[0], told)
+    (named,) = (notice for notice in design.notices if notice.where == where)
+    assert agrees(named, told)
     assert not any(notice.damaged for notice in design.notices)
 
 
@@ -644,14 +638,15 @@ def test_a_subpath_without_length_is_a_dab():
     "body", ["", "<text id='t'>x</text>", "<path id='t' d='nan'/>", "<path id='t' d='M1 1'/>"]
 )
 def test_nothing_to_paint_is_refused_with_a_reason(body):
-    with pytest.raises(Error, match="the drawing holds nothing to paint") as refused:
+    with refused("nothing-to-paint") as caught:
         read(body)
-    assert (": t: " in str(refused.value)) == bool(body)
+    assert (": t: " in str(caught.value)) == bool(body)
 
 
 def test_damage_is_the_first_reason_given():
-    with pytest.raises(Error, match="nothing to paint: p: d is damaged at character 1: found 'nan'"):
+    with refused("nothing-to-paint 'p: d' 1 nan") as caught:
         read("<text/><path id='p' d='nan'/><text/>")
+    assert caught.value.sentence.index(" p: d") < caught.value.sentence.index("text")
 
 
 # Files and XML.
@@ -662,13 +657,13 @@ def test_damage_is_the_first_reason_given():
     [
         (b"", "file-empty"),
         (b" \n", "file-empty"),
-        (b"M0 0", "not-xml line 1"),
-        (b"<svg>\n<path></svg>", "not-xml line 2"),
-        (b"<svg>\n<path", "not-xml line 2"),
+        (b"M0 0", "not-xml 'line 1'"),
+        (b"<svg>\n<path></svg>", "not-xml 'line 2'"),
+        (b"<svg>\n<path", "not-xml 'line 2'"),
         (b"\x89PNG\r\n\x1a\n", "not-xml"),
         (
             b'<?xml version="1.0" encoding="utf-8"?>\n<svg id="\xe4"/>',
-            "not-xml line 2",
+            "not-xml 'line 2'",
         ),
         (b'<?xml version="1.0" encoding="klingon"?><svg/>', "not-xml klingon"),
         (b"<html/>", "not-svg <html>"),
@@ -676,9 +671,8 @@ def test_damage_is_the_first_reason_given():
     ],
 )
 def test_what_is_not_svg_is_refused(data, told):
-    with pytest.raises(Error) as refused:
+    with refused(told):
         read_svg(data)
-    assert is_told(refused.value, told)
 
 
 def test_encodings():
@@ -701,21 +695,20 @@ LAUGHS = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
 @pytest.mark.parametrize(
     ("subset", "content", "told"),
     [
-        ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "xml-entity line 1: entity 'e1'"),
-        (f'<!ENTITY e "{"x" * 100_000}">', "&e;" * 5000, "xml-entity limit of 10000000"),
-        ('<!ENTITY % p "x">', "", "xml-entity entity 'p'"),
-        ('<!ENTITY e SYSTEM "file:///etc/passwd">', "&e;", "xml-entity entity 'e' lies in another file"),
-        (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity attribute defaults"),
+        ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "xml-entity 'line 1' e1"),
+        (f'<!ENTITY e "{"x" * 100_000}">', "&e;" * 5000, "xml-entity 10000000"),
+        ('<!ENTITY % p "x">', "", "xml-entity p"),
+        ('<!ENTITY e SYSTEM "file:///etc/passwd">', "&e;", "xml-entity e 'another file'"),
+        (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity defaults"),
     ],
 )
 def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, told):
     data = f"<!DOCTYPE svg [{subset}]><svg>{content}</svg>".encode()
     tracemalloc.start()
-    with pytest.raises(Error) as refused:
+    with refused(told):
         read_svg(data)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert is_told(refused.value, told)
     assert peak < 5e6
 
 
@@ -776,15 +769,14 @@ def test_files(tmp_path):
     assert read_drawing(str(tmp_path / "titled.svg")).title == "My word"
     (tmp_path / "folder.svg").mkdir()
     (tmp_path / "drawing.txt").write_text(drawing)
-    for name, sentence in (
-        ("missing.svg", "there is no such file"),
-        ("folder.svg", "this is a directory"),
-        ("drawing.txt", ".txt is not a drawing format that is read; known: .svg"),
-        ("drawing", "no extension is not a drawing format"),
+    for name, said in (
+        ("missing.svg", "file-unreadable"),
+        ("folder.svg", "file-unreadable directory"),
+        ("drawing.txt", "drawing-format .txt .svg"),
+        ("drawing", "drawing-format 'no extension'"),
     ):
-        with pytest.raises(Error) as refused:
+        with refused(said):
             read_drawing(tmp_path / name)
-        assert sentence in str(refused.value)
 
 
 def loaded_by(code: str, *arguments) -> set[str]:

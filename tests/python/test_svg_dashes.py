@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
+from diagnostics import agrees, are_told, refused
 from scipy.integrate import quad
-from svg_text import lines, read, sentences
+from svg_text import lines, read
 
-from brushsvg import Error
 from brushsvg.drawing.design import SubPath
 from brushsvg.drawing.svg import element
 from brushsvg.drawing.svg.dashes import dashed
@@ -38,7 +38,7 @@ def test_dashes_of_a_straight_line():
     design = read('<path id="p" d="M0 0H20" stroke-dasharray="4 2" stroke-dashoffset="1"/>')
     spans = [(start[0], end[0]) for _, start, end in lines(design)]
     assert spans == [(0, 3), (5, 9), (11, 15), (17, 20)]
-    assert sentences(design) == ["p: it is dashed: 4 strokes, one for each dash"]
+    assert are_told(design.notices, "dashed p 4")
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_path_length_stretches_the_dashes(said, ends):
     spans = [(start[0], end[0]) for _, start, end in lines(design)]
     assert np.ravel(spans)[: len(ends)] == pytest.approx(np.array(ends))
     (notice, *_) = read('<path id="p" d="M0 0H20" stroke-dasharray="2" pathLength="x"/>').notices
-    assert notice.sentence == "pathLength: 'x' is not a number; it counts as not given"
+    assert agrees(notice, "path-length-unread pathLength x", "p")
 
 
 def test_path_length_is_of_all_sub_paths_and_stretches_the_offset():
@@ -85,7 +85,7 @@ def test_path_length_is_of_all_sub_paths_and_stretches_the_offset():
 def test_a_list_of_dashes_that_is_none_is_told():
     for text in ("20 10,", "1,,2", ",3"):
         (notice,) = read(f'<path d="M0 0H20" stroke-dasharray="{text}"/>').notices
-        assert "the line counts as solid" in notice.sentence
+        assert agrees(notice, "dashes-unread stroke-dasharray solid")
 
 
 def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():
@@ -114,5 +114,5 @@ def test_dashes_too_many_to_paint_are_refused(monkeypatch):
     monkeypatch.setattr(element, "_MOST_DASHES", 300)
     line = '<path id="p" d="M0 0H20" stroke-dasharray="0.05"/>'
     assert len(read(line).elements[0].subpaths) == 200
-    with pytest.raises(Error, match="would make 200 strokes where 100 are left"):
+    with refused("drawing-too-large 200 100"):
         read(line + line)

@@ -1,9 +1,9 @@
 """What a stroke and a fill are painted with, alone and together, and what of it is told."""
 
 import pytest
-from svg_text import read, sentences
+from diagnostics import are_told, refused
+from svg_text import read
 
-from brushsvg import Error
 from brushsvg.drawing.svg import element, paint
 
 STOPS = '<stop stop-color="red"/><stop offset="1" stop-color="blue"/>'
@@ -30,28 +30,25 @@ def painted(fill, stroke, more="", before=""):
     return read(f'<path id="first" d="M0 0H1"/>{before}{BOTH.format(fill, stroke, more)}')
 
 
-JOINED = "both are painted in the colour of the stroke"
-
-
 def told(design):
     """But for the two colours, which most of these shapes have."""
-    return [sentence.removeprefix("p: ") for sentence in sentences(design) if JOINED not in sentence]
+    return [notice for notice in design.notices if notice.code != "colours-joined"]
 
 
 @pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
 def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
-    of = "the {}'s paint #s is not read: it counts as #000000".format
-    assert told(painted("url(#s)", "none", before=server)) == [of("fill")]
-    assert told(painted("url(#s)", "red", before=server)) == [of("fill")], "under a stroke, too"
-    assert told(painted("red", "url(#s)", before=server)) == [of("stroke")]
-    assert told(painted("url(#s)", "url(#s)", before=server)) == [of("fill"), of("stroke")]
+    of = "paint-unread p {} #s #000000".format
+    assert are_told(told(painted("url(#s)", "none", before=server)), of("fill"))
+    assert are_told(told(painted("url(#s)", "red", before=server)), of("fill")), "under a stroke, too"
+    assert are_told(told(painted("red", "url(#s)", before=server)), of("stroke"))
+    assert are_told(told(painted("url(#s)", "url(#s)", before=server)), of("fill"), of("stroke"))
 
 
 @pytest.mark.parametrize("server", NOTHING.values(), ids=NOTHING)
 def test_a_paint_of_nothing_paints_nothing(server):
     design = painted("url(#s)", "blue", before=server)
     assert (design.elements[1].fill_rule, design.elements[1].colour, told(design)) == ("", "#0000ff", [])
-    assert told(painted("url(#s)", "none", before=server)) == ["it has neither stroke nor fill: left out"]
+    assert are_told(told(painted("url(#s)", "none", before=server)), "neither-stroke-nor-fill p")
 
 
 @pytest.mark.parametrize(
@@ -70,13 +67,13 @@ def test_a_gradient_of_one_colour_is_that_colour(gradient):
 
 @pytest.mark.parametrize("colour", ["#ff000033", "#f003", "rgba(255,0,0,.2)", "hsl(0 100% 50% / 20%)"])
 def test_a_colour_seen_through_is_named_wherever_it_paints(colour):
-    of = "the {}'s colour has an opacity of 0.2: it counts as 1".format
-    assert told(painted(colour, "none")) == [of("fill")]
-    assert told(painted(colour, "blue")) == [of("fill")]
-    assert told(painted("blue", colour)) == [of("stroke")]
-    assert told(painted("none", "currentColor", f'color="{colour}"')) == [of("stroke")]
+    of = "opacity-unread p {} 0.2 1".format
+    assert are_told(told(painted(colour, "none")), of("fill"))
+    assert are_told(told(painted(colour, "blue")), of("fill"))
+    assert are_told(told(painted("blue", colour)), of("stroke"))
+    assert are_told(told(painted("none", "currentColor", f'color="{colour}"')), of("stroke"))
     gradient = f'<linearGradient id="s"><stop stop-color="{colour}"/></linearGradient>'
-    assert told(painted("url(#s)", "none", before=gradient)) == [of("fill")]
+    assert are_told(told(painted("url(#s)", "none", before=gradient)), of("fill"))
     assert painted(colour, "none").elements[1].colour == "#ff0000"
 
 
@@ -88,14 +85,12 @@ def test_a_colour_of_glass_paints_nothing(colour):
 
 
 def test_opacities_are_named_for_what_is_painted():
-    assert told(painted("red", "blue", 'fill-opacity=".5"')) == ["fill-opacity is not read: it counts as 1"]
+    assert are_told(told(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1")
     assert told(painted("none", "blue", 'fill-opacity=".5"')) == []
     assert told(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
-    assert told(painted("red", "blue", 'opacity="x"')) == [
-        "opacity 'x' is not a number: it counts as not given"
-    ]
+    assert are_told(told(painted("red", "blue", 'opacity="x"')), "css-invalid opacity x")
     assert painted("red", "blue", 'fill-opacity="-1" stroke-opacity="100%"').elements[1].fill_rule == ""
-    with pytest.raises(Error, match="fully transparent"):
+    with refused("nothing-to-paint transparent"):
         read(BOTH.format("red", "blue", 'opacity="1e-9"'))
 
 
@@ -125,14 +120,12 @@ def test_a_box_is_measured_once(monkeypatch):
 def test_white_is_told():
     """What it hides is painted, too: paint is not cut off by what lies on top."""
     for fill, stroke in (("white", "blue"), ("white", "none"), ("blue", "#fff")):
-        (sentence,) = told(painted(fill, stroke))
-        assert sentence.startswith("it is white, and painted like any colour")
+        assert are_told(told(painted(fill, stroke)), "white-paint p")
     assert told(painted("#fefefe", "none")) == []
 
 
 def test_a_fill_of_another_colour_than_the_stroke_is_told():
-    (sentence,) = sentences(painted("#f00", "#000"))
-    assert sentence == f"p: its fill is #ff0000 and its stroke #000000: {JOINED}"
-    assert sentences(painted("#f00", "red")) == sentences(painted("none", "#f00")) == []
-    assert sentences(painted("#f00", "none")) == []
-    assert sentences(read('<path d="M0 0H5V5Z" stroke="red"/>')) == [], "the default fill, which nobody chose"
+    assert are_told(painted("#f00", "#000").notices, "colours-joined p #ff0000 #000000")
+    assert painted("#f00", "red").notices == painted("none", "#f00").notices == ()
+    assert painted("#f00", "none").notices == ()
+    assert read('<path d="M0 0H5V5Z" stroke="red"/>').notices == (), "the default fill, which nobody chose"

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnostics import agrees, are_told, in_json, is_told, refused
 from programs import call, forbidden
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
-from brushsvg.errors import Error
 from brushsvg.machine import workspace_limits as limits
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
@@ -39,8 +39,8 @@ def robot(**workspace):
 
 RING = {"reach_mm": (150.0, 850.0)}
 POST = {"keep_out_mm": (((-40.0, -40.0, -50.0), (40.0, 40.0, 300.0)), ((0.0, 300.0, 0.0), (1.0, 301.0, 1.0)))}
-AWAY = r"the tool goes (?:0|20|16|40)\.\d mm away from the robot's origin, outside the range \[150, 850\] mm"
-KEPT = r"the tool goes through x \S+, y \S+, z \S+ mm, in box 1 that cell mine keeps it out of: x -40 to 40, "
+AWAY = "out-of-reach '[150, 850] mm'"
+KEPT = "in-kept-out-box 'box 1' mine 'x -40 to 40'"
 
 
 @pytest.fixture
@@ -52,21 +52,24 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize(("limits", "words"), [(RING, AWAY), (POST, KEPT)])
-@pytest.mark.parametrize(("name", "of_stroke"), [("bar", "bar: "), ("pair", "right: on the way there ")])
-def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, limits, words):
+@pytest.mark.parametrize(("limits", "said"), [(RING, AWAY), (POST, KEPT)])
+@pytest.mark.parametrize(("name", "of_stroke", "way"), [("bar", "bar", ""), ("pair", "right", " way")])
+def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way, limits, said):
     """Both ends were asked, and not the way; between strokes nothing was."""
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     drawing, cell = f"{name}.svg", ("--cell", "mine.toml")
     for command in ("convert", "border"):
         program = f"{command}.script"
-        status, _, err = call(capsys, command, drawing, program, *cell)
-        told = of_stroke if command == "convert" else ""
-        assert status == 1 and re.search(f"{drawing}: {told}{words}", err[-1]), err
+        status, _, told = in_json(capsys, command, drawing, program, *cell)
+        file, last = told[-1]
+        expected = (f"{said}{way}", of_stroke) if command == "convert" else (said,)
+        assert (status, file) == (1, drawing) and agrees(last, *expected), told
+        if limits == RING:
+            assert 0 <= float(re.search(r"goes ([\d.]+) mm away", last.sentence)[1]) <= 40
         assert not (desk / program).exists()
         assert call(capsys, command, drawing, program, "--cell", "free.toml")[0] == 0
-        status, _, err = call(capsys, "check", program, *cell)
-        assert status == 1 and any(re.search(told + words, line) for line in err), err
+        status, _, told = in_json(capsys, "check", program, *cell)
+        assert status == 1 and is_told(told, *expected), told
 
 
 LEFT = {
@@ -86,8 +89,8 @@ def test_of_a_job_that_is_resumed_only_what_is_left_is_asked(desk, capsys, limit
     (desk / "pair.svg").write_text(PAIR.replace("h40", "h60"))
     status, _, err = call(capsys, *words, "--from-stroke", "2")
     assert status == 1 and all("right: " in line for line in err)
-    status, _, (line,) = call(capsys, *words, "--from-stroke", "3")
-    assert status == 1 and "stroke 3 is outside the range [1, 2] of this job" in line
+    status, _, told = in_json(capsys, *words, "--from-stroke", "3")
+    assert status == 1 and is_told(told, "stroke-unknown 3 '[1, 2]'"), told
 
 
 def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes(desk, capsys):
@@ -95,25 +98,31 @@ def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes
     clip = robot(keep_out_mm=(((-300.0, 90.0, 30.0), (-200.0, 92.0, 45.0)),))
     (desk / "mine.toml").write_text(write_cell(clip))
     height = ("height", "job.script", "--sheet", "600x200")
-    status, _, err = call(capsys, *height, "--cell", "mine.toml")
-    assert (
-        status == 1 and "on the way there the tool goes through" in err[0] and "y 91.0, z 40.0 mm" in err[0]
-    )
+    status, _, ((_, told), *_) = in_json(capsys, *height, "--cell", "mine.toml")
+    assert status == 1 and agrees(told, "in-kept-out-box way 'y 91.0, z 40.0 mm'"), told
     assert call(capsys, *height, "--cell", "free.toml")[0] == 0
-    status, _, err = call(capsys, "check", "job.script", "--cell", "mine.toml")
-    assert status == 1 and any("on the way there the tool goes through" in line for line in err)
+    status, _, told = in_json(capsys, "check", "job.script", "--cell", "mine.toml")
+    assert status == 1 and is_told(told, "in-kept-out-box way"), told
 
 
 @pytest.mark.parametrize("language", ["linuxcnc-3axis", "ur5e"])
 @pytest.mark.parametrize(
-    ("box", "who"),
+    ("box", "who", "said"),
     [
-        (((-6.0, 30.0, 5.0), (-4.0, 50.0, 100.0)), "s: on the way there the tool goes"),  # from the paint
-        (((-21.0, 39.0, -20.0), (-19.0, 41.0, -4.5)), "ink: the tool goes"),  # at the bottom of the vessel
-        (((-16.0, 39.0, -20.0), (-15.0, 41.0, 5.5)), "ink: the tool goes"),  # between the points of a wipe
+        (((-6.0, 30.0, 5.0), (-4.0, 50.0, 100.0)), "s", "in-kept-out-box way"),  # from the paint
+        (
+            ((-21.0, 39.0, -20.0), (-19.0, 41.0, -4.5)),
+            "ink",
+            "in-kept-out-box",
+        ),  # at the bottom of the vessel
+        (
+            ((-16.0, 39.0, -20.0), (-15.0, 41.0, 5.5)),
+            "ink",
+            "in-kept-out-box",
+        ),  # between the points of a wipe
     ],
 )
-def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, capsys, language, box, who):
+def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, capsys, language, box, who, said):
     ink = Station(
         "ink", (-20.0, 40.0), depth_mm=5.0, rim_mm=4.0, wipe_mm=((-18.0, 40.0, 5.0), (-12.0, 40.0, 5.0))
     )
@@ -132,11 +141,10 @@ def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, caps
     )
     (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M40 160 H90").replace('"bar"', '"s"'))
     program = "s.script" if language == "ur5e" else "s.ngc"
-    status, _, err = call(capsys, "convert", "s.svg", program, "--cell", "mine.toml")
-    assert status == 1 and any(f"s.svg: {who}" in line for line in err), err
-    assert call(capsys, "convert", "s.svg", program, "--cell", "free.toml")[0] == 0
-    status, _, err = call(capsys, "check", program, "s.svg", "--cell", "mine.toml")
-    assert status == 1 and any(f"{program}: {who}" in line for line in err), err
+    for words, file in ((("convert", "s.svg", program), "s.svg"), (("check", program, "s.svg"), program)):
+        status, _, told = in_json(capsys, *words, "--cell", "mine.toml")
+        assert status == 1 and is_told([each for each in told if each[0] == file], said, who), told
+        assert call(capsys, "convert", "s.svg", program, "--cell", "free.toml")[0] == 0
 
 
 ROUND = np.array([(50, 30, -2), (50, -20, -2)], dtype=float)  # the lower one at the edge of a margin of 30 mm
@@ -146,16 +154,16 @@ def plan_of(poses, arcs=(), name="a"):
     return _core.Plan(BRUSH.name, "", SHEET, [_core.Pass(name, poses, 20.0, arcs=list(arcs))])
 
 
-@pytest.mark.parametrize(("turn", "words"), [(1, "x 25.0 mm"), (-1, "x 75.0 mm")])
-def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, words):
+@pytest.mark.parametrize(("turn", "x"), [(1, "25.0"), (-1, "75.0")])
+def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, x):
     cell = find_cell()
     boxed = replace(
         cell, workspace=replace(cell.workspace, box_mm=((40.0, -50.0, -50.0), (60.0, 50.0, 50.0)))
     )
     arc = _core.Arc(0, 1, (50.0, 5.0), turn)
     assert forbidden(plan_of(ROUND), BRUSH, boxed) == []
-    ((where, sentence),) = forbidden(plan_of(ROUND, [arc]), BRUSH, boxed)
-    assert where == "a" and sentence.startswith(f"the tool goes to {words}, outside the range [40, 60] mm")
+    (told,) = forbidden(plan_of(ROUND, [arc]), BRUSH, boxed)
+    assert agrees(told, f"out-of-box 'x {x} mm' '[40, 60] mm'", "a")
 
 
 def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
@@ -163,8 +171,7 @@ def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
     poses = np.array([(40, -25, -2), (60, -25, -2)], dtype=float)
     below = _core.Arc(0, 1, (50.0, -25.0), 1)
     assert forbidden(plan_of(poses), BRUSH, find_cell()) == []
-    ((_, sentence),) = forbidden(plan_of(poses, [below]), BRUSH, find_cell())
-    assert "5.00 mm beyond the lower edge of the workspace" in sentence
+    assert are_told(forbidden(plan_of(poses, [below]), BRUSH, find_cell()), "tool-off-sheet 5.00 lower")
 
 
 def test_a_rise_on_paper_that_leans_ends_below_the_box():
@@ -178,11 +185,8 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
         ),
     )
     low = plan_of(np.array([(50, 20, 0), (80, 20, -2)], dtype=float))
-    ((where, sentence),) = forbidden(low, BRUSH, leans)
-    assert (
-        where == ""
-        and "before the first move the tool goes to z 49.8 mm, outside the range [-99, 40]" in sentence
-    )
+    (told,) = forbidden(low, BRUSH, leans)
+    assert agrees(told, "out-of-box first 'z 49.8 mm' '[-99, 40]'", "")
 
 
 def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
@@ -215,31 +219,31 @@ def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
 def test_a_way_between_two_places_says_only_what_they_do_not():
     cell = robot(**RING)
     (said,) = astray_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
-    assert said.code == "out-of-reach" and "on the way there the tool goes 0.0 mm" in said.sentence
+    assert agrees(said, "out-of-reach way 0.0")
     assert astray_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
 
 
 def test_a_number_tells_that_it_is_outside():
     cell = robot(reach_mm=(150.0, 850.0))
     (said,) = astray(ways([[(850.0004, 0, 0)]]), np.eye(4), cell)
-    assert "goes 850.0004 mm away" in said.sentence
+    assert agrees(said, "out-of-reach 850.0004")
 
 
 def test_boxes_to_keep_out_of_are_written_read_and_named(desk, capsys):
     cell = robot(**POST)
     assert parse_cell(write_cell(cell)) == cell
     (desk / "mine.toml").write_text(write_cell(cell))
-    assert "not in x -40 to 40, y -40 to 40, z -50 to 300 mm" in call(capsys, "cell", "show", "mine.toml")[1]
+    assert "x -40 to 40, y -40 to 40, z -50 to 300 mm" in call(capsys, "cell", "show", "mine.toml")[1]
     turned = robot(keep_out_mm=(((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ((0.0, 0.0, 5.0), (1.0, 1.0, 1.0))))
-    with pytest.raises(Error, match="box 2: the first corner must be the lower one") as refusal:
+    with refused("cell-workspace 'box 2' lower", "workspace.keep_out_mm"):
         parse_cell(write_cell(turned))
-    assert refusal.value.where == "workspace.keep_out_mm"
 
 
 def test_jobs_before_the_first_stroke_ask_their_whole_way():
     cell = robot(keep_out_mm=(((-1.0, -200.0, 0.0), (1.0, 200.0, 300.0)),))
-    with pytest.raises(Error, match=r"the tool goes through x -?0\.0"):
+    with refused("in-kept-out-box") as caught:
         border((20.0, 20.0, 580.0, 180.0), BRUSH, cell, SHEET)
+    assert re.search(r"x -?0\.0", caught.value.sentence)
     assert len(list(border((20.0, 20.0, 280.0, 180.0), BRUSH, cell, SHEET).sections())) == 1
     assert len(list(paper_height(BRUSH, cell, SHEET, 1.0, -1.0, 0.1).sections())) == 21
 
@@ -251,8 +255,7 @@ def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
     assert forbidden(plan_of(ROUND), BRUSH, cell) == []
     across = replace(ink, wipe_mm=((50.0, -10.0, 5.0), (80.0, -10.0, 5.0)))
     found = forbidden(plan_of(ROUND), BRUSH, replace(cell, stations=(across,)))
-    assert [(each.where, each.code) for each in found] == [("ink", "station-on-sheet")]
-    assert "wipe goes over the sheet of 600 x 200 mm" in found[0].sentence
+    assert are_told(found, "station-on-sheet ink wipe '600 x 200 mm'")
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])
@@ -265,5 +268,4 @@ def test_ways_are_asked_whichever_are_asked_together(monkeypatch, at_once):
         for k, x in enumerate(sides)
     ]
     told = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
-    assert [where for where, _ in told] == ["s2", "s4", "s5"]
-    assert all(sentence.startswith("on the way there") for _, sentence in told)
+    assert are_told(told, "out-of-reach s2 way", "out-of-reach s4 way", "out-of-reach s5 way")

@@ -144,7 +144,7 @@ def _ring(points, where: str) -> np.ndarray:
     if ring.ndim != 2 or ring.shape[0] < 3 or ring.shape[1] != 2:
         raise Error("a ring is a list of three or more points [x, y]", where, code="wrong-type")
     if not np.isfinite(ring).all():
-        raise Error("a coordinate is not a finite number", where, code="not-a-number")
+        raise Error("a coordinate is not a finite number", where, code="not-finite")
     if (farthest := float(np.abs(ring).max())) > LARGEST_MM:
         raise Error(
             f"a coordinate of {farthest:.4g} mm is outside the range [-{LARGEST_MM:g}, {LARGEST_MM:g}] mm",

@@ -54,7 +54,8 @@ class _Interrupts:
 
 def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
     """Whatever letters a terminal knows, and whether or not anybody takes what is printed."""
-    from .console import let_go, say
+    from ..errors import Notice
+    from .console import let_go, say_notice
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -69,7 +70,8 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
             let_go(sys.stdout)
         if isinstance(problem, BrokenPipeError):
             return 0  # whoever reads has seen enough
-        say(problem.filename or "standard output", (problem.strerror or str(problem)).lower())
+        reason = (problem.strerror or str(problem)).lower()
+        say_notice(problem.filename or "standard output", Notice("", reason, code="file-unwritable"))
         return 1
 
 

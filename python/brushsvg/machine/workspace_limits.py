@@ -34,7 +34,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[Notice]:
         if len(poses) == 0:
             found = [Notice("", "the pass has no poses", code="pass-empty")]
         elif not np.isfinite(poses).all():
-            found = [Notice("", "a pose is not a finite number", code="not-a-number")]
+            found = [Notice("", "a pose is not a finite number", code="not-finite")]
         else:
             found = [*_heights(poses, cell)]
             if not (poses[:, 2] < 0).any():

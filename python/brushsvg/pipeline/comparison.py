@@ -55,7 +55,9 @@ def advice(work: Work) -> str:
     options = work.options
     if not work.drawn or options.layout.width_mm is not None:
         return ""
-    is_filled = options.wide == "passes" or any(stroke.origin.lane > 1 for stroke in work.strokes)
+    outlines = {stroke.origin.element for stroke in work.drawn if stroke.wanted_mm}
+    in_lanes = {stroke.origin.element for stroke in work.strokes if stroke.origin.lane > 1}
+    is_filled = options.wide == "passes" or not outlines.isdisjoint(in_lanes)
     if options.wide == "auto" and not is_filled:
         options = replace(options, wide="clamp")  # strokes are tried alone, and shapes are filled whole
     made = _trial(work.brush, options)

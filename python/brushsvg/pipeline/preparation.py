@@ -19,7 +19,9 @@ from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
 from ..machine.program import Job
 from ..planning import travel_order
 from ..planning.refinement import refined
+from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
+from ..strokes.joining import joined
 from ..strokes.unreached import missed, unreached
 from ..strokes.unreached import notices as blank_notices
 from ..strokes.width_limits import within_reach
@@ -41,6 +43,8 @@ class Options:
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
+    corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
+    join: bool = False  # lines that meet end to end are one stroke
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
 
@@ -82,6 +86,11 @@ def prepare(
     design = layout.arrange(drawing.read_drawing(path, options.reading), options.layout)
     stage("finding strokes")
     strokes, notices = strokes_of(design, options.paths_as)
+    if options.join:
+        strokes, joints = joined(strokes)
+        notices += joints
+    if options.corners == "auto" and options.compensation in ("closed", "refined"):
+        strokes = lifted_at_corners(strokes, brush)
     refused, left_out, drawn = [], [], tuple(strokes)
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _sorted_out(

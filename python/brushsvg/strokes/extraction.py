@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..drawing.design import Design, Element, Notice, SubPath
 from ..errors import Error, need
+from .corners import begun_amid_a_side
 
 if TYPE_CHECKING:
     from .._core import Stroke
@@ -121,7 +122,10 @@ def _drawn(element: Element, subpath: SubPath) -> _Line:
         half_width = [(0.0, element.stroke_width_mm / 2)]
     else:
         half_width = [(at, width / 2) for at, width in subpath.widths.tolist()]
-    return _Line(subpath.cubics, half_width, subpath.closed, [])
+    cubics = subpath.cubics
+    if subpath.closed:
+        cubics, half_width = begun_amid_a_side(cubics, half_width)
+    return _Line(cubics, half_width, subpath.closed, [])
 
 
 def _of_element(element: Element, name: str, lines: list[_Line]):

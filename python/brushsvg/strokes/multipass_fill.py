@@ -13,7 +13,7 @@ from .contour_fill import contour_passes, painted, region, unpainted
 from .offset_passes import Line, clamped, offset_passes
 
 # More of the shape covered along its outline is worth the direction of writing, which middle lines have.
-_BETTER = 0.01
+BETTER = 0.01
 _MOST_STROKES = 500
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
 
@@ -22,18 +22,20 @@ _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt co
 class Filling:
     """What fills one shape. passes: for the number of each stroke that is wider than the brush, the lines to paint in
     its place, none where those of another do; meant: of what they become, the first's line and rings; unpainted: share
-    of the shape; gap_mm: width of the widest gap."""
+    of the shape; gap_mm: width of the widest gap; rings: of the shape; narrow: its strokes that are not filled."""
 
     passes: dict[int, list[Line]]
     meant: dict[int, tuple[Line, list[np.ndarray]]]
     unpainted: float
     gap_mm: float
+    rings: list[np.ndarray]
+    narrow: list
     at_nearest: float = 1.0
 
     @property
     def helps(self) -> bool:
-        """Whether it covers more than the same strokes at the nearest width."""
-        return 1 - self.unpainted > self.at_nearest + _BETTER
+        """Whether its discs cover more than those of the same strokes at the nearest width."""
+        return 1 - self.unpainted > self.at_nearest + BETTER
 
     @property
     def shows(self) -> bool:
@@ -80,8 +82,12 @@ def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
     """What the first of the lines is meant to paint of a part: its own discs, and what those of all lines leave."""
     whole = region(part)
     share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
+    return _rings(share)
+
+
+def _rings(shape) -> list[np.ndarray]:
     polygons = [
-        one for one in shapely.get_parts(shapely.orient_polygons(share)) if one.geom_type == "Polygon"
+        one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"
     ]
     return _core.unite(
         [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
@@ -92,12 +98,13 @@ def _is_better(one: Filling, other: Filling) -> bool:
     if one.unpainted >= other.unpainted:
         return False
     mends = other.gap_mm > _SHOWN_GAP_MM and one.gap_mm < other.gap_mm
-    return one.count <= other.count or mends or other.unpainted - one.unpainted > _BETTER
+    return one.count <= other.count or mends or other.unpainted - one.unpainted > BETTER
 
 
 def _tried(shape, passes, meant, narrow: list) -> Filling:
     left = unpainted(shape, [*narrow, *(line for lines in passes.values() for line in lines)])
-    return Filling(passes, meant, left.area / shape.area, _gap_mm(left))
+    rings = _rings(shape)
+    return Filling(passes, meant, left.area / shape.area, _gap_mm(left), rings, narrow)
 
 
 def _gap_mm(left) -> float:

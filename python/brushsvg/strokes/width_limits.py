@@ -8,10 +8,12 @@ from .. import _core
 from ..drawing.design import Notice
 from ..errors import Error, need
 from .offset_passes import clamped
+from .trial_mark import trial_mark
 
 WIDE = ("auto", "clamp", "passes", "refuse")
-# At the nearest width discs paint so much of a shape, or passes are taken for it.
+# At the nearest width the mark overlaps with a shape by so much, or passes are taken for it.
 ENOUGH = 0.8
+BETTER = 0.01  # and passes by so much more
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
 
@@ -21,8 +23,8 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
 
     Only strokes that carry an outline are changed: widths that were drawn as such are refused when the plan is made.
     wide: "clamp", the nearest width; "passes", several passes, called id, id~2, id~3 ..., which fill the shape that is
-    wider than the brush and stay in it; "auto", passes for shapes of which discs of the nearest widths paint less than
-    0.8, where passes paint more; "refuse", Error naming stroke, width and range.
+    wider than the brush and stay in it; "auto", passes for all wider shapes that they paint better, if at the nearest
+    widths the mark of one of them overlaps with it by less than 0.8; "refuse", Error naming stroke, width and range.
     """
     need(brush, _core.Brush, "a brush")
     need(wide, str, "auto, clamp, passes or refuse")
@@ -40,7 +42,7 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
     least_wide = greatest if wide == "passes" else greatest * _WORTH_PASSES
     wider = [k for k, found in beyond.items() if found and found[1] > least_wide]
-    filled, fillable = _filled(strokes, wider, least, greatest, wide) if wider else ({}, set())
+    filled, fillable = _filled(strokes, wider, brush, wide) if wider else ({}, set())
     painted, wanted, notices = [], [], []
     for k, stroke in enumerate(strokes):
         made, meant, how = filled.get(k) or ([stroke], [stroke], "")
@@ -74,18 +76,17 @@ def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
     return f"{off.sum()} of {len(off)} widths of its outline, up to", worst
 
 
-def _filled(
-    strokes: list, wider: list[int], least: float, greatest: float, wide: str
-) -> tuple[dict[int, tuple], set[int]]:
+def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int, tuple], set[int]]:
     """For each stroke to paint in passes (these, what they should become, how in words); and the strokes of which
     passes would paint more, if they were asked for."""
     from .multipass_fill import fillings  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
     fillable: set[int] = set()
-    for filling in fillings(strokes, wider, least, greatest):
-        is_lacking = wide == "auto" and filling.at_nearest < ENOUGH
-        if wide != "passes" and not (is_lacking and filling.helps):
+    found = fillings(strokes, wider, *brush.half_width_range_mm())
+    chosen = _chosen(found, strokes, brush) if wide == "auto" else {}
+    for number, filling in enumerate(found):
+        if wide != "passes" and number not in chosen:
             fillable |= set(filling.passes) if filling.helps else set()
             continue
         first = min(filling.passes)
@@ -97,13 +98,41 @@ def _filled(
                 line, rings = filling.meant[k]
                 meant = [_like(strokes[k], line), *passes[1:]]
                 meant[0].wanted_mm = rings
-            how = _how(passes) + left_over * (k == first)
-            if is_lacking:
-                how += f", since the nearest width would paint {filling.at_nearest:.0%} of the shape".replace(
-                    "%", " %"
-                )
-            done[k] = (passes, meant, how)
+            done[k] = (passes, meant, _how(passes) + left_over * (k == first) + chosen.get(number, ""))
     return done, fillable
+
+
+def _chosen(found: list, strokes: list, brush) -> dict[int, str]:
+    """The fillings that are taken where nobody says which, by their numbers, and why in words: all that paint better,
+    if one of their shapes would be painted too badly without, for the stems of a word are of one weight."""
+    range_mm = brush.half_width_range_mm()
+    nearest = [
+        _mark_overlap([*f.narrow, *(_clamped(strokes[k], *range_mm) for k in f.passes)], f.rings, brush)
+        for f in found
+    ]
+    if min(nearest, default=1.0) >= ENOUGH:
+        return {}
+    filled = [
+        _mark_overlap(
+            [*f.narrow, *(_like(strokes[k], line) for k in f.passes for line in f.passes[k])], f.rings, brush
+        )
+        for f in found
+    ]
+    return {
+        number: f", since at the nearest width its mark would overlap with the shape by {before:.2f}"
+        if before < ENOUGH
+        else ", as others of the drawing"
+        for number, (before, after) in enumerate(zip(nearest, filled, strict=True))
+        if after > before + BETTER
+    }
+
+
+def _mark_overlap(strokes: list, rings: list, brush) -> float:
+    """How much the marks of strokes, compensated in closed form, overlap with a shape; 0 where they are refused."""
+    try:
+        return _core.overlap(trial_mark(strokes, brush), rings)
+    except Error:
+        return 0.0
 
 
 def _how(passes: list) -> str:

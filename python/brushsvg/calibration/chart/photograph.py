@@ -219,9 +219,9 @@ def told(read: Read) -> str:
     strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
     strokes += f" read from {read.photos} photographs" if read.photos > 1 else " read"
     if not view.seen:
-        across, along = view.homography[:2, 0]
-        turn = math.degrees(math.atan2(along, across))
-        return f"{strokes} from a scan, turned by {turn:.1f} degrees, {view.px_per_mm:.1f} pixels per mm"
+        across, down = view.homography[:2, 0]
+        turn = math.degrees(math.atan2(-down, across))
+        return f"{strokes} from a scan, turned by {turn:.1f} degrees to the left, {view.px_per_mm:.1f} pixels per mm"
     return (
         f"{strokes}, {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
         f"{view.px_per_mm:.1f} pixels per mm, edges blurred over {view.blur_mm:.2f} mm"

@@ -73,6 +73,8 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     add_layout(command)
     add_wide(command)
+    add_corners(command)
+    add_join(command)
     add(
         "--compensation",
         choices=("none", "constant", "closed", "refined"),
@@ -98,7 +100,24 @@ def add_wide(command: argparse.ArgumentParser) -> None:
         "--wide",
         choices=("auto", "clamp", "passes", "refuse"),
         help="shapes wider than the brush: its greatest width, several passes, or refuse; default: auto, passes where "
-        "its greatest width paints less than 0.8 of a shape",
+        "the mark of its greatest width overlaps with a shape by less than 0.8",
+    )
+
+
+def add_corners(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--corners",
+        choices=("auto", "turn"),
+        help="sharp corners of drawn lines: the brush turns in place; default: auto, it is lifted where that is better",
+    )
+
+
+def add_join(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--join",
+        action="store_true",
+        default=None,
+        help="paint lines that meet end to end, in one colour and width, as one",
     )
 
 

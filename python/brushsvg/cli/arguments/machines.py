@@ -3,7 +3,18 @@
 from __future__ import annotations
 
 from . import values
-from .flags import add_choices, add_input, add_layout, add_looks, add_quiet, add_wide, add_z_offset, programs
+from .flags import (
+    add_choices,
+    add_corners,
+    add_input,
+    add_join,
+    add_layout,
+    add_looks,
+    add_quiet,
+    add_wide,
+    add_z_offset,
+    programs,
+)
 from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
@@ -69,6 +80,8 @@ def add_check(commands) -> None:
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
     add_layout(check)
     add_wide(check)
+    add_corners(check)
+    add_join(check)
     check.add_argument(
         "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
     )

@@ -42,7 +42,8 @@ def chart_file(args) -> None:
         files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
     if args.page:
         pdf = suffix_of(args.page) == ".pdf"
-        files[args.page] = chart_pdf(made) if pdf else chart_page(made).encode()
+        with about(args.page):
+            files[args.page] = chart_pdf(made) if pdf else chart_page(made).encode()
     if args.chart:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)

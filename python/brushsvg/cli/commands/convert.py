@@ -66,7 +66,8 @@ def job_page_of(path: str, work) -> bytes:
     from ...calibration.chart.page import chart_page, chart_pdf
     from ...painted.job_page import job_page
 
-    page = job_page(work.plan, work.title)
-    if suffix_of(path) == ".pdf":
-        return chart_pdf(page.printed, page.ticks)
-    return chart_page(page.printed, page.ticks).encode()
+    with about(path):
+        page = job_page(work.plan, work.title)
+        if suffix_of(path) == ".pdf":
+            return chart_pdf(page.printed, page.ticks)
+        return chart_page(page.printed, page.ticks).encode()

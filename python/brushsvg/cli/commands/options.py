@@ -34,6 +34,8 @@ class Choices:
     scale: float | None
     origin: tuple[float, float] | None
     wide: str | None
+    corners: str | None
+    join: bool | None
     compensation: str | None
     lag: float | None
     tolerance: float | None
@@ -101,6 +103,8 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         or preparation.Options.tolerance_mm,
         paths_as=chosen.paths_as,
         wide=chosen.wide or preparation.Options.wide,
+        corners=chosen.corners or preparation.Options.corners,
+        join=bool(chosen.join),
         speed_mm_s=min(preparation.Options.speed_mm_s, cell.speeds.paint_mm_s),
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,

@@ -1,0 +1,150 @@
+"""Corners of drawn lines: closed lines do not begin there, and where a brush that turns in place would leave a blot, it
+is lifted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ..errors import Error, need
+from ..geometry.arc_length import knots
+from ..geometry.cubics import split
+
+_CORNER_RAD = np.radians(20)
+_SHARP_RAD = np.radians(100)  # at less a turn leaves no blot that one sees
+_LIKE_RAD = np.radians(5)
+_STRAIGHT = 0.001  # of a side's length, its control points beside it
+_WORTH = 0.05  # a lift, in squares of the width: paint out of place that it takes away
+
+
+@dataclass(frozen=True)
+class _Line:
+    """cubics (n, 4, 2), none without length; half_width: [(fraction of arc length, mm)]."""
+
+    cubics: np.ndarray
+    half_width: list
+
+    @property
+    def at(self) -> np.ndarray:
+        """Fractions of arc length at which the cubics begin, and 1."""
+        lengths = knots(self.cubics)[:, -1]
+        return np.append(np.cumsum(lengths) - lengths, lengths.sum()) / lengths.sum()
+
+    def between(self, first: int, last: int) -> _Line:
+        """From the beginning of a cubic to that of another."""
+        begin, end = self.at[first], self.at[last]
+        fractions, halves = np.array(self.half_width).T
+        inside = (fractions > begin) & (fractions < end)
+        at = np.concatenate([[begin], fractions[inside], [end]])
+        cut = np.column_stack([(at - begin) / (end - begin), np.interp(at, fractions, halves)])
+        widths = cut if np.ptp(cut[:, 1]) else cut[:1]
+        return _Line(self.cubics[first:last], [tuple(knot) for knot in widths.tolist()])
+
+    def begun_at(self, first: int) -> _Line:
+        """A closed line from the beginning of a cubic on."""
+        head, tail = self.between(0, first), self.between(first, len(self.cubics))
+        at = 1 - self.at[first]
+        widths = [(f * at, half) for f, half in tail.half_width]
+        widths += [(at + f * (1 - at), half) for f, half in head.half_width[1:]]
+        return _Line(np.concatenate([tail.cubics, head.cubics]), widths)
+
+    def turn_rad(self, joint: int) -> float:
+        """How far it turns where a cubic begins; at 0, if it is closed."""
+        back, onward = _tangent(self.cubics[joint - 1][::-1]), _tangent(self.cubics[joint])
+        return abs(np.arctan2(back[1] * onward[0] - back[0] * onward[1], -(back @ onward)))
+
+
+def begun_amid_a_side(cubics: np.ndarray, half_width: list) -> tuple[np.ndarray, list]:
+    """The closed line of cubics (n, 4, 2) and half widths [(fraction, mm)] from the middle of its longest straight side
+    on, if it begins at a corner and has such a side; else as it is. A mark begins pointed, which shows at a corner."""
+    line = _line(cubics, half_width)
+    sides = [k for k in range(len(line.cubics)) if _is_straight(line.cubics[k])]
+    if not sides or line.turn_rad(0) < _CORNER_RAD:
+        return cubics, half_width
+    longest = max(sides, key=lambda k: round(line.at[k + 1] - line.at[k], 6))
+    before, after = line.cubics[:longest], line.cubics[longest + 1 :]
+    whole = _Line(np.concatenate([before, split(line.cubics[longest], 0.5), after]), half_width)
+    begun = whole.begun_at(longest + 1)
+    return begun.cubics, begun.half_width
+
+
+def lifted_at_corners(strokes: list, brush) -> list:
+    """The strokes, those of drawn lines cut at each sharp corner where two marks lie nearer to what is wanted than one
+    with a turn in place: paint missing and too much is less by 0.05 squares of the width. The parts of `id` are called
+    id, id~2, id~3 ...; a closed line then begins at such a corner."""
+    from .. import _core
+
+    need(brush, _core.Brush, "a brush")
+    for stroke in strokes:
+        need(stroke, _core.Stroke, "a stroke")
+    return [part for stroke in strokes for part in _parts(stroke, brush)]
+
+
+def _parts(stroke, brush) -> list:
+    if stroke.wanted_mm or len(stroke.middle_mm) < 2:
+        return [stroke]
+    line = _line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
+    sharp = [k for k in range(1, len(line.cubics)) if line.turn_rad(k) > _SHARP_RAD]
+    ends = [0, *sharp, len(line.cubics)]
+    neighbours = zip(ends, ends[1:], ends[2:], strict=False)
+    better = [at for before, at, after in neighbours if _is_better_lifted(line, before, at, after, brush)]
+    if not better:
+        return [stroke]
+    least_rad = min(map(line.turn_rad, better)) - _LIKE_RAD
+    lifts = [at for at in sharp if line.turn_rad(at) >= least_rad]  # like corners look alike
+    if stroke.closed:
+        line = line.begun_at(lifts[0])
+        lifts = [at - lifts[0] for at in lifts[1:]]
+    ends = [0, *lifts, len(line.cubics)]
+    return [_stroke(line.between(*pair), stroke, lane) for lane, pair in enumerate(pairwise(ends), start=1)]
+
+
+def _is_better_lifted(line: _Line, before: int, corner: int, after: int, brush) -> bool:
+    from .. import _core
+
+    whole = _stroke(line.between(before, after))
+    parts = [_stroke(line.between(before, corner)), _stroke(line.between(corner, after))]
+    wanted = _core.wanted_outline(whole, 0.01)
+    try:
+        gain_mm2 = _misplaced_mm2([whole], wanted, brush) - _misplaced_mm2(parts, wanted, brush)
+    except Error:
+        return False
+    return gain_mm2 > _WORTH * (2 * max(half for _, half in whole.half_width)) ** 2
+
+
+def _misplaced_mm2(strokes: list, wanted: list, brush) -> float:
+    """Area of what is wanted and not painted, and of what is painted and not wanted."""
+    from .. import _core
+    from .trial_mark import trial_mark
+
+    mark = trial_mark(strokes, brush)
+    return _core.area(mark) + _core.area(wanted) - 2 * _core.area(_core.intersect(mark, wanted))
+
+
+def _line(cubics: np.ndarray, half_width: list) -> _Line:
+    return _Line(cubics[knots(cubics)[:, -1] > 0], half_width)
+
+
+def _stroke(line: _Line, like=None, lane: int = 1):
+    from .. import _core
+
+    made = _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width)
+    if like is not None:
+        of = like.origin
+        made.id = _core.StrokeId(of.element, of.part, of.repeat, lane)
+        made.layer, made.colour, made.settings = like.layer, like.colour, like.settings
+    return made
+
+
+def _is_straight(points: np.ndarray) -> bool:
+    chord = points[3] - points[0]
+    beside = np.abs((points[1:3] - points[0]) @ (-chord[1], chord[0]))
+    return bool((beside <= _STRAIGHT * (chord @ chord)).all())
+
+
+def _tangent(points: np.ndarray) -> np.ndarray:
+    """Direction in which a cubic leaves its first point."""
+    moves = points[1:] - points[0]
+    return moves[(np.hypot(*moves.T) > 1e-9).argmax()]

@@ -1,0 +1,89 @@
+"""Lines that meet end to end, painted as one."""
+
+import numpy as np
+import pytest
+from svg_text import read
+
+from brushsvg import _core
+from brushsvg.__main__ import main
+from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.joining import joined
+
+LINE = 'fill="none" stroke="black" stroke-width="4"'
+
+
+def of(*lines: str, rest: str = LINE) -> list:
+    return strokes(read("".join(f'<path id="{chr(97 + k)}" d="{d}" {rest}/>' for k, d in enumerate(lines))))[
+        0
+    ]
+
+
+def ends(stroke) -> list:
+    return [*stroke.middle_mm[0, :2].round(6).tolist(), *stroke.middle_mm[-1, 6:].round(6).tolist()]
+
+
+def length_mm(stroke) -> float:
+    return _core.flatten(stroke, 0.01)[-1, 2]
+
+
+def test_a_rectangle_in_four_lines_is_a_closed_one():
+    made, notices = joined(of("M10 10H40", "M40 10V40", "M10 40H40", "M10 40V10"))
+    assert [(stroke.id, stroke.closed) for stroke in made] == [("a", True)]
+    assert length_mm(made[0]) == pytest.approx(120, abs=1e-6)
+    assert ends(made[0])[:2] == ends(made[0])[2:]
+    (notice,) = notices
+    assert (notice.where, notice.code) == ("a", "lines-joined")
+    assert all(name in notice.sentence for name in "bcd")
+
+
+def test_a_line_keeps_its_direction_and_gets_what_comes_before_it():
+    made, _ = joined(of("M40 30H60", "M20 30H40", "M80 40L60 30"))
+    assert [stroke.id for stroke in made] == ["a"]
+    (sheet,) = {ends(stroke)[1] for stroke in of("M0 30H9")}
+    assert ends(made[0]) == [20, sheet, 80, sheet - 10]
+    steps = np.diff(_core.flatten(made[0], 0.01)[:, 0])
+    assert (steps > 0).all()
+
+
+def test_the_straightest_goes_on_and_no_line_turns_back():
+    made, _ = joined(of("M10 30H40", "M40 30L70 50", "M40 30H70", "M10 31H40.5", "M40.5 31L12 33"))
+    assert [stroke.id for stroke in made] == ["a", "b", "d", "e"]
+    assert ends(made[0])[2] == 70
+    assert length_mm(made[0]) == pytest.approx(60)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        '<path id="b" d="M40 30H70" fill="none" stroke="red" stroke-width="4"/>',
+        '<path id="b" d="M40 30H70" fill="none" stroke="black" stroke-width="5"/>',
+        '<path id="b" d="M40.02 30H70" fill="none" stroke="black" stroke-width="4"/>',
+        '<path id="b" d="M40 30H70" fill="none" stroke="black" stroke-width="4" data-brushsvg-speed="7"/>',
+        '<path id="b" d="M40 30H70V34H40Z" fill="black"/>',
+    ],
+)
+def test_lines_of_another_kind_stay_alone(other):
+    made = strokes(read(f'<path id="a" d="M10 30H40" {LINE}/>{other}'))[0]
+    assert joined(made) == (made, [])
+
+
+def test_widths_run_on_through_the_joint():
+    first, second = of("M10 30H40", "M50 30H40")
+    first.half_width = [(0.0, 1.0), (1.0, 2.0)]
+    second.half_width = [(0.0, 3.0), (0.5, 2.0), (1.0, 2.0)]
+    ((both,), _) = joined([first, second])
+    at, half = np.array(both.half_width).T
+    assert np.interp([0, 30, 35, 40], at * 40, half) == pytest.approx([1, 2, 2, 3])
+
+
+def test_lines_are_joined_only_when_asked_and_check_knows(tmp_path, capsys):
+    paths = f'<path id="a" d="M10 30H40" {LINE}/><path id="b" d="M40 30L70 40" {LINE}/>'
+    drawing, program = tmp_path / "two.svg", tmp_path / "two.ngc"
+    drawing.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="0 0 80 60">{paths}</svg>'
+    )
+    for flags, count in (([], 2), (["--join"], 1)):
+        assert main(["convert", str(drawing), str(program), *flags]) == 0
+        assert f"{count} stroke" in capsys.readouterr().err
+        assert main(["check", str(program), str(drawing), *flags]) == 0
+    assert main(["check", str(program), str(drawing)]) == 1
