@@ -16,9 +16,14 @@ OFF = 0.03  # of the lag, over the range
 HELD = 0.92  # of the 95 % intervals at least
 
 
+def strokes_of(number: int) -> str | None:
+    """As many as the sheet has room for where the brush is to be found, few where places alone are."""
+    return None if number % 2 == 0 and number < 10 else "few"
+
+
 @pytest.fixture(scope="module")
 def found():
-    cases = [Case(number, SEED, BRUSHES, SHEET, "few") for number in range(COUNT)]
+    cases = [Case(number, SEED, BRUSHES, SHEET, strokes_of(number)) for number in range(COUNT)]
     return [outcome(case, *case.taken()) for case in cases]
 
 
