@@ -1,22 +1,24 @@
 """Random brushes paint printed charts, random cameras photograph them, and `calibrate` is asked which brush it was.
 
-    photographs.py [--count 200] [--brushes 40] [--seed 1] [--processes 2] [--sheet a4] [--strokes few]
+    photographs.py FOLDER [--count 200] [--brushes 40] [--seed 1] [--sheet a4] [--strokes few] [--again]
+
+FOLDER keeps each photograph and what came of it: a run that was stopped goes on where it was, and `--again` reads and
+fits the photographs that are there once more. `--count 0` only tells what is there.
 
 The paint is the slow stepping simulator's of tests/laws, the pictures the renderer's there: a tilt, a lens of another
-formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet bulges by a millimetre. Every other brush has laws
-outside of the family that is fitted: a lag that saturates and swings, a width that grows as a root, a bent tip gap.
-The two halves are reported apart. Printed: how far places on the sheet lie off (rms), how far the lag is off over the
-range, how often the 95 % intervals hold the truth, what was refused, and which marks were left out.
+formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet of either half bulges by a millimetre. Every
+other brush has laws outside of the family that is fitted: a lag that saturates and swings, a width that grows as a
+root, a bent tip gap. The two halves are reported apart. Printed: how far places on the sheet lie off (rms), how far
+the lag is off over the range, how often the 95 % intervals hold the truth, what was refused, and which marks were
+left out.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import multiprocessing
 import sys
 import time
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +46,7 @@ COLOURS = (
     np.array([0.7, 0.1, 0.08]),
     np.array([0.1, 0.35, 0.15]),
 )
-BULGING = 6  # every so many sheets
+BULGING = 6  # every so many sheets of either half
 TEXELS = 16.0  # per mm of the sheet: of A4, more take a gigabyte
 
 
@@ -86,63 +88,83 @@ def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
     )
 
 
-def photographed(number: int, seed: int, brushes: int, sheet_mm, strokes: str) -> dict:
-    """One photograph: what is known of it, and what came of it."""
-    photograph.TEXELS = TEXELS
-    which = number % brushes
-    rng = np.random.default_rng([seed, which])
-    brush = painter.random_brush(rng)
-    inside = which % 2 == 0
-    if not inside:
-        brush = outside_family(brush, rng)
-    lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
-    laws = _core.MarkLaws(list(lag * brush.lag), [0.0, 0.4], list(width * brush.half_width), 1.8, 1.0)
-    out = {"number": number, "inside": inside, "bulging": number % BULGING == BULGING - 1}
-    rng = np.random.default_rng([seed, which, number])
-    made = chart(brush_of(laws, "roughly", (0.0, brush.deepest)), sheet_mm, strokes)
-    ways = [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
-    painted = painter.paint(rng, brush, ways, FAULTS)
-    sheet, colour = photograph.page(made, number), COLOURS[number % len(COLOURS)]
-    for _, _, rings in painted.marks:
-        sheet.paint(rings, colour)
-    camera = camera_of(rng, sheet_mm, out["bulging"])
-    jpeg = photograph.photograph(sheet, camera, number)
-    del sheet
+class Case:
+    """What is known of one photograph; brushes inside and outside of the family take turns."""
+
+    def __init__(self, number: int, seed: int, brushes: int, sheet_mm, strokes: str | None):
+        which = number % brushes
+        rng = np.random.default_rng([seed, which])
+        self.number, self.inside, self.sheet_mm = number, which % 2 == 0, sheet_mm
+        self.brush = painter.random_brush(rng)
+        if not self.inside:
+            self.brush = outside_family(self.brush, rng)
+        self.bulging = number // 2 % BULGING == BULGING - 1
+        self.colour = COLOURS[(number // 2 + number // brushes) % len(COLOURS)]
+        lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
+        laws = _core.MarkLaws(
+            list(lag * self.brush.lag), [0.0, 0.4], list(width * self.brush.half_width), 1.8, 1.0
+        )
+        self.chart = chart(brush_of(laws, "roughly", (0.0, self.brush.deepest)), sheet_mm, strokes)
+        self.camera = camera_of(np.random.default_rng([seed, number, 1]), sheet_mm, self.bulging)
+        self.paint_rng = np.random.default_rng([seed, number, 2])
+
+    def taken(self) -> tuple[bytes, float]:
+        """The JPEG, and the paper's height."""
+        photograph.TEXELS = TEXELS
+        ways = [(one.stroke, np.array(one.poses_mm)) for one in self.chart.plan.passes]
+        painted = painter.paint(self.paint_rng, self.brush, ways, FAULTS)
+        sheet = photograph.page(self.chart, self.number)
+        for _, _, rings in painted.marks:
+            sheet.paint(rings, self.colour)
+        return photograph.photograph(sheet, self.camera, self.number), painted.height
+
+
+def kept(case: Case, folder: Path) -> tuple[bytes, float]:
+    """A photograph that was taken before, or now."""
+    photo, height = folder / f"{case.number}.jpg", folder / f"{case.number}.height"
+    if not height.exists():
+        jpeg, true_height = case.taken()
+        photo.write_bytes(jpeg)
+        height.write_text(f"{true_height}")
+    return photo.read_bytes(), float(height.read_text())
+
+
+def outcome(case: Case, jpeg: bytes, true_height: float) -> dict:
+    """What came of a photograph, as JSON knows it."""
+    out = {"number": case.number, "inside": case.inside, "bulging": case.bulging}
+    brush, made = case.brush, case.chart
     try:
         begin = time.process_time()
         read = read_chart_photos(made, [("", jpeg)])
         out["read_s"] = time.process_time() - begin
-        at = (
-            np.array([(x, y) for x in np.linspace(0.05, 0.95, 12) for y in np.linspace(0.05, 0.95, 16)])
-            * sheet_mm
-        )
-        off = read.view.to_px(at) - photograph.corners_seen(camera, sheet_mm, at)
+        shares = [(x, y) for x in np.linspace(0.05, 0.95, 12) for y in np.linspace(0.05, 0.95, 16)]
+        at = np.array(shares) * case.sheet_mm
+        off = read.view.to_px(at) - photograph.corners_seen(case.camera, case.sheet_mm, at)
         out["geometry"] = float(np.sqrt(np.mean(np.sum(off**2, axis=1)))) / read.view.px_per_mm
         out["remarks"] = [notice.code for notice in remarks(read)]
         begin = time.process_time()
         plan = json.loads(_core.write_plan(made.plan))
-        fitted = calibrate_marks(
-            read_painted(plan, marks_of(read), None), "found", edge_mm=edge_mm(read), leave_out_strays=True
-        )
+        marks = read_painted(plan, marks_of(read), None)
+        fitted = calibrate_marks(marks, "found", edge_mm=edge_mm(read), leave_out_strays=True)
         out["fit_s"] = time.process_time() - begin
     except Error as refusal:
         return out | {"refused": refusal.code, "sentence": refusal.sentence}
     out["strays"] = [stray.mark.stroke for stray in fitted.strays]
     found, deepest = fitted.brush, fitted.brush.depth_range_mm[1]
-    out["values"] = {}
+    values = {}
     for law in ("lag", "tip_gap", "half_width"):
         for share in SHARES if law != "tip_gap" else (1.0,):
             depth = share * deepest
             error = getattr(found, law)(depth) - brush.law(law)(depth)
-            out["values"][f"{law} at {share:g}"] = (
-                error,
-                float(law_band(found, law, np.array([depth]))[0][0]),
-            )
+            values[f"{law} at {share:g}"] = (error, law_band(found, law, np.array([depth]))[0][0])
     half = _core.deviations_of_95() * np.sqrt(fitted.covariance[-4, -4])
-    out["values"]["height"] = (fitted.fit.height_mm - painted.height, half)
+    values["height"] = (fitted.fit.height_mm - true_height, half)
+    out["values"] = {name: [float(value) for value in both] for name, both in values.items()}
     depths = np.linspace(0.15, 1, 18) * deepest
     lag = polynomial.polyval(depths, fitted.fit.laws.lag)
-    out["lag"] = float(np.max(np.abs(lag / brush.law("lag")(depths) - 1)))
+    off = lag / brush.law("lag")(depths) - 1
+    out["lag"], out["lag_worst_at"] = float(np.abs(off).max()), float(depths[np.abs(off).argmax()] / deepest)
+    out["strokes"] = len(made.strokes)
     return out
 
 
@@ -201,23 +223,25 @@ def _half(found: list[dict]) -> list[str]:
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    arguments.add_argument("folder", type=Path)
     arguments.add_argument("--count", type=int, default=200)
     arguments.add_argument("--brushes", type=int, default=40)
     arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--processes", type=int, default=2)
     arguments.add_argument("--sheet", type=values.sheet, default=(210.0, 297.0), help="a4, a3, 210x297")
-    arguments.add_argument("--strokes", choices=("few", "normal", "many"), default="few")
+    arguments.add_argument("--strokes", choices=("few", "normal", "many"))
+    arguments.add_argument("--again", action="store_true", help="read and fit known photographs once more")
     args = arguments.parse_args()
-    one = partial(
-        photographed, seed=args.seed, brushes=args.brushes, sheet_mm=args.sheet, strokes=args.strokes
-    )
-    found = []
-    with multiprocessing.Pool(args.processes, maxtasksperchild=4) as pool:
-        for each in pool.imap_unordered(one, range(args.count)):
-            found.append(each)
-            if len(found) % 8 == 0 and len(found) < args.count:
-                print(summary(sorted(found, key=lambda f: f["number"])), "\n", flush=True)
-    print(summary(sorted(found, key=lambda f: f["number"])))
+    args.folder.mkdir(parents=True, exist_ok=True)
+    for number in range(args.count):
+        result = args.folder / f"{number}.json"
+        if result.exists() and not args.again:
+            continue
+        case = Case(number, args.seed, args.brushes, args.sheet, args.strokes)
+        came = outcome(case, *kept(case, args.folder))
+        result.write_text(json.dumps(came))
+        print(number, came.get("refused") or f"lag within {100 * came['lag']:.2f} %", flush=True)
+    found = [json.loads(path.read_text()) for path in args.folder.glob("*.json")]
+    print(summary(sorted(found, key=lambda each: each["number"])))
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
     assert main(["calibrate", files[0], "--chart", files[1], "-o", files[2], "--picture", files[3]]) == 0
     told = capsys.readouterr()
     assert re.search("24 strokes read, 6 markers within 0.0", told.err)
-    assert " 0.02 mm off together" in told.out
+    assert " 0.01 mm off together" in told.out
     found = find_brush(desk / "own.json")
     off = {}
     for law in ("lag", "half_width"):

@@ -20,6 +20,8 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import marks_of, read_chart_photos
 from brushsvg.cli import main
+from brushsvg.scan.edges import Room, paint_seen
+from brushsvg.scan.flatten import Flat
 from brushsvg.scan.markers import Printed, find_view
 from brushsvg.scan.photo import read_photo
 
@@ -138,6 +140,36 @@ def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
     for stroke, rings in marks.items():
         mean, rms = off_mm(found.marks.outlines_mm[stroke], rings)
         assert abs(mean) < most_mm and rms < 0.09, (stroke, mean, rms)
+
+
+def test_paint_that_is_lighter_than_the_paper_is_read():
+    """On coloured paper, whose markers are printed black as ever; it once was no paint."""
+    marks = painted_marks()
+    card = photograph.Sheet.__new__(photograph.Sheet)
+    card.size_mm, card.shown = A5, page().shown * np.float32([0.45, 0.3, 0.35])
+    for rings in marks.values():
+        card.paint(rings, np.array([0.85, 0.84, 0.8]))
+    found = read(photograph.exposed(card, replace(SMALL, light=(0.2, -0.2))))
+    assert not found.marks.missing and not found.marks.joined
+    for stroke, rings in marks.items():
+        mean, rms = off_mm(found.marks.outlines_mm[stroke], rings)
+        assert abs(mean) < 0.03 and rms < 0.09, (stroke, mean, rms)
+
+
+@pytest.mark.parametrize("is_lighter", [False, True], ids=["dark paint", "light paint"])
+def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
+    """Most of what differs from the rest of the sheet is then shadow."""
+    fine, size = 5.0, (210.0, 297.0)
+    y, x = np.mgrid[0 : round(size[1] * fine), 0 : round(size[0] * fine)] / fine
+    number = np.where(is_lighter, 0.35, 0.8) * (1 - 0.3 / (1 + np.exp(-(x / 210 - y / 297 + 0.1) * 25)))
+    lines = [Room(f"{k}", (20.0 + 25 * k, 220.0, 40.0 + 25 * k, 280.0)) for k in range(7)]
+    middles = [room.box_mm[0] + 10 for room in lines]
+    for middle in middles:
+        number[(np.abs(x - middle) < 0.5) & (y > 20) & (y < 70)] *= np.where(is_lighter, 2.0, 0.3)
+    pixels = np.repeat(np.uint8(255 * number)[..., None], 3, axis=2)
+    paint = paint_seen(Flat(pixels, fine, size), np.zeros(pixels.shape[:2], np.uint8), lines)
+    assert (paint > 0.5).mean() < 0.007
+    assert all((paint[110:340, round(middle * fine)] > 0.7).all() for middle in middles)
 
 
 def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():

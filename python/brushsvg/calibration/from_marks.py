@@ -90,7 +90,7 @@ def calibrate_marks(
         _refuse_many(astray, painted)
         gone = {each.mark.stroke for each in astray}
         painted = painted.without(gone)
-        fit, gain = _likelier_tail(painted.marks, options)
+        fit, gain = _likelier_tail(painted.marks, options, fit.laws)
     scale = _scale(fit, painted)
     refuse_scale(scale)
     _refuse_unlike(fit, painted)
@@ -164,11 +164,11 @@ def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
     return ring + by_mm * np.column_stack([along[:, 1], -along[:, 0]])
 
 
-def _likelier_tail(marks: list, options: _core.MarkOptions) -> tuple[object, float]:
-    """The fit with the tail that fits better, and by how much the round one does."""
+def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple[object, float]:
+    """The fit with the tail that fits better, and by how much the round one does. start: laws that are near."""
     usual = options.widest_per_half
     options.round_tail = False
-    pointed = _core.fit_marks(marks, None, options)
+    pointed = _core.fit_marks(marks, start, options)
     options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
     rounded = _core.fit_marks(marks, pointed.laws, options)
     options.round_tail, options.widest_per_half = False, usual

@@ -14,6 +14,9 @@ from .photo import LIGHT
 
 BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
 PAPER = 0.92  # of the light round about: darker is paint
+# times that what is darker than its surroundings covers as much as what is lighter, where paint is lighter: white marks
+# have a dark surrounding as wide as BROADEST_MM, and black ones a white one
+CLEARLY = 1.5
 SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
 STRAY_MM = 6.0  # a mark lies no farther from its box
 FAINTEST = 0.12  # share of the light that paint takes away at least
@@ -62,14 +65,22 @@ def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labe
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in printed_mm:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    paint = paint_seen(flat, print_, rooms)
+    paint = paint_seen(flat, print_, rooms, labels_mm)
     return told_apart(paint, flat, rooms, labels_mm)
 
 
-def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room]) -> np.ndarray:
-    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back."""
+def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) -> np.ndarray:
+    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back; paint
+    is darker than paper, or lighter."""
     light = cv2.LUT(flat.pixels, LIGHT)
-    taken = 1.0 - light / np.maximum(_paper(light, print_, flat.px_per_mm), 1e-3)
+    printed = print_.copy()
+    for box in labels_mm:
+        c0, r0, c1, r1 = _window(flat, box, 0.5)
+        printed[r0:r1, c0:c1] = 1
+    paper, is_lighter = _paper(light, printed, flat.px_per_mm)
+    taken = 1.0 - light / np.maximum(paper, 1e-3)
+    if is_lighter:
+        taken = -taken
     inside = np.zeros_like(print_)
     for room in rooms:
         c0, r0, c1, r1 = _window(flat, room.box_mm, 0.0)
@@ -83,20 +94,26 @@ def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room]) -> np.ndarray:
     return paint
 
 
-def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> np.ndarray:
-    """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm."""
+def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.ndarray, bool]:
+    """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm; and whether
+    paint is lighter than it: then what is lighter than its surroundings covers less than what is darker."""
     rows, columns = light.shape[:2]
     size = (max(8, round(columns / px_per_mm)), max(8, round(rows / px_per_mm)))
     coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
     covered = cv2.resize(print_.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BROADEST_MM, BROADEST_MM))
+    no_print = np.where(covered[..., None], np.float32(1.0), coarse)
     bright = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
-    bare = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) > PAPER) & ~covered
+    dark = cv2.morphologyEx(no_print, cv2.MORPH_OPEN, kernel, borderType=cv2.BORDER_REPLICATE)
+    darker = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) <= PAPER) & ~covered
+    lighter = ((dark / np.maximum(coarse, 1e-3)).min(axis=2) <= PAPER) & ~covered
+    is_lighter = CLEARLY * int(lighter.sum()) < int(darker.sum())
+    around, bare = (dark, ~lighter & ~covered) if is_lighter else (bright, ~darker & ~covered)
     weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
     mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
     is_lit = weight[..., None] > 0.02
-    even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), bright).astype(np.float32)
-    return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR)
+    even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), around).astype(np.float32)
+    return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR), is_lighter
 
 
 def _contrast(taken: np.ndarray) -> np.ndarray:
@@ -121,7 +138,7 @@ def _contrast(taken: np.ndarray) -> np.ndarray:
 
 _NO_PAINT = (
     "no paint is found where the strokes should be: is this the painted page, "
-    "and is its paint darker than paper?"
+    "and does its paint differ from the paper?"
 )
 
 

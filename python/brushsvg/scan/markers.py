@@ -103,7 +103,7 @@ def _modules(dictionary: str) -> int:
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary)).markerSize + 2
 
 
-def _detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]]:
+def detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]]:
     """Ids with rough corners (4, 2) in px."""
     shrunk = max(1.0, max(pixels.shape[:2]) / SEEN_AT_PX)
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
@@ -120,7 +120,7 @@ def _detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray
 
 
 def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
-    seen = _detected(pixels, printed.dictionary)
+    seen = detected(pixels, printed.dictionary)
     ours = [(number, corners) for number, corners in seen if number in printed.corners_mm]
     others = {number for number, _ in seen} - set(printed.corners_mm)
     found: dict[int, np.ndarray] = {}
@@ -140,7 +140,7 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
             f"{_listed(printed.corners_mm)}; give the chart.json that was written with this page",
             code="photo-of-another-chart",
         )
-    mirrored = [number for number, _ in _detected(pixels[:, ::-1], printed.dictionary)]
+    mirrored = [number for number, _ in detected(pixels[:, ::-1], printed.dictionary)]
     if len(set(mirrored) & set(printed.corners_mm)) >= FEWEST:
         raise Error(
             "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,16 +14,20 @@ from ...scan.edges import Marks, Room, find_marks, told_apart
 from ...scan.flatten import Flat, flatten
 from ...scan.markers import TOO_WHITE, Printed, View, find_view
 from ...scan.photo import jpeg_quality, read_photo
+from ...scan.place_by_strokes import find_scan_view
 from .layout import Chart
 from .page import bar_rings, label_box
 
 ANOTHER_SIZE = (0.9, 1.1)  # of the page, which --bar corrects; beyond, strokes run into labels and markers
 MARGIN = 1 / 5  # of a marker's side around it: blur
-# Standard deviation of where all edges of a picture lie off together: blue paint lies 0.1 px outward, yellow, of which
-# JPEG keeps one colour for four pixels, 0.2 to 0.3
-EDGE_PX = 0.2
+# Standard deviation of where all edges of a picture lie off together: dark paint lies 0.02 to 0.08 px outward, yellow,
+# of which JPEG keeps one colour for four pixels, 0.11 to 0.19. With 0.2 the lag of a narrow brush, whose width the
+# paper's height changes as little, had intervals five times as wide as its errors.
+EDGE_PX = 0.1
 WORST_QUALITY = 12.0  # of a JPEG: its squares of 8 pixels take the places of edges
 UNSURE_MM, MOST_UNSURE_MM = 0.1, 0.5  # of a place on the sheet: remarked on, refused
+# Standard deviation of a sheet's place on a scan, by rooms that hold the marks of brushes that trail as thought
+SCAN_PLACEMENT_MM = 3.0
 ALIKE_MM = 0.15  # photographs of one flat sheet; a robot paints a second one less alike
 
 
@@ -37,10 +42,13 @@ class Read:
     photos: int = 1
 
 
-def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: float | None = None) -> Read:
+def read_chart_photos(
+    chart: Chart, photos: list[tuple[str, bytes]], bar_mm: float | None = None, dpi: float | None = None
+) -> Read:
     """photos: names and what their files hold, of one painted sheet; bar_mm: how long the printed bar is by a ruler,
-    where the page was not printed at 100 %. Several photographs must agree; their paint is averaged, and the view is
-    that of the one whose markers lie farthest off. Error in one sentence, with the file."""
+    where the page was not printed at 100 %; dpi: of a flatbed's scan of a sheet on which nothing is printed. Several
+    photographs must agree; their paint is averaged, and the view is that of the one whose markers lie farthest off.
+    Error in one sentence, with the file."""
     size = _size(chart, bar_mm)
     middle = np.array(chart.plan.sheet_mm) / 2
 
@@ -58,7 +66,13 @@ def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: flo
         try:
             pixels = read_photo(data)
             _refuse_compressed(data)
-            view = find_view(pixels, shown)
+            if dpi is None:
+                view = find_view(pixels, shown)
+            else:
+                pixels, view = find_scan_view(
+                    pixels, dpi, shown.sheet_mm, rooms, _pressed(chart), shown.dictionary
+                )
+                printed, labels = [], []
             _refuse_cropped(pixels, view, rooms)
             _refuse_unsure(view, pixels, corners)
             fine = reads[0].flat.px_per_mm if reads else None
@@ -81,6 +95,11 @@ def read_chart_photos(chart: Chart, photos: list[tuple[str, bytes]], bar_mm: flo
         _refuse_another_sheet(each.marks, marks, name)
     worst = max((each.view for each in reads), key=lambda view: view.residual_mm)
     return Read(chart, reads[0].flat, worst, marks, len(reads))
+
+
+def _pressed(chart: Chart) -> list[np.ndarray]:
+    """The TCP's way along each stroke on the paper."""
+    return [np.array(one.poses_mm)[:, :2] for one in chart.plan.passes]
 
 
 def _refuse_compressed(data: bytes) -> None:
@@ -179,11 +198,18 @@ def marks_of(read: Read) -> list[dict]:
     ]
 
 
+def expected(read: Read) -> dict:
+    """How far the sheet may be off, as a measurement file says it."""
+    return {} if read.view.seen else {"placement_mm": SCAN_PLACEMENT_MM}
+
+
 def write_marks(read: Read) -> str:
     """A measurement file, which `brushsvg calibrate` takes."""
     plan = _core.write_plan(read.chart.plan).strip()
     rows = ",\n  ".join(json.dumps(row) for row in marks_of(read))
     head = '"format": "brushsvg/measurements", "version": 1'
+    if off := expected(read):
+        head += f',\n "expected": {json.dumps(off)}'
     return f'{{{head},\n "plan": {plan},\n "marks": [\n  {rows}]}}\n'
 
 
@@ -192,6 +218,10 @@ def told(read: Read) -> str:
     view, count, found = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
     strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
     strokes += f" read from {read.photos} photographs" if read.photos > 1 else " read"
+    if not view.seen:
+        across, down = view.homography[:2, 0]
+        turn = math.degrees(math.atan2(-down, across))
+        return f"{strokes} from a scan, turned by {turn:.1f} degrees to the left, {view.px_per_mm:.1f} pixels per mm"
     return (
         f"{strokes}, {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
         f"{view.px_per_mm:.1f} pixels per mm, edges blurred over {view.blur_mm:.2f} mm"
@@ -222,7 +252,7 @@ def remarks(read: Read) -> list[Notice]:
         sentence = f"its mark touches that of {other}: they are cut apart half way between their places"
         out.append(Notice(one, sentence, code="marks-touch"))
     unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
-    if unseen:
+    if unseen and view.seen:
         sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen"
         if view.unsure_mm > UNSURE_MM:
             sentence += f": places on the sheet may lie off by {view.unsure_mm:.2f} mm (standard deviation)"

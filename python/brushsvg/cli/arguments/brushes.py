@@ -89,6 +89,12 @@ def _add_photo(command, needed: bool) -> None:
         help="how long the printed bar is by a ruler, where the page was not printed at 100 %%",
     )
     command.add_argument(
+        "--dpi",
+        metavar="DPI",
+        type=values.resolution,
+        help="of a flatbed's scan of a sheet on which nothing is printed: the strokes themselves tell its place",
+    )
+    command.add_argument(
         "--picture", metavar="FILE", help="also draw what was read over the flattened photograph (.png)"
     )
 
@@ -99,7 +105,12 @@ def _check_calibrate(args) -> None:
     if args.photos:
         _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
         return
-    for flag, value in (("--chart", args.chart), ("--bar", args.bar), ("--picture", args.picture)):
+    for flag, value in (
+        ("--chart", args.chart),
+        ("--bar", args.bar),
+        ("--dpi", args.dpi),
+        ("--picture", args.picture),
+    ):
         if value is not None:
             args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")
     if len(args.inputs) > 1:
@@ -133,6 +144,8 @@ def _check_photos(args, photos: list[str], written) -> None:
         )
     if args.chart is None:
         args.parser.error("photographs need --chart, the chart.json that was written with the page")
+    if args.dpi is not None and (len(photos) > 1 or args.bar is not None):
+        args.parser.error("--dpi is for one scan, and without --bar: it shows no printed page")
     read = [*((path, PHOTOS) for path in photos), (args.chart, (".json",))]
     check_files(args, read, [*written, (args.picture, (".png",))])
 

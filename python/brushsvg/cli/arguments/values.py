@@ -104,6 +104,18 @@ def speed(text: str) -> float:
     return value
 
 
+def resolution(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text[:24]!r} is not a number of dots per inch; write for example 600"
+        ) from None
+    if not 10 <= value <= 20000:
+        raise argparse.ArgumentTypeError(f"{value:g} is outside the range [10, 20000]")
+    return value
+
+
 def point(text: str) -> tuple[float, float]:
     from ...units import length_mm
 

@@ -65,12 +65,13 @@ def _from_photo(read, name: str):
     import json
 
     from ..._core import write_plan
-    from ...calibration.chart.photograph import edge_mm, marks_of
-    from ...calibration.from_marks import calibrate_marks
+    from ...calibration.chart.photograph import edge_mm, expected, marks_of
+    from ...calibration.from_marks import calibrate_marks, options_for
     from ...calibration.mark_input import read_painted
     from ...calibration.mark_report import report, report_picture
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    made = calibrate_marks(painted, name, edge_mm=edge_mm(read), leave_out_strays=True)
+    options = options_for(expected(read))
+    made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture

@@ -1,0 +1,180 @@
+"""A flatbed's scan of strokes on plain paper: its place is found by the strokes themselves, however the sheet lies on
+the glass, or it is refused in a sentence that says what to do."""
+
+import re
+from functools import cache
+
+import cv2
+import numpy as np
+import painter
+import photograph
+import pytest
+import shapely
+from photograph import BLUE
+
+from brushsvg import _core, find_brush
+from brushsvg.calibration.chart.file import write_chart
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.chart.photograph import read_chart_photos, remarks, told
+from brushsvg.cli import main
+from brushsvg.errors import Error
+
+A5 = (148.0, 210.0)
+TRUTH = painter.TrueBrush(
+    10.0, np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005]), 1.6, 0.9
+)
+FAULTS = painter.Faults(noise=0.05, noise_length=0.5, displacement=0.2, placement=0.8, turn=0.008, height=0.1)
+DEPTHS = np.linspace(1, 10, 10)
+GLASS = (232.0, 240.0)  # mm
+
+
+@cache
+def a5():
+    return chart(find_brush("round-6"), A5, "few")
+
+
+@cache
+def marks():
+    strokes = [(one.stroke, np.array(one.poses_mm)) for one in a5().plan.passes]
+    painted = painter.paint(np.random.default_rng(7), TRUTH, strokes, FAULTS)
+    return {stroke: rings for stroke, _, rings in painted.marks}
+
+
+@cache
+def sheet(paper=0.85, colour=tuple(BLUE)):
+    made = photograph.Sheet(A5)
+    made.shown *= paper / 0.85
+    for rings in marks().values():
+        made.paint(rings, colour)
+    return made
+
+
+def placed(points_mm, turn_deg):
+    """Places of the sheet on the glass, both y up: the sheet's middle lies near the glass's."""
+    turn = np.radians(turn_deg)
+    to = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    return (np.asarray(points_mm) - np.array(A5) / 2) @ to + np.array(GLASS) / 2 + [2.0, -3.0]
+
+
+def scanned(dpi=300, turn_deg=0.0, **how):
+    """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid beside the sheet."""
+    made, fine = sheet(**how), dpi / 25.4
+    texels = np.array([(0, 0), (made.shown.shape[1], 0), (0, made.shown.shape[0])], float)
+    corners = placed([(0, A5[1]), A5, (0, 0)], turn_deg)
+    pixels = np.column_stack([corners[:, 0], GLASS[1] - corners[:, 1]]) * fine
+    to = cv2.getAffineTransform(np.float32(texels - 0.5), np.float32(pixels - 0.5))
+    size = tuple(round(side * fine) for side in GLASS)
+    blur = 0.4 * photograph.TEXELS / fine
+    light = cv2.warpAffine(cv2.GaussianBlur(made.shown, None, blur), to, size, borderValue=(0.8, 0.8, 0.8))
+    light += np.random.default_rng(3).normal(scale=0.006, size=light.shape)
+    light = np.clip(light, 0, 1)
+    coded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+    return np.round(coded * 255).astype(np.uint8)
+
+
+def read(pixels, dpi=300, made=None):
+    return read_chart_photos(made or a5(), [("scan.jpg", photograph.encoded(pixels))], dpi=dpi)
+
+
+def code_of(*how, **more):
+    with pytest.raises(Error) as refusal:
+        read(*how, **more)
+    assert refusal.value.file == "scan.jpg"
+    return refusal.value.code, refusal.value.sentence
+
+
+def shape(rings):
+    return shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in rings])
+
+
+def similarity_off(found) -> tuple[float, float, float]:
+    """Turn [degrees], scale and shift [mm] by which marks lie where they were painted, and how well, rms mm."""
+    both = [stroke for stroke in marks() if stroke in found.marks.outlines_mm]
+    was, seen = (
+        np.array([complex(*shape(rings[stroke]).centroid.coords[0]) for stroke in both])
+        for rings in (marks(), found.marks.outlines_mm)
+    )
+    (a, b), *_ = np.linalg.lstsq(np.column_stack([was, np.ones(len(was))]), seen, rcond=None)
+    left = float(np.sqrt(np.mean(np.abs(a * was + b - seen) ** 2)))
+    middle = complex(*A5) / 2
+    return np.degrees(np.angle(a)), abs(a), abs(a * middle + b - middle), left
+
+
+@pytest.mark.parametrize(
+    ("turn_deg", "dpi"), [(0, 300), (90, 300), (180, 300), (2, 300), (268, 150), (-1, 600)]
+)
+def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
+    """Rigidly: a turn and shift of the whole sheet are the fit's to find, as on any sheet."""
+    found = read(scanned(dpi, turn_deg), dpi)
+    assert not found.marks.missing and not found.marks.joined and not remarks(found)
+    turn, scale, shift, left = similarity_off(found)
+    assert abs(turn) < 0.6 and shift < 0.7, (turn, shift)
+    assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)
+    shown = float(re.search(r"turned by (-?\d+\.\d)", told(found))[1])
+    assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in told(found)
+
+
+def test_light_paint_on_dark_paper_is_read():
+    found = read(scanned(turn_deg=91, paper=0.04, colour=(0.8, 0.8, 0.75)))
+    assert not found.marks.missing and not found.marks.joined
+    assert similarity_off(found)[3] < 0.03
+    areas = [shape(found.marks.outlines_mm[each]).area / shape(marks()[each]).area for each in marks()]
+    assert np.ptp(areas) < 0.08 and abs(np.mean(areas) - 1) < 0.02, areas
+
+
+def test_a_mirrored_scan_is_refused():
+    assert code_of(np.ascontiguousarray(scanned()[:, ::-1]))[0] == "photo-mirrored"
+
+
+@pytest.mark.parametrize("dpi", [200, 290, 600])
+def test_another_resolution_is_refused(dpi):
+    code, sentence = code_of(scanned(300), dpi=dpi)
+    assert code == "scan-resolution" and "300" in sentence
+
+
+def test_a_scan_that_is_too_coarse_is_refused():
+    assert code_of(scanned(300), dpi=75)[0] == "photo-too-coarse"
+
+
+def test_another_chart_is_refused():
+    other = chart(find_brush("round-6"), A5, "few", deepest_mm=6.0)
+    assert code_of(scanned(), made=other)[0] in ("photo-paint-elsewhere", "scan-resolution")
+
+
+def test_an_empty_sheet_is_refused():
+    plain = np.full((2800, 2700, 3), 235, np.uint8)
+    plain[::7, ::5] = 232
+    assert code_of(plain)[0] == "photo-without-paint"
+
+
+def test_half_a_sheet_is_refused():
+    pixels = scanned()
+    pixels[: pixels.shape[0] // 2] = 230
+    assert code_of(pixels)[0] in ("photo-paint-elsewhere", "scan-resolution")
+
+
+def test_a_printed_page_is_read_without_resolution():
+    camera = photograph.Camera(size_px=(1200, 1700))
+    page = photograph.page(a5())
+    for rings in marks().values():
+        page.paint(rings, BLUE)
+    code, sentence = code_of(photograph.exposed(page, camera))
+    assert code == "scan-with-markers" and "--dpi" in sentence
+
+
+@pytest.mark.skipif(not hasattr(_core, "fit_marks"), reason="built without Ceres")
+def test_a_scan_gives_the_brush_back(tmp_path, capsys):
+    (tmp_path / "scan.png").write_bytes(cv2.imencode(".png", scanned(300, 92)[..., ::-1])[1].tobytes())
+    (tmp_path / "chart.json").write_text(write_chart(a5()))
+    photo, made, out = (str(tmp_path / name) for name in ("scan.png", "chart.json", "own.json"))
+    assert main(["calibrate", photo, "--chart", made, "--dpi", "300", "-o", out]) == 0
+    found = find_brush(out)
+    for law in ("lag", "half_width"):
+        off = [abs(getattr(found, law)(depth) / TRUTH.law(law)(depth) - 1) for depth in DEPTHS]
+        assert max(off) < 0.03, (law, off)
+    assert " 24 strokes " in capsys.readouterr().err
+    marks_file, again = str(tmp_path / "marks.json"), str(tmp_path / "again.json")
+    assert main(["scan", photo, "--chart", made, "--dpi", "300", "-o", marks_file]) == 0
+    assert main(["calibrate", marks_file, "-o", again]) == 0
+    off = [abs(find_brush(again).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]
+    assert max(off) < 0.03, off
