@@ -23,7 +23,7 @@ struct StrokeScore {
     /// left out; nothing left: none.
     std::optional<double> width_error_mm;
     double excess_turning;  ///< of the mark's outline beyond the wanted one's [full turns], see excess_turning()
-    WorstPlace worst;  ///< in a square half as wide as the stroke, at least 0.5 mm
+    WorstPlace worst;       ///< in a square half as wide as the stroke, at least 0.5 mm
 };
 
 StrokeScore stroke_score(const PassMarks& painted, const Stroke& wanted, const Brush& brush);
