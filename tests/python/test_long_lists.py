@@ -4,9 +4,13 @@ import itertools
 
 import numpy as np
 import pytest
+from diagnostics import agrees, refused
+from svg_text import read
 
 import brushsvg
 from brushsvg import _core
+from brushsvg.drawing.svg import path_data, shapes
+from brushsvg.strokes import path_objects
 
 SQUARE = np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])
 LONG = range(10**9)  # 8 GB, were it copied
@@ -106,3 +110,19 @@ def test_laws_answer_in_the_shape_they_are_asked():
     lag = brushsvg.find_brush("round-6").lag
     assert isinstance(lag(3), float) and lag([1, 2]).shape == (2,)
     assert lag(np.full((2, 3), 3.0)).tolist() == [[lag(3)] * 3] * 2
+
+
+@pytest.mark.parametrize(
+    "d", ["M0 0" + "h1" * 200, "M0 0l" + "1 1 " * 200, "M0 0a" + "3 3 0 0 1 1 1 " * 200, "M" + "1 1 " * 200]
+)
+def test_a_path_of_more_commands_than_any_drawing_has_is_read_up_to_there(monkeypatch, d):
+    """Forty megabytes of them took six gigabytes and more than a minute."""
+    for module in (path_data, shapes, path_objects):
+        monkeypatch.setattr(module, "MOST_COMMANDS", 100)
+    commands, error = path_data.parse_path(d)
+    assert len(commands) == 100
+    assert error is not None
+    (notice,) = read(f'<path id="p" d="{d}" stroke="black"/>').notices
+    assert notice.damaged and agrees(notice, "geometry-damaged 100", "p")
+    with refused("list-too-long 100"):
+        brushsvg.stroke_from_path(d, width_mm=2)

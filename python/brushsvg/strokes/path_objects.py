@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _core
-from ..drawing.svg.path_data import parse_path, snippet
+from ..drawing.svg.path_data import MOST_COMMANDS, parse_path, snippet
 from ..drawing.svg.path_to_cubics import trace
 from ..errors import Error, need
 
@@ -88,6 +88,12 @@ def _need_height(page_height_mm) -> None:
 
 def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:
     commands, damaged_at = parse_path(text)
+    if len(commands) >= MOST_COMMANDS:
+        raise Error(
+            f"the path data have {MOST_COMMANDS} commands or more: no stroke has",
+            where=id,
+            code="list-too-long",
+        )
     if damaged_at is not None:
         raise Error(
             f"the path data are damaged at {snippet(text, damaged_at)}", where=id, code="geometry-damaged"

@@ -15,6 +15,7 @@ NUMBER, SPACE, GAP, FLAG = (re.compile(text) for text in (_NUMBER, _SPACE, _GAP,
 _NEXT_NUMBER = re.compile(f"{_GAP}({_NUMBER})|")  # or nothing, where a list ends: no search beyond
 _ARC_ARGUMENTS = (NUMBER, NUMBER, NUMBER, FLAG, FLAG, NUMBER, NUMBER)
 
+MOST_COMMANDS = 1_000_000  # of one path: no lettering has a hundredth of it, and each takes 600 bytes
 _COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
 
 # Where the command's arguments begin in the text, its letter, its numbers.
@@ -36,10 +37,13 @@ def snippet(text: str, position: int, length: int = 16) -> str:
 
 
 def parse_path(d: str) -> tuple[list[Command], int | None]:
-    """Commands up to the first error, and where that is (None if there is none)."""
+    """Commands up to the first error, and where that is (None if there is none). One more than MOST_COMMANDS is an
+    error, too."""
     commands: list[Command] = []
     at = SPACE.match(d).end()
     while at < len(d):
+        if len(commands) >= MOST_COMMANDS:
+            return commands, at
         begin, letter = at, d[at]
         if letter not in "MmLlHhVvCcSsQqTtAaZz" or not (commands or letter in "Mm"):
             return commands, at
@@ -74,7 +78,7 @@ def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
         return [], [], at
     places, values, end = [at], [float(first[0])], first.end()
     for found in _NEXT_NUMBER.finditer(text, end):
-        if found[1] is None:
+        if found[1] is None or len(values) > 6 * MOST_COMMANDS:  # six numbers make a C
             break
         places.append(found.start(1))
         values.append(float(found[1]))
@@ -89,6 +93,8 @@ def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> 
     count = _COUNT[letter.upper()]
     for first in range(0, len(values) - count + 1, count):
         place = places[first] if first else begin
+        if len(commands) >= MOST_COMMANDS:
+            return place, place
         commands.append((place, letter, tuple(values[first : first + count])))
         if letter in "Mm":
             letter = "L" if letter == "M" else "l"
@@ -108,4 +114,6 @@ def _arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> 
         commands.append((begin, letter, tuple(values)))
         if not NUMBER.match(d, at):
             return end, None
+        if len(commands) >= MOST_COMMANDS:
+            return at, at
         begin = at

@@ -6,7 +6,7 @@ import math
 
 from ...errors import Error
 from ...units import FONT_PX, length_px
-from .path_data import Command, parse_path, parse_points, snippet
+from .path_data import MOST_COMMANDS, Command, parse_path, parse_points, snippet
 
 
 class DamageError(Exception):
@@ -52,6 +52,8 @@ class _Lengths:
 
 
 def _damage_at(name: str, text: str, error: int, commands: list[Command]) -> DamageError:
+    if len(commands) >= MOST_COMMANDS:
+        return DamageError(f"{name} has more than {MOST_COMMANDS} commands; read up to there", commands)
     found = f"found {snippet(text, error)}; read up to there"
     return DamageError(f"{name} is damaged at character {error + 1}: {found}", commands)
 
