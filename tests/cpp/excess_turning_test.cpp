@@ -42,7 +42,7 @@ TEST_CASE("a thorn turns there and back, a wave does so each time, and what is f
         (4.0 * 3.14159265358979324 / 2.0 + 2.0 * beside + std::abs(3.14159265358979324 - std::abs(peak)));
     CHECK(excess_turning(thorn, square) == doctest::Approx(all / (2.0 * 3.14159265358979324) - 1.0).epsilon(1e-6));
     CHECK(excess_turning({wavy(0.5, 20)}, {wavy(0.0, 0)}) > 2.0);
-    CHECK(std::abs(excess_turning({wavy(0.02, 20)}, {wavy(0.0, 0)})) < 0.01);
+    CHECK(std::abs(excess_turning({wavy(0.04, 40)}, {wavy(0.0, 0)})) < 0.01);
 }
 
 TEST_CASE("a hole counts like an outline") {
