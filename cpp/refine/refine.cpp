@@ -37,8 +37,8 @@ constexpr double kGood = 0.93;
 constexpr double kChords = 0.2, kThinned = 0.5;
 constexpr double kRingTolerance = 0.01;  // as in the report
 // Of overlap, what a full turn of the outline beyond the wanted one is worth: curls and thorns cover more, and the eye
-// sees them first. Without, characters overlap by 0.004 more and turn by twice as much.
-constexpr double kCalm = 0.15;
+// sees them first. Without, characters overlap by 0.005 more and turn by twice as much.
+constexpr double kCalm = 0.25;
 
 double mean_half_width(const Stroke& stroke, const Brush& brush) {
     if (!brush.width_follows_depth()) return brush.half_width(brush.paint_depth_mm);

@@ -32,7 +32,7 @@ struct RefinedPass {
 /// deep it is pressed, where it starts and ends; where that is not good, again from a beginning that comes in from the
 /// side. The patch is never pushed, so q = P + r(depth) u holds all along. The
 /// plan is simulated, and kept only where its mark overlaps better by the report's own measure, stays in bounds, and
-/// does not pay for it with an outline that turns more: a full turn is worth 0.15 of overlap. Its miss is that from the
+/// does not pay for it with an outline that turns more: a full turn is worth 0.25 of overlap. Its miss is that from the
 /// drawn middle line, which it leaves on purpose. Throws Error as compensate() does.
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});
 

@@ -9,6 +9,7 @@
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/error.hpp"
+#include "brushsvg/excess_turning.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/mark_overlap.hpp"
@@ -397,6 +398,9 @@ constexpr double kLookedAt = 3.0, kMade = 6.0, kPixels = 8.0;
 /// What hiding must win, in squares of the half width: of the 1.5 that a pointed beginning lacks, what one has to look
 /// for.
 constexpr double kWorthHiding = 0.2;
+/// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
+/// the thin ends of drops.
+constexpr double kCalm = 1.5;
 
 /// The pass up to where its path is so long, the brush left on the paper.
 Pass beginning_of(const Pass& pass, double length_mm) {
@@ -423,12 +427,21 @@ Beginning best_beginning(const Stroke& stroke, const Brush& brush, const Line& l
     const double side = 2.0 * kLookedAt * half, made = kMade * half + 4.0 * brush.lag(depth);
     const Window window{at.x() - 0.5 * side, at.y() - 0.5 * side, side, side};
     const Coverage wanted = wanted_coverage({stroke}, window, kPixels / half);
-    const auto differs = [&](const Pass& pass) {
+    const auto mark = [&](const Pass& pass) {
         Marks marks;
         marks.passes = {simulate(beginning_of(pass, made), brush, 0.05 * half)};
+        return marks;
+    };
+    const auto differs = [&](const Marks& marks) {
         return (coverage(marks, brush, window, kPixels / half) - wanted).cwiseAbs().sum() / (kPixels * kPixels);
     };
-    return differs(hidden) < differs(exposed) - kWorthHiding ? Beginning::hidden : Beginning::exposed;
+    const Marks pointed = mark(exposed), round = mark(hidden);
+    const double won = differs(pointed) - differs(round) - kWorthHiding;
+    if (!(won > 0.0)) return Beginning::exposed;
+    const double turned = excess_turning(outline(round.passes[0], brush), outline(pointed.passes[0], brush));
+    double greatest = half;
+    for (const auto& knot : stroke.half_width) greatest = std::max(greatest, knot.half_width_mm);
+    return won * half * half > kCalm * turned * greatest * greatest ? Beginning::hidden : Beginning::exposed;
 }
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.

@@ -88,10 +88,7 @@ def overlap(strokes, shape, brush) -> float:
 @pytest.mark.parametrize(
     ("d", "is_filled"),
     [
-        *(
-            (f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10)
-            for wide_mm in (8.2, 8.6, 9.0, 9.6, 10.4, 12.0, 24.0)
-        ),
+        *((f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10) for wide_mm in (8.2, 8.6, 9.0, 10.4, 12.0, 24.0)),
         ("M45.3 30a4.7 4.7 0 1 0 9.4 0a4.7 4.7 0 1 0 -9.4 0Z", True),
     ],
 )
