@@ -136,6 +136,10 @@ def test_a_scan_that_is_too_coarse_is_refused():
     assert code_of(scanned(300), dpi=75)[0] == "photo-too-coarse"
 
 
+def test_a_picture_of_no_sheet_is_refused():
+    assert code_of(np.full((1, 1, 3), 255, np.uint8))[0] == "scan-resolution"
+
+
 def test_another_chart_is_refused():
     other = chart(find_brush("round-6"), A5, "few", deepest_mm=6.0)
     assert code_of(scanned(), made=other)[0] in ("photo-paint-elsewhere", "scan-resolution")

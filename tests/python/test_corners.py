@@ -8,6 +8,7 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.__main__ import main
+from brushsvg.strokes import corners
 from brushsvg.strokes.corners import lifted_at_corners
 from brushsvg.strokes.extraction import strokes
 
@@ -120,3 +121,19 @@ def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
     assert main(["convert", str(drawing), str(program), "--lenient", *flags]) == 0
     assert f"{count} stroke" in capsys.readouterr().err
     assert main(["check", str(program), str(drawing), *(flags if flags[:1] == ["--corners"] else [])]) == 0
+
+
+def test_a_zigzag_finer_than_it_is_wide_is_not_lifted_nor_tried(brush, monkeypatch):
+    """Five hundred corners took half a minute."""
+    zigzag = "M10 30" + "".join(f"L{10.4 + 0.4 * k:.1f} {30 + 3 * (k % 2)}" for k in range(60))
+    (made,) = of(zigzag)
+    monkeypatch.setattr(corners, "_is_better_lifted", None)
+    assert lifted_at_corners([made], brush) == [made]
+
+
+def test_strokes_without_width_or_length_stay(brush):
+    (made,) = of(APEX)
+    made.half_width = []
+    assert lifted_at_corners([made], brush) == [made]
+    still = _core.Stroke("s", np.full((3, 8), 5.0), half_width=[(0.0, 1.0)])
+    assert lifted_at_corners([still], brush) == [still]

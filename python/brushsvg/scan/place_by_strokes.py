@@ -31,6 +31,7 @@ SCALE = (
 FOUND = 0.6  # share of the strokes whose marks must be in their rooms
 WITHIN = 0.7  # of a mark, in its room
 SPECK_MM2 = 2.0
+LEAST_MM = 20.0  # of a sheet
 
 
 def find_scan_view(
@@ -45,6 +46,13 @@ def find_scan_view(
             f"{dpi:g} dpi are {fine:.1f} pixels per mm, it takes {LEAST_PX_PER_MM:g}: scan at 300 dpi or more",
             value=dpi,
             code="photo-too-coarse",
+        )
+    if min(pixels.shape[:2]) < fine * LEAST_MM:
+        height, width = (each / fine for each in pixels.shape[:2])
+        raise Error(
+            f"at {dpi:g} dpi the picture is {width:.2g} x {height:.2g} mm large: no sheet is",
+            value=dpi,
+            code="scan-resolution",
         )
     if len({number for number, _ in detected(pixels, dictionary)}) >= FEWEST:
         raise Error(
@@ -109,7 +117,7 @@ def _refuse_another_size(paint: np.ndarray, rooms: list[Room], dpi: float) -> No
 def _usual(dpi: float) -> str:
     """A resolution that scanners have, where one is near."""
     near = min((150, 200, 240, 300, 400, 600, 800, 1200, 2400), key=lambda each: abs(math.log(each / dpi)))
-    return f"{near}" if abs(math.log(near / dpi)) < 0.1 else f"about {dpi:.0f}"
+    return f"{near}" if abs(math.log(near / dpi)) < 0.02 else f"about {dpi:.0f}"
 
 
 def _along_ways(paint: np.ndarray, ways_mm: list[np.ndarray]) -> tuple[float, complex]:

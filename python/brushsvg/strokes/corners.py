@@ -83,13 +83,22 @@ def lifted_at_corners(strokes: list, brush) -> list:
 
 
 def _parts(stroke, brush) -> list:
-    if stroke.wanted_mm or len(stroke.middle_mm) < 2:
+    if stroke.wanted_mm or len(stroke.middle_mm) < 2 or not stroke.half_width:
         return [stroke]
     line = _line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
+    if not len(line.cubics):
+        return [stroke]
     sharp = [k for k in range(1, len(line.cubics)) if line.turn_rad(k) > _SHARP_RAD]
     ends = [0, *sharp, len(line.cubics)]
-    neighbours = zip(ends, ends[1:], ends[2:], strict=False)
-    better = [at for before, at, after in neighbours if _is_better_lifted(line, before, at, after, brush)]
+    at_mm = line.at * knots(line.cubics)[:, -1].sum()
+    width_mm = 2 * max(half for _, half in line.half_width)
+    neighbours = [
+        (before, at, after)
+        for before, at, after in zip(ends, ends[1:], ends[2:], strict=False)
+        if min(at_mm[at] - at_mm[before], at_mm[after] - at_mm[at])
+        > width_mm  # else its ends hide the corner
+    ]
+    better = [each[1] for each in neighbours if _is_better_lifted(line, *each, brush)]
     if not better:
         return [stroke]
     least_rad = min(map(line.turn_rad, better)) - _LIKE_RAD
