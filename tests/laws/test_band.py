@@ -50,7 +50,7 @@ def brush():
 
 @pytest.fixture(scope="module")
 def painted(brush):
-    work = preparation.prepare("examples/vincent.svg", preparation.Options(brush=brush))
+    work = preparation.prepare("examples/vincent.svg", preparation.Options(brush=brush, start="exposed"))
     marks = prediction.predict(work)
     rng = np.random.default_rng(9)
     mean = np.concatenate([getattr(brush, law).coefficients for law in LAWS])

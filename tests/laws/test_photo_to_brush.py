@@ -104,7 +104,7 @@ def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, ca
         found, expected = (np.array(re.findall(r"-?\d+\.\d", place), float) for place in places)
         assert found.shape == expected.shape == (4,)
         assert 1.5 < np.abs(found - expected).max() < 3.5, stroke
-    assert re.search(r"^left out.*: straight-3, arc-3", report, re.MULTILINE), report
+    assert re.search(r"^note: left out.*: straight-3, arc-3", report, re.MULTILINE), report
     off = [abs(find_brush(out).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]
     assert max(off) < 0.03, off
 

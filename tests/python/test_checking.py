@@ -751,7 +751,7 @@ CHANGED = {
         (edited("(?m)^G3 ", "G2 "), "path-elsewhere"),
     ],
     ".script": [
-        (edited(r"(?m)^  set_tcp.*\n", ""), 'program-changed "would write \'set_tcp"'),
+        (edited(r"(?m)^  set_tcp.*\n", ""), 'program-changed "lacks the line \'set_"'),
         (edited(r"paper = p\[-0\.15", "paper = p[-0.25"), 'program-changed "would write \'paper = p"'),
         (edited("3.1415927", "0.0000000"), 'program-changed "would write \'return pose_trans"'),
         (edited("a=0.5000", "a=9.5000"), "program-changed"),
