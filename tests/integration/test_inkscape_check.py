@@ -14,7 +14,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 BODY = """<g id="layer" transform="translate(5,2)"><g id="turned" transform="rotate(-10) scale(1.1)">
  <path id="wide" d="M 10,40 H 60" style="fill:none;stroke:#102030;stroke-width:20"/></g>
- <path id="sharp" d="M 20,45 L 80,45 L 22,49" style="fill:none;stroke:#0000ff;stroke-width:3"/>
+ <path id="sharp" d="M 20,45 C 110,45 110,48 22,49" style="fill:none;stroke:#0000ff;stroke-width:3"/>
  <path id="sound" d="M 20,30 H 90" style="fill:none;stroke:#a00000;stroke-width:3"/></g>"""
 
 

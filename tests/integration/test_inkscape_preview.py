@@ -19,7 +19,7 @@ BODY = """<g inkscape:groupmode="layer" inkscape:label="Ink" id="layer1" transfo
    <path id="wave" d="M 10,40 C 20,0 40,0 50,20 S 80,40 90,20" style="fill:none;stroke:#102030;stroke-width:4"/></g>
   <path id="bar" d="M 20,60 H 90" style="fill:none;stroke:#a00000;stroke-width:4"/></g>
  <g inkscape:groupmode="layer" inkscape:label="More" id="layer2">
-  <path id="sharp" d="M 20,90 L 80,90 L 22,95" style="fill:none;stroke:#0000ff;stroke-width:6"/>
+  <path id="sharp" d="M 20,90 C 110,90 110,93 22,95" style="fill:none;stroke:#0000ff;stroke-width:6"/>
   <use id="copy" href="#turned" x="8" y="52"/><text id="word" x="20" y="20">text</text></g>"""
 HEADS = {
     "mm": 'width="150mm" height="130mm" viewBox="0 0 150 130"',
