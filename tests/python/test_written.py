@@ -10,8 +10,10 @@ from programs import LANGUAGES, call, whole
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
+from brushsvg.errors import Error
 from brushsvg.machine.cell import Paper, robot_from_paper
 from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.motion import duration_s
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import unchecked_program
 from brushsvg.machine.rounding import as_written
@@ -85,6 +87,14 @@ def test_what_goes_up_almost_straight_is_as_fast_as_what_is_written(name, rotati
     assert found_by_check(poses, [], cell)[1] is None
 
 
+@pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4])
+@pytest.mark.parametrize("x", [40.0, 40.0004])
+def test_a_servo_stays_where_less_than_half_a_unit_is_gone_beside_its_lift(x, sideways_mm):
+    """3e-4 mm from 40.0004 to 40.0007 are a unit when rounded: nobody writes it, and nobody took it for a lift."""
+    poses = [DOWN, (20, 20, -2), (x, 25, -2), (x + sideways_mm, 25, -1), (60, 50, -1), UP]
+    assert found_by_check(poses, [], cell_of("grbl-servo", 3))[1] is None
+
+
 @pytest.mark.parametrize("turn_deg", np.linspace(99.99, 100.01, 9))
 def test_a_robot_stops_where_the_corner_that_is_written_is_sharp(turn_deg):
     angle = np.radians(turn_deg)
@@ -100,6 +110,82 @@ def test_places_are_those_of_the_text_in_the_frame_that_it_has():
     leaning = as_written(a_pass, cell, robot_from_paper(cell))
     assert leaning.poses_mm == pytest.approx(np.array(a_pass.poses_mm), abs=1e-3)
     assert leaning.sideways_mm > upright.sideways_mm
+
+
+# a way that is 40 times as steep as long, as a long lag ends a dab: of its parts each is two units long
+STEEP = [(49.4, 50, 0), (57.4, 50, -3.4833148), (57.310625, 50, -1.5511636), (57.35, 50, 0)]
+
+
+def test_what_is_steep_and_slow_on_paper_that_lies_level_is_not_straight_down():
+    assert found_by_check(STEEP, [], find_cell("grbl-servo"))[1] is None
+
+
+HALF_TURN = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70, 110, 12), (60, 40, -2), UP]
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [find_cell("grbl-servo"), replace(find_cell("jaka-zu3"), paper=Paper((0.0, -400.0, 20.0), (1, -2, 12)))],
+    ids=["servo", "leaning"],
+)
+def test_circles_that_are_run_as_lines_take_no_rest(cell):
+    took_s = [
+        duration_s(
+            unchecked_program(
+                whole(
+                    _core.Plan("", "", SHEET_MM, [_core.Pass("one", np.array(HALF_TURN), 20.0, arcs=arcs)])
+                ),
+                BRUSH,
+                cell,
+            )
+        )
+        for arcs in ([], [_core.Arc(2, 13, (50, 40), 1)])
+    ]
+    assert took_s[0] == took_s[1]
+    assert found_by_check(HALF_TURN, [_core.Arc(2, 13, (50, 40), 1)], cell)[1] is None
+
+
+@pytest.mark.parametrize("decimals", [3, 4, 6])
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_no_move_is_shorter_than_what_anything_shows(name, decimals):
+    chance = np.random.default_rng(decimals)
+    steps = np.column_stack([chance.uniform(-1e-3, 1e-3, (40, 2)), np.zeros(40)])
+    poses = [DOWN, (30, 20, -2), *np.add(np.cumsum(steps, axis=0), (45, 22, -2)), (60, 40, -2), UP]
+    cell = cell_of(name, decimals)
+    _, said = found_by_check(poses, [], cell)
+    assert said is None
+    written = as_written(_core.Pass("one", np.array(poses), 20.0), cell, robot_from_paper(cell))
+    assert np.linalg.norm(np.diff(written.poses_mm, axis=0), axis=1).min() > 2e-3
+    assert {0, len(poses) - 1} < set(written.kept.tolist())
+
+
+def test_no_circle_begins_or_ends_beside_one_by_less_than_a_move():
+    first, last = arc((50, 40), 14, -70, -40, 4), arc((50, 40), 14, -39.998, -10, 4)
+    poses = [DOWN, (30, 20, -2), *first, *last, (60, 40, -2), UP]
+    arcs = [_core.Arc(2, 5, (50, 40), 1), _core.Arc(6, 9, (50, 40), 1)]
+    text, said = found_by_check(poses, arcs, cell_of("ur5e", 4))
+    assert said is None and text.count("movec") == 1
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("degrees", [359.999, 360.0])
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
+def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
+    """Rounded, its end could lie on either side of its beginning: then it would be run all round, or not at all."""
+    cell = cell_of(name, 3, paper=Paper((0.3, -400.1, 20.0), (0, 0, 97.57)))
+    on = arc((50, 40), 14, -70, -70 + turn * degrees, 24)
+    poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
+    text, said = found_by_check(poses, [_core.Arc(2, 25, (50, 40), turn)], cell)
+    assert said is None
+    word = {"ur5e": "movec", "jaka-zu3": "movc"}.get(name, "G3 " if turn > 0 else "G2 ")
+    assert sum(line.strip().startswith(word) for line in text.splitlines()) == 2
+
+
+def test_a_whole_circle_in_one_line_is_not_read():
+    text = "G21 G90 G94 G17 G40 G80\nG0 Z5\nG1 X10 Y10 F600\nG2 X10 Y10 I5 J0\nM2\n"
+    with pytest.raises(Error, match="ends where it began") as refused:
+        read_program(text, ".gcode", find_cell("grbl-3axis"))
+    assert refused.value.code == "line-incomplete"
 
 
 def drawing(chance: random.Random) -> str:

@@ -205,6 +205,24 @@ def value_mm(cell: Cell) -> float:
     return float(np.abs(steps[:, 0] / steps[:, 1]).max())
 
 
+def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
+    """(n,) which steps (n, 3) are a servo's lift alone: what they go beside it rounding need not leave."""
+    return np.linalg.norm(steps_mm[:, :2], axis=1) < 0.5 * 10.0**-cell.decimals
+
+
+def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
+    """(n,) how many parts a servo's straight ways (n, 3) have: one for each step of height, as long as rounding leaves
+    something of each."""
+    steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
+    lengths_mm = np.linalg.norm(ways_mm[:, :2], axis=1)
+    return np.clip(lengths_mm // (PART_UNITS * 10.0**-cell.decimals), 1, np.maximum(1, steps)).astype(int)
+
+
+# the least length of a servo's part, in units of the last decimal: one along x or y however it lies, and a bit, since
+# at 1 two ends may yet be rounded alike
+PART_UNITS = 1.01 * 2**0.5
+
+
 def entries(table) -> dict[str, Entry]:
     """The keys that a table of a cell file may have, with what each means."""
     return {item.name: item.metadata["entry"] for item in fields(table) if "entry" in item.metadata}

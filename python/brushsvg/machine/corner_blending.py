@@ -82,9 +82,9 @@ def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray
 
 
 def on_the_spot(steps_mm: np.ndarray, sideways_mm: float = ON_THE_SPOT_MM) -> np.ndarray:
-    """(n,) which steps (n, 3) go straight up or down: less than so far sideways."""
+    """(n,) which steps (n, 3) go straight up or down: less than so far sideways, and farther than that."""
     sideways = np.abs(steps_mm[:, :2]).max(axis=1, initial=0.0)
-    return (sideways < sideways_mm) & (np.abs(steps_mm[:, 2]) > ON_THE_SPOT_MM)
+    return (sideways < sideways_mm) & (np.abs(steps_mm[:, 2]) > sideways_mm)
 
 
 def blended(poses_mm: np.ndarray, radii_mm: np.ndarray, arcs=()) -> tuple[np.ndarray, ...]:

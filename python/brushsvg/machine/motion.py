@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry import polylines
 from .cell import Cell
-from .frames import is_upright, moved
+from .frames import moved
 
 SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
 
@@ -90,7 +90,7 @@ def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
 
 
 def in_robot_frame(program: Program) -> Program:
-    """The same program with points in the robot's own frame; arcs on paper that leans become lines."""
+    """The same program with points in the robot's own frame; there are no arcs on paper that leans."""
     frame = program.robot_from_frame
     if np.array_equal(frame, np.eye(4)):
         return program
@@ -108,7 +108,7 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
     arc = step.arc
     if arc is not None:
         centre = moved(frame, np.array([[*arc.centre_mm, 0.0]]))[0]
-        arc = Arc((float(centre[0]), float(centre[1])), arc.turn) if is_upright(frame) else None
+        arc = Arc((float(centre[0]), float(centre[1])), arc.turn)
     return replace(step, points_mm=moved(frame, step.points_mm), arc=arc)
 
 

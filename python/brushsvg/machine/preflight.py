@@ -95,10 +95,10 @@ def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float
     # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
     rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
-    told = [_with_circles_that_are_told(a_pass, cell) for a_pass in loads.loads]
-    for first, last in _groups(loads.loads):
+    told = [_as_told(a_pass, cell) for a_pass in loads.loads]
+    for first, last in _groups(told):
         runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
-        pairs = zip(loads.loads[first:last], runs, strict=True)
+        pairs = zip(told[first:last], runs, strict=True)
         cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
         both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
         traces = _core.simulate(
@@ -118,11 +118,11 @@ def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float
 ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
 
 
-def _with_circles_that_are_told(a_pass, cell: Cell):
-    if not a_pass.arcs:
-        return a_pass
-    arcs = as_written(a_pass, cell, robot_from_paper(cell)).arcs
-    return _core.Pass(a_pass.stroke, a_pass.poses_mm, a_pass.speed_mm_s, arcs=arcs)
+def _as_told(a_pass, cell: Cell):
+    """With the poses and circles that a program has, not rounded."""
+    written = as_written(a_pass, cell, robot_from_paper(cell))
+    poses = np.asarray(a_pass.poses_mm)[written.kept]
+    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s, arcs=written.arcs)
 
 
 def _groups(passes) -> Iterator[tuple[int, int]]:

@@ -164,7 +164,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)[written.kept]
     if len(poses) == 0:
         return ()
     start, end = poses[0], poses[-1]

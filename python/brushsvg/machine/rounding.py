@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import dist
 
 import numpy as np
 
-from .cell import Cell
+from .. import _core
+from .cell import Cell, servo_stands
 from .corner_blending import ON_THE_SPOT_MM
 from .frames import is_upright, moved
 from .motion import via
@@ -15,13 +18,17 @@ from .posts import POSTS
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
 # turn the other way, or all round, or lie on one line
 CIRCLE_UNITS = 10
+# no move is shorter, nor than two units of the last decimal: rounded, it would go anywhere or nowhere, and a robot that
+# blends would stop for it; longer ones are seen where a tiny brush turns
+LEAST_MM = 2e-3
 
 
 @dataclass(frozen=True)
 class Written:
-    """poses_mm: (n, 3) as a program has them, in the paper's frame; arcs: those that it tells as circles; sideways_mm:
-    steps of less than that are straight up and down."""
+    """kept: (k,) which poses of a pass a program has; poses_mm: (k, 3) as it has them, in the paper's frame; arcs: what
+    of these it tells as circles; sideways_mm: steps of less than that are straight up and down."""
 
+    kept: np.ndarray
     poses_mm: np.ndarray
     arcs: list
     sideways_mm: float
@@ -31,30 +38,84 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's."""
     post = POSTS.get(cell.language)
     unit_mm = 10.0**-cell.decimals
-    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    meant = poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    circles_by = post.circles_by if post else "centre"
     sideways_mm = ON_THE_SPOT_MM
     if post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)):
         poses = moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
-        if not is_upright(frame):  # there up and down are only so up to rounding
-            sideways_mm = 2 * unit_mm
+        if not is_upright(frame):
+            sideways_mm = 2 * unit_mm  # up and down are only so up to rounding
+            circles_by = ""  # and circles lie in no plane that the robot knows
     else:
         poses = np.round(poses, cell.decimals)
-    is_told = _told_by_pose if post and post.circles_by_pose else _told_by_centre
-    arcs = [
-        arc for arc in a_pass.arcs if is_told(poses[arc.first : arc.last + 1, :2], CIRCLE_UNITS * unit_mm)
-    ]
-    return Written(poses, arcs, sideways_mm)
+    # of rounded places the square of a distance is whole, in units: none is as long as that by a hair
+    least_mm = unit_mm * (max(2.0, round(LEAST_MM / unit_mm)) ** 2 + 0.5) ** 0.5
+    arcs = list(_told(a_pass.arcs, poses, circles_by, unit_mm, least_mm)) if circles_by else []
+    kept = _kept(poses, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
+    if len(kept) < len(poses):
+        arcs = [
+            _core.Arc(*np.searchsorted(kept, (arc.first, arc.last)).tolist(), arc.centre_mm, arc.direction)
+            for arc in arcs
+        ]
+    poses = poses[kept]
+    if cell.servo and len(kept):  # its lift alone names no place: it stays where the last way ended
+        goes = np.r_[True, ~servo_stands(np.diff(meant[kept], axis=0), cell)]
+        poses[:, :2] = poses[np.maximum.accumulate(np.where(goes, np.arange(len(poses)), 0)), :2]
+    return Written(kept, poses, arcs, sideways_mm)
 
 
-def _told_by_centre(on: np.ndarray, least_mm: float) -> bool:
-    return bool(np.linalg.norm(on - on[0], axis=1).max() >= least_mm)
+def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> Iterator:
+    """The arcs that are told as circles: those that come back to where they began in two halves, and none where no more
+    than a tiny move would lead to it or away from it."""
+
+    def is_tiny(first: int, last: int) -> bool:
+        return first != last and dist(poses[first], poses[last]) < least_mm
+
+    done = 0
+    for arc in arcs:
+        for half in _halves(arc, poses, CIRCLE_UNITS * unit_mm):
+            if not _is_told(poses[half.first : half.last + 1, :2], circles_by, CIRCLE_UNITS * unit_mm):
+                continue
+            if is_tiny(done, half.first) or is_tiny(half.last, len(poses) - 1):
+                continue
+            yield half
+            done = half.last
 
 
-def _told_by_pose(on: np.ndarray, least_mm: float) -> bool:
-    """Whether first pose, via and last one are the corners of a triangle that is nowhere flatter."""
+def _halves(arc, poses: np.ndarray, least_mm: float) -> list:
+    """A circle whose end is its beginning, or rounded may be, would be none at all."""
+    if arc.last - arc.first < 2 or dist(poses[arc.first, :2], poses[arc.last, :2]) >= least_mm:
+        return [arc]
+    middle = (arc.first + arc.last) // 2
+    ends = ((arc.first, middle), (middle, arc.last))
+    return [_core.Arc(*each, arc.centre_mm, arc.direction) for each in ends]
+
+
+def _is_told(on: np.ndarray, circles_by: str, least_mm: float) -> bool:
+    """Whether points (n, 2) of a circle tell it: its ends are apart; by a pose on its way, the three are the corners of
+    a triangle that is nowhere flatter."""
+    if circles_by == "centre":
+        return dist(on[0], on[-1]) >= least_mm
     if len(on) < 3:
         return False
     a, b, c = on[0], via(on[1:]), on[-1]
     (x, y), (u, v) = b - a, c - a
     longest_mm = max(np.hypot(x, y), np.hypot(u, v), np.hypot(u - x, v - y))
     return bool(abs(x * v - y * u) > least_mm * longest_mm)
+
+
+def _kept(poses: np.ndarray, ends: set[int], least_mm: float) -> np.ndarray:
+    """Which poses are at least so far from the one before: first, last and the ends of circles stay, others give way to
+    them."""
+    if (np.linalg.norm(np.diff(poses, axis=0), axis=1) >= least_mm).all():
+        return np.arange(len(poses))
+    places, stay = poses.tolist(), ends | {0, len(poses) - 1}
+    kept = [0]
+    for row in range(1, len(places)):
+        if row in stay:
+            while kept[-1] not in stay and dist(places[kept[-1]], places[row]) < least_mm:
+                kept.pop()
+            kept.append(row)
+        elif dist(places[kept[-1]], places[row]) >= least_mm:
+            kept.append(row)
+    return np.array(kept)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cell import Cell
+from .cell import Cell, servo_parts, servo_stands
 from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
 
@@ -106,8 +106,7 @@ def _one_by_one(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iter
 
 
 def _ways_of(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
-    """From where the tool is, or else from the first place on. A circle is also looked at along its chords, which some
-    languages run instead."""
+    """From where the tool is, or else from the first place on. A circle is also looked at along its chords."""
     paths = [move.points_mm for move in moves]
     points = np.vstack(paths if here is None else [here, *paths])
     ends = np.cumsum([len(path) for path in paths]) + (here is not None)
@@ -169,16 +168,16 @@ def _heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
 
 
 def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:
-    """A notice for a way that a servo could not go: its values change along with moves beside the lift, whose parts
-    must be left by the rounding, and whose feed must not be below grbl's least."""
-    unit_mm, steps = 10.0**-cell.decimals, np.diff(poses, axis=0)
+    """A notice for a way that a servo could not go: its values change along with moves beside the lift, by no more than
+    two steps with any part that the rounding leaves, and whose feed must not be below grbl's least."""
+    steps = np.diff(poses, axis=0)
     flat_mm, way_mm = np.linalg.norm(steps[:, :2], axis=1), np.linalg.norm(steps, axis=1)
-    goes = np.abs(steps[:, :2]).max(axis=1, initial=0.0) >= 0.5 * unit_mm  # else it is the lift alone
-    parts = np.ceil(np.abs(steps[:, 2]) / cell.servo.step_mm - 1e-9)
-    is_steep = (parts > 1) & (
-        (flat_mm < parts * unit_mm) | (60 * fastest_mm_s * flat_mm < LEAST_MM_MIN * way_mm)
+    rises_mm = np.abs(steps[:, 2])
+    is_steep = (rises_mm > cell.servo.step_mm + 1e-9) & (
+        (rises_mm > 2 * cell.servo.step_mm * servo_parts(steps, cell))
+        | (60 * fastest_mm_s * flat_mm < LEAST_MM_MIN * way_mm)
     )
-    for k in np.flatnonzero(goes & is_steep)[:1]:
+    for k in np.flatnonzero(is_steep & ~servo_stands(steps, cell))[:1]:
         x, y, _ = poses[k]
         sentence = (
             f"near x {x:.1f}, y {y:.1f} mm the height changes by {abs(steps[k, 2]):.2f} mm over {flat_mm[k]:.2g} mm: "

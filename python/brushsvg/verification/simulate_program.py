@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cell import Blending, Cell, robot_from_paper, value_mm
 from ..machine.corner_blending import blend_radii
-from ..machine.frames import moved
+from ..machine.frames import is_upright, moved
 from ..machine.move_extents import ways
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
@@ -58,6 +58,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     problems: Problems = []
     meant, cut, lines, waits_s = [], [], [], []
     slack = slack_mm(cell)
+    leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
         problems += [replace(each, where=name) for each in said]
@@ -72,7 +73,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             sentence = f"line {line}: the brush touches the paper outside of any stroke"
             problems.append(Notice(name, sentence, code="touches-outside-stroke"))
         for on in found if stroke else ():
-            poses, radii, speed, arcs = _pass(section, track, on, cell)
+            poses, radii, speed, arcs = _pass(section, track, on, cell, leans)
             deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
             just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
             poses[just_over, 2] = -deepest_mm
@@ -253,8 +254,8 @@ def _touches(track: Track, slack: float) -> Iterator[slice]:
         yield slice(int(first), int(last))
 
 
-def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
-    """Poses, blends, speed and arcs of one touch."""
+def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool) -> tuple:
+    """Poses, blends, speed and arcs of one touch. leans: the paper, in the frame that the places are told in."""
     poses = track.points[on].copy()
     poses[:, 2] = np.minimum(poses[:, 2], 0.0)
     owner = track.step[on]
@@ -265,11 +266,11 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell) -> tuple:
     # a stroke is landed no faster than it is painted
     landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
     speed = max(speeds, default=0.0)
-    # on paper that leans straight down is straight down only up to rounding: the slower feed tells what was meant
-    sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
-    slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
-    for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
-        poses[k + 1, :2] = poses[k, :2]
+    if leans:  # straight down is so only up to rounding: the slower feed tells what was meant
+        sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
+        slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
+        for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
+            poses[k + 1, :2] = poses[k, :2]
     arcs = _arcs(owner, track.centres)
     for arc in arcs:  # at one depth, but for what is rounding
         on_arc = poses[arc.first : arc.last + 1, 2]

@@ -13,14 +13,14 @@ class Post(NamedTuple):
     """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
 
     in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
-    circles_by_pose: a circle is told by a pose on its way; else by its centre.
+    circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines.
     """
 
     title: str
     extensions: tuple[str, ...]
     write: Callable[[Program], Iterator[str]]
     in_robot_frame: bool = True
-    circles_by_pose: bool = False
+    circles_by: str = "centre"
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -57,7 +57,7 @@ GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
     "grbl": Post("G-code for grbl", GCODE, _grbl),
-    "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo),
-    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, True),
-    "jaka": Post("JAKA script", (".jks",), _jaka, circles_by_pose=True),
+    "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
+    "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
 }

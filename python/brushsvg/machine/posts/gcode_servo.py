@@ -7,7 +7,7 @@ from collections.abc import Generator, Iterator
 
 import numpy as np
 
-from ..cell import Servo
+from ..cell import Cell, Servo, servo_parts, servo_stands
 from ..motion import Move, Program, Wait
 from .gcode import MODES, grbl_comment, wait
 from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
@@ -28,7 +28,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
     takes effect with the move that it stands in and does not stop it. There grbl switches the output off wherever
     the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
     to the last, and the program ends without M2, the brush held up."""
-    servo, decimals = program.cell.servo, program.cell.decimals
+    servo = program.cell.servo
     yield "".join(grbl_comment(line) for line in program.header)
     yield grbl_comment("note: set $32=1, so that S changes along with the moves")
     yield f"{MODES}\n"
@@ -51,7 +51,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
                 yield f"F{wanted:.1f}\n"
                 feed = wanted
             fastest = program.touching_mm_s if step.meaning in TOUCHING else math.inf
-            value, feed = yield from _lines(step, here, value, servo, decimals, fastest, feed)
+            value, feed = yield from _lines(step, here, value, program.cell, fastest, feed)
             here = step.points_mm[-1]
     yield "\n" + grbl_comment(SERVO_END)
 
@@ -69,17 +69,18 @@ def height_at(servo: Servo, value: float) -> float:
 
 
 def _lines(
-    move: Move, here: np.ndarray, value: int, servo: Servo, decimals: int, fastest_mm_s: float, feed: float
+    move: Move, here: np.ndarray, value: int, cell: Cell, fastest_mm_s: float, feed: float
 ) -> Generator[str, None, tuple[int, float]]:
     """A move's lines, and the servo's value and the feed [mm/min] that hold afterwards; value, feed: those before;
     fastest_mm_s: of the tip."""
+    servo = cell.servo
     path = np.vstack([here, move.points_mm])
-    still = np.abs(np.diff(path[:, :2], axis=0)).max(axis=1) < 0.5 * 10.0**-decimals
+    still = servo_stands(np.diff(path, axis=0), cell)
     for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
         if not still[run[0]]:
             part = path[run[0] : run[-1] + 2]
             feeds = _feeds(np.diff(part, axis=0), move.speed_mm_s, fastest_mm_s)
-            value, feed = yield from _ways(part, feeds, feed, servo, decimals)
+            value, feed = yield from _ways(part, feeds, feed, cell)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for k in run:
@@ -108,20 +109,21 @@ def _lift(
 
 
 def _ways(
-    path: np.ndarray, feeds: np.ndarray, feed: float, servo: Servo, decimals: int
+    path: np.ndarray, feeds: np.ndarray, feed: float, cell: Cell
 ) -> Generator[str, None, tuple[int, float]]:
     """Straight lines at their feeds, each in parts on which the height is the one half way along the part; the last
     part's value and feed. feed: the one before."""
+    decimals = cell.decimals
     pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
     for first in range(0, len(path) - 1, ROWS_AT_ONCE):
         part = path[first : first + ROWS_AT_ONCE + 1]
         way = np.diff(part, axis=0)
-        counts = np.maximum(1, np.ceil(np.abs(way[:, 2]) / servo.step_mm - 1e-9)).astype(int)
+        counts = servo_parts(way, cell)
         which = np.repeat(np.arange(len(way)), counts)
         number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
         ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
         heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
-        values = value_at(servo, heights)
+        values = value_at(cell.servo, heights)
         at = feeds[first + which]
         for run in np.split(np.arange(len(which)), np.flatnonzero(np.diff(at)) + 1):
             if at[run[0]] != feed:

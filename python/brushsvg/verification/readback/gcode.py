@@ -228,6 +228,11 @@ class _Reader:
                 raise Error(
                     f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete"
                 )
+            if math.dist((self.at["X"], self.at["Y"]), (values["X"], values["Y"])) < self.unit_mm / 2:
+                raise Error(
+                    f"line {number}: {line[:40]!r} is a circle that ends where it began: brushsvg writes two halves",
+                    code="line-incomplete",
+                )
             turn = 1 if code == "G3" else -1
             centre = (self.at["X"] + values["I"], self.at["Y"] + values["J"], turn)
             radii = [
