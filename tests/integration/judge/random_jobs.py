@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from brushsvg import _core
 from brushsvg.errors import Error
 from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import CRASHED, converted, put
-from .random_works import random_cell, random_flags, random_svg
+from .random_works import random_brush, random_cell, random_flags, random_svg
 from .verdict import broken, unlike, way_of
 from .works import CELLS, job_for
 
@@ -35,6 +36,8 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
     folder.mkdir(parents=True, exist_ok=True)
     suffix = CELLS[dialect][1]
     source, toml = put(folder / "drawing.svg", svg), put(folder / "mine.toml", write_cell(cell))
+    brush = put(folder / "mine.json", _core.write_brush(random_brush(random)))
+    flags += ("--brush", str(brush))
     program, plan = folder / f"program{suffix}", folder / "plan.json"
     program.unlink(missing_ok=True)
     try:
@@ -43,14 +46,16 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
         return Tried(dialect, number, (str(refusal),))
     if said := converted(source, program, "--cell", toml, *flags):
         return Tried(dialect, number, tuple(said))
-    planned = [flag for k, flag in enumerate(flags) if "--z-offset" not in flags[max(0, k - 1) : k + 1]]
+    planned = [word for word in flags if word not in said_of(flags, "--z-offset")]
     wrong: list[str] = []
     text = program.read_text(encoding="latin-1")
     # the plan's own file is written without the machine's limits, which the program has passed
     if said := converted(source, plan, "--cell", toml, *planned):
+        if "--z-offset" in flags:  # the plan's paper lies lower, which may be out of reach
+            return Tried(dialect, number, tuple(said))
         wrong.append(f"no plan: {said}")
         return Tried(dialect, number, (), tuple(wrong))
-    job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), "round-6", flags)
+    job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), str(brush), flags)
     run = job.interpret(text)
     wrong += [f"the controller stops: {run.refused}"] if run.refused else []
     wrong += [f"acts: {what}" for what in run.acts]
@@ -58,6 +63,13 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
     wrong += broken(way, job)
     if not (cell.reload and cell.reload.when == "length") and max(job.servo_mm) <= 0.1:
         wrong += unlike(way, job)  # a stroke in loads is another plan, and a coarse servo another path
-    denied = check(program, source, "--cell", toml)
+    asked = [word for flag in ("--brush", "--corners") for word in said_of(flags, flag)]
+    denied = check(program, source, "--cell", toml, *asked)
     assert not any(CRASHED in said for said in denied), denied
     return Tried(dialect, number, (), tuple(wrong), tuple(denied))
+
+
+def said_of(flags: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """A flag with its value, where it was given."""
+    at = flags.index(name) if name in flags else len(flags)
+    return flags[at : at + 2]

@@ -6,6 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.calibration.from_widths import new_brush
 from brushsvg.machine.cell import Blending, Paper, Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell
 
@@ -16,7 +19,8 @@ ROBOTS = ("urscript", "jaka")
 
 
 def random_svg(random) -> str:
-    """One to four strokes: lines, corners, curves, dabs, closed ones; in two colours and layers."""
+    """One to four strokes: lines, corners, curves, dabs, closed ones, ways that turn back on themselves, some of them
+    tiny; in two colours and layers."""
     drawn = []
     for number in range(int(random.integers(1, 5))):
         x, y = random.uniform(14, 66), random.uniform(14, 46)
@@ -27,7 +31,8 @@ def random_svg(random) -> str:
                 f"{np.clip(y + random.uniform(-far, far), 10, 50):.3f}"
             )
 
-        kind = int(random.integers(6))
+        kind, tiny = int(random.integers(14)), float(random.choice((0.01, 0.1, 1.0)))
+        there, back = near(), near()
         path = (
             f"M{x:.3f} {y:.3f} "
             + (
@@ -37,6 +42,14 @@ def random_svg(random) -> str:
                 f"L{x:.3f} {y:.3f}",
                 f"L{near(far=8)} L{near(far=8)} Z",
                 f"Q{near()} {near()} T{near()}",
+                "Z",
+                f"L{there} L{back} L{there} L{near()}",
+                f"C{there} {back} {near()} S{back} {there}",
+                f"C{near(far=tiny)} {near(far=tiny)} {near(far=tiny)} L{there}",
+                f"A{tiny} {tiny} 0 1 {int(random.integers(2))} {near(far=tiny)} L{near(far=tiny)}",
+                f"L{near(far=tiny)} L{near(far=tiny)} L{near(far=tiny)} Z",
+                f"Q{near(far=tiny)} {near(far=tiny)} Q{there} {near(far=tiny)} Q{near(far=tiny)} {there}",
+                f"A{tiny} {2 * tiny} 30 1 1 {near(far=tiny)} C{there} {near(far=tiny)} {there} L{back}",
             )[kind]
         )
         width, colour = random.uniform(1.2, 4.5), random.choice(("#000000", "#ff0000"))
@@ -63,7 +76,7 @@ def random_cell(random, dialect: str):
         press_mm_s=float(random.uniform(2, 40)),
         paint_mm_s=float(random.uniform(5, 60)),
     )
-    cell = replace(cell, speeds=speeds, decimals=int(random.integers(3, 7)))
+    cell = replace(cell, speeds=speeds, decimals=int(random.choice((3, 3, 3, 4, 5, 6))))
     paper = Paper()
     if dialect == "grbl-servo":
         if random.random() < 0.4:
@@ -192,10 +205,24 @@ def _with_paint(random, cell):
     return replace(cell, reload=Reload(when, float(random.uniform(25, 150)), 4.0), stations=tuple(stations))
 
 
+def random_brush(random) -> _core.Brush:
+    """One that comes along, or a pen, a brush that hardly trails, one that trails far."""
+    if random.random() < 0.5:
+        return find_brush(str(random.choice(("round-6", "round-6", "rigid"))))
+    lag_mm = float(random.choice((0.0, 0.3, 3.0, 8.0, 12.0)))
+    return new_brush("mine", lag_mm, [(1.0, 0.6), (float(random.choice((4.0, 8.0))), 6.0)])
+
+
 def random_flags(random, dialect: str) -> tuple[str, ...]:
     flags: tuple[str, ...] = ()
+    if random.random() < 0.4:
+        chances = (0.4, 0.4, 0.2)
+        how = random.choice(("none", "constant", "refined"), p=chances)
+        flags += ("--compensation", str(how))
     if random.random() < 0.3:
-        flags += ("--compensation", str(random.choice(("none", "constant"))))
+        flags += ("--start", str(random.choice(("exposed", "hidden"))))
+    if random.random() < 0.3:
+        flags += ("--corners", "turn")
     if random.random() < 0.2:
         flags += ("--order", "nearest")
     if random.random() < 0.25 and dialect != "grbl-servo":
