@@ -137,3 +137,9 @@ def test_strokes_without_width_or_length_stay(brush):
     assert lifted_at_corners([made], brush) == [made]
     still = _core.Stroke("s", np.full((3, 8), 5.0), half_width=[(0.0, 1.0)])
     assert lifted_at_corners([still], brush) == [still]
+
+
+def test_parts_of_two_lines_have_names_of_their_own(brush):
+    drawn = strokes(read(f'<path id="a~2" d="{APEX}" {LINE}/><path id="a" d="{APEX}" {LINE}/>'))[0]
+    names = [stroke.id for stroke in lifted_at_corners(drawn, brush)]
+    assert len(names) == 4 and len(set(names)) == 4, names

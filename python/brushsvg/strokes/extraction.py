@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -148,32 +149,53 @@ def _of_element(element: Element, name: str, lines: list[_Line]):
 
 
 def _names(elements: list[tuple[Element, int]]) -> tuple[list[str], list[Notice]]:
-    """What each element is called, given with the number of its strokes: no two strokes have one name, and the first
-    to claim one keeps it."""
+    """What each element is called, given with the number of its strokes: no two strokes have one name, nor would if
+    they were painted in lanes or loads, and the first to claim one keeps it."""
     nominal, anonymous = [], 0
     for element, _ in elements:
         anonymous += not element.id
         nominal.append(element.id or f"stroke{anonymous}")
     reserved = set(nominal)
+    whole = {
+        each
+        for (element, count), base in zip(elements, nominal, strict=True)
+        for each in _all_names(element, base, count)
+    }
     taken: set[str] = set()
+    taken_of: set[str] = set()  # the names whose lanes' and loads' names are taken
     last_suffix: dict[str, int] = {}
     result: list[str] = []
     notices: list[Notice] = []
     for (element, count), base in zip(elements, nominal, strict=True):
         name, names = base, _all_names(element, base, count)
         suffix = last_suffix.get(base, 1)
-        while not taken.isdisjoint((name, *names)) or (name != base and name in reserved):
+        part_of = next((of for each in names if (of := _of_which(each)) and of in whole), "")
+        while (
+            not taken.isdisjoint((name, *names))
+            or not taken_of.isdisjoint(names)
+            or (name == base and part_of)
+            or (name != base and name in reserved)
+        ):
             suffix += 1
             name = f"{base}-{suffix}"
             names = _all_names(element, name, count)
         if name != base:
             last_suffix[base] = suffix
+            why = f"that of a part of {part_of!r}" if part_of else "taken"
             notices.append(
-                Notice(base, f"the name {base!r} is taken: this one is called {name!r}", code="name-taken")
+                Notice(base, f"the name {base!r} is {why}: this one is called {name!r}", code="name-taken")
             )
         taken.update((name, *names))
+        taken_of.update(filter(None, map(_of_which, names)))
+        whole.update(names)
         result.append(name)
     return result, notices
+
+
+def _of_which(name: str) -> str:
+    """The stroke whose lane or load has this name; none for one that cannot be such."""
+    found = re.fullmatch(r"(.+?)(~[0-9]+)?(\+[0-9]+)?", name, re.DOTALL)
+    return found[1] if found and found[1] != name else ""
 
 
 def _all_names(element: Element, name: str, count: int) -> list[str]:
