@@ -181,6 +181,17 @@ def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
     assert sum(line.strip().startswith(word) for line in text.splitlines()) == 2
 
 
+@pytest.mark.parametrize("at", [100, 180, 190, 250])
+@pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
+def test_a_circle_whose_named_pose_lies_half_way_round_or_farther_is_read(name, at):
+    """Of its poses the middle one is named, wherever on the circle that lies."""
+    angles = [0, 60, at / 2, at, (at + 300) / 2, 290, 300]
+    on = [point for angle in angles for point in arc((50, 40), 14, angle, angle, 1)]
+    poses = [DOWN, (30, 20, -2), *on, (60, 40, -2), UP]
+    text, said = found_by_check(poses, [_core.Arc(2, 8, (50, 40), 1)], cell_of(name, 3))
+    assert said is None and text.count("movc(" if name == "jaka-zu3" else "movec") == 1
+
+
 def test_a_whole_circle_in_one_line_is_not_read():
     text = "G21 G90 G94 G17 G40 G80\nG0 Z5\nG1 X10 Y10 F600\nG2 X10 Y10 I5 J0\nM2\n"
     with pytest.raises(Error, match="ends where it began") as refused:

@@ -28,6 +28,7 @@ from .readback import Readback, ReadSection
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
+LARGE_RAD = 3.0  # poses of a circle are less than half a turn apart
 Problems = list[Notice]
 
 
@@ -210,7 +211,14 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
         middle = moved(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
         centres[number] = (*middle.tolist(), step.centre[2])
         named = moved(back, np.reshape(step.via, (-1, 3)))
-        between = named if len(named) else chords(last, ends[number], centres[number])
+        halves = ((last, named[0]), (named[0], ends[number])) if len(named) else ()
+        if not halves:
+            between = chords(last, ends[number], centres[number])
+        elif max(abs(_sweep_rad(*half, centres[number])) for half in halves) < LARGE_RAD:
+            between = named
+        else:  # the named place stays in the middle of those between the ends, as it is chosen to be told
+            middles = [_on_circle(*half, centres[number]) for half in halves]
+            between = [middles[0], named[0], middles[1]]
         points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
         owner += [known[done:at], np.full(len(between), number)]
         done = at
@@ -219,9 +227,8 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
 
 def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> list[np.ndarray]:
     """Points of a circle between its ends, CHORD_RAD apart."""
-    x, y, turn = centre
-    first, last = np.arctan2(start[1] - y, start[0] - x), np.arctan2(end[1] - y, end[0] - x)
-    sweep = (last - first) * turn % (2 * np.pi) * turn
+    x, y, _ = centre
+    first, sweep = np.arctan2(start[1] - y, start[0] - x), _sweep_rad(start, end, centre)
     radius = np.hypot(end[0] - x, end[1] - y)
     count = int(np.ceil(abs(sweep) / CHORD_RAD))
     angles = first + sweep * np.arange(1, count) / max(count, 1)
@@ -230,6 +237,21 @@ def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int])
         np.array([x + radius * np.cos(angle), y + radius * np.sin(angle), z])
         for angle, z in zip(angles, heights, strict=True)
     ]
+
+
+def _sweep_rad(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> float:
+    """By how much a circle turns from one place on it to another."""
+    x, y, turn = centre
+    first, last = np.arctan2(start[1] - y, start[0] - x), np.arctan2(end[1] - y, end[0] - x)
+    return (last - first) * turn % (2 * np.pi) * turn
+
+
+def _on_circle(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> np.ndarray:
+    """The place amid two of a circle."""
+    x, y, _ = centre
+    angle = np.arctan2(start[1] - y, start[0] - x) + _sweep_rad(start, end, centre) / 2
+    radius = np.hypot(end[0] - x, end[1] - y)
+    return np.array([x + radius * np.cos(angle), y + radius * np.sin(angle), (start[2] + end[2]) / 2])
 
 
 def _with_ends_on_paper(track: Track, slack: float) -> Track:
