@@ -16,6 +16,7 @@ from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
+from brushsvg.pipeline import preparation
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)
@@ -269,3 +270,40 @@ def test_ways_are_asked_whichever_are_asked_together(monkeypatch, at_once):
     ]
     told = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
     assert are_told(told, "out-of-reach s2 way", "out-of-reach s4 way", "out-of-reach s5 way")
+
+
+EDGES = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60" fill="none" '
+    'stroke="#000" stroke-width="4"><path id="edge" d="M97 30H40"/><path id="own" d="M97 45H40" '
+    'data-brushsvg-start="{own}"/><path id="amid" d="M40 15H80"/></svg>'
+)
+
+
+def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_path, capsys):
+    """At the edge a hidden beginning was landed beyond the workspace, and the whole drawing refused."""
+    cell = find_cell()
+    cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=2.0))
+    (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
+    (tmp_path / "a.svg").write_text(EDGES.format(own="auto"), encoding="utf-8")
+    words = ("--cell", str(tmp_path / "tight.toml"))
+    passes = {}
+    for start in ("auto", "exposed"):
+        plan = tmp_path / f"{start}.json"
+        assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--start", start, *words)[0] == 0
+        passes[start] = _core.read_plan(plan.read_text(encoding="utf-8")).passes
+    same = [
+        np.array_equal(one.poses_mm, other.poses_mm)
+        for one, other in zip(passes["auto"], passes["exposed"], strict=True)
+    ]
+    assert same == [True, True, False], "amid the sheet it begins hidden, as it suits it"
+    program = str(tmp_path / "a.ngc")
+    assert call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)[0] == 0
+    assert call(capsys, "check", program, str(tmp_path / "a.svg"), *words)[0] == 0
+    (tmp_path / "a.svg").write_text(EDGES.format(own="hidden"), encoding="utf-8")
+    status, _, told = call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)
+    assert status == 1 and "own" in told[-1], "who asks for a hidden beginning is told"
+
+
+def test_a_stroke_that_is_exposed_keeps_all_that_the_drawing_said_of_it():
+    said = {name for name in dir(_core.Settings) if not name.startswith("_")}
+    assert said == {*preparation.SETTINGS, "start"}

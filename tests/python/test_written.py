@@ -185,7 +185,7 @@ def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
 @pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
 def test_a_circle_whose_named_pose_lies_half_way_round_or_farther_is_read(name, at):
     """Of its poses the middle one is named, wherever on the circle that lies."""
-    angles = [0, 60, at / 2, at, (at + 300) / 2, 290, 300]
+    angles = [0, at / 3, at / 2, at, (at + 300) / 2, 290, 300]
     on = [point for angle in angles for point in arc((50, 40), 14, angle, angle, 1)]
     poses = [DOWN, (30, 20, -2), *on, (60, 40, -2), UP]
     text, said = found_by_check(poses, [_core.Arc(2, 8, (50, 40), 1)], cell_of(name, 3))

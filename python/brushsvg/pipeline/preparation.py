@@ -16,7 +16,7 @@ from ..errors import Error
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
-from ..machine.program import Job
+from ..machine.program import Job, walked
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
@@ -109,6 +109,10 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
+    if options.cell is not None and options.compensation in ("closed", "refined"):
+        fitting = _begun_within_reach(painted, brush, done.plan, compensated, options)
+        if fitting is not painted:
+            painted, done = fitting, compensated(fitting)
     plan, tracking_errors, moved = done.plan, done.misses, [False] * len(painted)
     if options.compensation == "refined":
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
@@ -160,6 +164,44 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
         )
 
     return compensated
+
+
+def _begun_within_reach(painted: list, brush, plan, compensated, options: Options) -> list:
+    """The strokes, those exposed that choose how they begin, cannot be run as they chose, and can exposed: a hidden
+    beginning is landed on the far side, from where the tool may not be. The list itself where there are none."""
+
+    def astray(of) -> set[str]:
+        loads = in_loads(of, brush, options.cell)
+        problems = walked(loads, brush, options.cell, Job(options.z_offset_mm)).problems
+        return {problem.where for problem in problems}
+
+    choosing = {stroke.id for stroke in painted if (stroke.settings.start or options.start) == "auto"}
+    tried = choosing & astray(plan) if choosing else set()
+    exposed = [_exposed(stroke) for stroke in painted if stroke.id in tried]
+    fits = tried - astray(compensated(exposed).plan) if exposed else set()
+    if not fits:
+        return painted
+    by_name = {stroke.id: stroke for stroke in exposed}
+    return [by_name[stroke.id] if stroke.id in fits else stroke for stroke in painted]
+
+
+def _exposed(stroke):
+    was = stroke.settings
+    settings = _core.Settings(**{name: getattr(was, name) for name in SETTINGS}, start="exposed")
+    made = _core.Stroke(
+        stroke.origin,
+        stroke.middle_mm,
+        stroke.closed,
+        stroke.half_width,
+        stroke.layer,
+        stroke.colour,
+        settings,
+    )
+    made.wanted_mm = stroke.wanted_mm
+    return made
+
+
+SETTINGS = ("brush", "kind", "order", "passes", "reload", "skip", "speed_mm_s", "width_mm", "extra")
 
 
 def _forbidden(brush, options: Options):
