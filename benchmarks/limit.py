@@ -26,7 +26,7 @@ def search(stroke, wanted, brush, tries: int, seed: int) -> dict[str, float]:
     """Overlaps as the report has them: closed, refined, and the best that so many simulations from each find."""
     found, best, most = {}, None, -1.0
     for method, step_mm in STARTS:
-        start = _core.compensate([stroke], brush, (0.0, 0.0), method).plan.passes[0]
+        start = _core.compensate([stroke], brush, None, method).plan.passes[0]
         found[method] = reported(start, wanted, brush)
         moved = searched(start, wanted, brush, step_mm, tries, seed)
         for each in (start, moved):

@@ -72,7 +72,7 @@ too sharp for the lever.)")
         });
     m.def(
         "compensate",
-        [](const std::vector<Stroke>& strokes, const Brush& brush, const std::array<double, 2>& sheet_mm,
+        [](const std::vector<Stroke>& strokes, const Brush& brush, std::optional<std::array<double, 2>> sheet,
            const std::string& method, double tolerance_mm, std::optional<double> lag_mm, double speed_mm_s,
            const py::object& progress, bool few_poses, const std::string& start) {
             CompensateOptions options;
@@ -82,6 +82,8 @@ too sharp for the lever.)")
             options.few_poses = few_poses;
             options.start = beginning_named(start, "");
             check(brush);
+            if (sheet) check_sheet(*sheet);
+            const std::array<double, 2> sheet_mm = sheet.value_or(std::array<double, 2>{0.0, 0.0});
             const Way way = way_of(method, brush, options, sheet_mm);
             Compensated out;
             out.plan.brush = brush.name;
@@ -105,8 +107,8 @@ too sharp for the lever.)")
         py::arg("progress") = py::none(), py::arg("few_poses") = true, py::arg("start") = "exposed",
         R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
 
-sheet_mm: (w, h), kept in the plan. method: "none", the TCP on the line; "constant", ahead by lag_mm (None: the lag at
-each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
+sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
+ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
 the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
 point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
 miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most

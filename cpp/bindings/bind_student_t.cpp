@@ -8,9 +8,9 @@ void bind_student_t(py::module_& m) {
           "known.");
     m.def(
         "as_normal",
-        [](const Numbers& t, const Numbers& degrees_of_freedom) {
-            return py::vectorize(&brushsvg::as_normal)(t.values, degrees_of_freedom.values);
+        [](const Numbers& t, double degrees_of_freedom) {
+            return py::vectorize([=](double each) { return brushsvg::as_normal(each, degrees_of_freedom); })(t.values);
         },
         py::arg("t"), py::arg("degrees_of_freedom"),
-        "Size of a normal value as unlikely as t with so many degrees of freedom.");
+        "Size of a normal value as unlikely as t with so many degrees of freedom; of each t, where there are many.");
 }

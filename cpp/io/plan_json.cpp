@@ -51,14 +51,6 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
 }
 
-void require_sound(const std::array<double, 2>& sheet_mm) {
-    for (const double side_mm : sheet_mm) {
-        if (side_mm > 0.0 && side_mm <= kLargestMm) continue;
-        throw Error("out-of-range", "both sides of the sheet must lie within (0, 1e6] mm, not be " + in_words(side_mm),
-                    "sheet_mm", side_mm, std::array<double, 2>{0.0, kLargestMm});
-    }
-}
-
 /// [first pose, last pose, x and y of the centre, 1 or -1]
 Arc read_arc(const Field& field) {
     const std::vector<double> row = numbers(field);
@@ -163,7 +155,7 @@ Plan read_plan(const std::string& text) {
     plan.brush = io::text(fields.take("brush"));
     if (const auto digest = fields.find("brush_sha256")) plan.brush_sha256 = io::text(*digest);
     plan.sheet_mm = pair(fields.take("sheet_mm"));
-    require_sound(plan.sheet_mm);
+    check_sheet(plan.sheet_mm);
     for (Field& pass : members(fields.take("passes"))) {
         plan.passes.push_back(read_pass(std::move(pass), plan.passes.size(), rows));
     }
@@ -176,7 +168,7 @@ std::string write_plan(const Plan& plan) {
     append_string(out, plan.brush, "brush");
     out += ",\n  \"brush_sha256\": ";
     append_string(out, plan.brush_sha256, "brush_sha256");
-    require_sound(plan.sheet_mm);
+    check_sheet(plan.sheet_mm);
     out += ",\n  \"sheet_mm\": ";
     append_numbers(out, {plan.sheet_mm[0], plan.sheet_mm[1]}, 4, "sheet_mm");
     append_extra(out, parse_object(plan.extra, "extra", kPlanKeys), 2);

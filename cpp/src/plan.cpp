@@ -15,6 +15,8 @@ constexpr double kSameDepthMm = 1e-6;
 /// Nearer to half a turn than this the direction of a chord no longer tells on which side the arc lies.
 constexpr double kAlmostHalfTurnRad = 1e-6;
 
+constexpr double kLargestSheetMm = 1e6;  // as files and strokes have it
+
 template <class... Numbers>
 std::string text_of(const char* format, Numbers... numbers) {
     char text[200];
@@ -23,6 +25,14 @@ std::string text_of(const char* format, Numbers... numbers) {
 }
 
 }  // namespace
+
+void check_sheet(const std::array<double, 2>& sheet_mm) {
+    for (const double side_mm : sheet_mm) {
+        if (side_mm > 0.0 && side_mm <= kLargestSheetMm) continue;
+        throw Error("out-of-range", text_of("both sides of the sheet must lie within (0, 1e6] mm, not be %g", side_mm),
+                    "sheet_mm", side_mm, std::array<double, 2>{0.0, kLargestSheetMm});
+    }
+}
 
 double turn_between(const Arc& arc, const Vector2d& from_mm, const Vector2d& to_mm) {
     const Vector2d a = from_mm - arc.centre_mm, b = to_mm - arc.centre_mm;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
+
+/// Lines that are joined meet within as much. What is farther apart would be painted straight across.
+constexpr double kGapMm = 0.01;
 
 void require_cubic(const Cubics& c, Index i) {
     if (i < 0 || i >= c.rows())
@@ -93,6 +97,18 @@ void check(const Stroke& stroke) {
     if (largest > 1e6)
         throw Error("geometry-out-of-range", "the middle line reaches beyond 1e6 mm", stroke.id, largest,
                     std::array<double, 2>{-1e6, 1e6});
+    const Eigen::Index last = stroke.middle_mm.rows() - 1;
+    for (Eigen::Index i = stroke.closed ? 0 : 1; i <= last; ++i) {
+        const Eigen::Index before = i > 0 ? i - 1 : last;
+        const double gap_mm = (stroke.middle_mm.row(i).head<2>() - stroke.middle_mm.row(before).tail<2>()).norm();
+        if (gap_mm <= kGapMm) continue;
+        char away[32];
+        std::snprintf(away, sizeof away, "%.3g mm", gap_mm);
+        throw Error("geometry-out-of-range",
+                    "cubic " + std::to_string(i) + " of the middle line begins " + away + " away from where cubic " +
+                        std::to_string(before) + " ends: a stroke is one line",
+                    stroke.id, gap_mm, std::array<double, 2>{0.0, kGapMm});
+    }
     if (stroke.half_width.empty()) throw Error("stroke-empty", "the stroke has no width", stroke.id);
     double before = -1.0;
     for (const WidthKnot& knot : stroke.half_width) {

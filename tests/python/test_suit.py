@@ -27,7 +27,7 @@ BRUSH = find_brush("round-6")
 
 def painted(strokes):
     """Made in closed form."""
-    plan = _core.compensate(strokes, BRUSH, (0.0, 0.0)).plan
+    plan = _core.compensate(strokes, BRUSH, None).plan
     return _core.simulate(plan, BRUSH).passes, strokes
 
 

@@ -52,6 +52,10 @@ struct Plan {
     std::string extra = "{}";
 };
 
+/// Throws Error for a sheet that none can be: both sides are greater than 0 and at most 1e6 mm. A plan that is only
+/// simulated needs none.
+void check_sheet(const std::array<double, 2>& sheet_mm);
+
 /// By how much the TCP turns about an arc's centre from one pose on it to the next [rad], signed, in (-pi, pi].
 double turn_between(const Arc& arc, const Eigen::Vector2d& from_mm, const Eigen::Vector2d& to_mm);
 

@@ -71,7 +71,7 @@ def advice(work: Work) -> str:
 
 def _trial(brush, options: Options):
     """From strokes to (marks, what they should become), made as a drawing is, but on no sheet and for no machine."""
-    compensated = _way(brush, (0.0, 0.0), options)
+    compensated = _way(brush, None, options)
 
     def made(strokes):
         painted, wanted, _ = within_reach(strokes, brush, options.wide)
@@ -96,7 +96,7 @@ def _quick_trial(brush, options: Options):
             brush,
             tolerance_mm=options.tolerance_mm,
             few_poses=False,
-            sheet_mm=(0.0, 0.0),
+            sheet_mm=None,
             start=options.start,
         )
         return _core.simulate(done.plan, brush).passes, wanted
