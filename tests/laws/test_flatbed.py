@@ -110,7 +110,8 @@ def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
     turn, scale, shift, left = similarity_off(found)
     assert abs(turn) < 0.6 and shift < 0.7, (turn, shift)
     assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)
-    shown = float(re.search(r"turned by (-?\d+\.\d)", told(found))[1])
+    degrees, right = re.search(r"turned by (\d+\.\d) degrees( to the right)?", told(found)).groups()
+    shown = float(degrees) * (-1 if right else 1)
     assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in told(found)
 
 
@@ -120,6 +121,28 @@ def test_light_paint_on_dark_paper_is_read():
     assert similarity_off(found)[3] < 0.03
     areas = [shape(found.marks.outlines_mm[each]).area / shape(marks()[each]).area for each in marks()]
     assert np.ptp(areas) < 0.08 and abs(np.mean(areas) - 1) < 0.02, areas
+
+
+def test_paper_that_is_nearly_black_is_refused():
+    """Marks were found on it, 0.4 mm beside where they were painted."""
+    code, sentence = code_of(scanned(paper=0.03, colour=(0.8, 0.8, 0.75)))
+    assert code == "photo-too-dark" and "3.5" in sentence
+
+
+@pytest.mark.parametrize("paper", [0.85, 1.05])
+def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
+    """White paper on the glass is as white as can be: that was told as overexposed."""
+    with pytest.raises(Error) as refusal:
+        read(scanned(paper=paper), dpi=None)
+    assert refusal.value.code == ("photo-markers-missing" if paper < 1 else "photo-overexposed")
+    assert "--dpi" in refusal.value.advice
+
+
+@pytest.mark.parametrize(("turn_deg", "side"), [(2, "left"), (-3, "right"), (180, ""), (180.5, "")])
+def test_how_a_scan_is_turned_is_told_without_a_sign(turn_deg, side):
+    sentence = told(read(scanned(turn_deg=turn_deg)))
+    degrees = re.search(r"turned by (\S+) degrees( to the )?(\w*)", sentence)
+    assert float(degrees[1]) == pytest.approx(abs(turn_deg), abs=1.5) and degrees[3] == side, sentence
 
 
 def test_a_mirrored_scan_is_refused():

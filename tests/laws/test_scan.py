@@ -271,6 +271,21 @@ def test_what_is_no_picture_is_refused(data, said):
         read_chart_photos(a5(), [("", data)])
 
 
+@pytest.mark.parametrize("depth", [np.uint8, np.uint16])
+@pytest.mark.parametrize("suffix", [".png", ".tif"])
+def test_what_is_seen_through_lies_on_white(suffix, depth):
+    """The black that stands below what is seen through was taken for paint."""
+    full = np.iinfo(depth).max
+    picture = np.zeros((40, 30, 4), depth)
+    picture[:20, :, 3] = full
+    picture[20:30, :, 3] = full // 2
+    picture[:, 10:, 2] = full
+    seen = read_photo(cv2.imencode(suffix, picture)[1].tobytes()).astype(int)
+    assert [seen[row, 0].tolist() for row in (0, 35)] == [[0, 0, 0], [255, 255, 255]]
+    assert seen[25, 0] == pytest.approx(128, abs=1)
+    assert seen[25, 20].tolist() == pytest.approx([128, 128, 255], abs=1)
+
+
 def part_way(data: bytes, harm) -> bytes:
     """What comes of `harm` done to what is left from the middle on."""
     return data[: len(data) // 2] + harm(data[len(data) // 2 :])

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from ..errors import Error
-from .photo import blur_px, grey_light, white_share
+from .photo import blur_px, grey_light, refuse_dark_paper, white_share
 
 FEWEST = 3  # markers: two leave the tilt of the sheet open to the noise of their corners
 SEEN_AT_PX = 2400  # longer side of the picture that markers are looked for in; their corners are found in the whole one
@@ -27,6 +27,7 @@ MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but n
 MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
 COVERED = 2.0  # times the limit that one marker is off, and the others within: something lies on its edge
 TOO_WHITE = 0.5  # share of the brightest parts that are as white as can be
+UNPRINTED = "of a flatbed's scan of a sheet on which nothing is printed, give --dpi"
 # Where no marker is found, edges over more of the picture's longer side are the reason: a module is lost in them
 SMEARED = 1 / 250
 
@@ -151,6 +152,7 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
         raise Error(
             f"no marker of chart{name} is in the picture: photograph the whole page, sharp and without deep shadows",
             code="photo-markers-missing",
+            advice=UNPRINTED,
         )
     raise Error(
         f"only {len(found)} of the {len(printed.corners_mm)} markers can be seen ({_listed(found)}), it takes {FEWEST} "
@@ -162,12 +164,15 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
 def _refuse_blind(light: np.ndarray, count: int) -> None:
     """Where markers are not found because of the picture as a whole."""
     few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
+    if not count:
+        refuse_dark_paper(float(np.quantile(light[::7, ::7], 0.8)))
     if (white := white_share(light)) > TOO_WHITE:
         raise Error(
             f"{few}, and {100 * white:.0f} % of the brightest parts are as white as can be: the picture is "
             "overexposed; take it with less light, without glare, or with the exposure turned down",
             value=white,
             code="photo-overexposed",
+            advice="" if count else UNPRINTED,
         )
     if (wide := blur_px(light)) > SMEARED * max(light.shape):
         raise Error(

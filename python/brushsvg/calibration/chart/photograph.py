@@ -13,7 +13,7 @@ from ...errors import Error, Notice
 from ...scan.edges import Marks, Room, find_marks, told_apart
 from ...scan.flatten import Flat, flatten
 from ...scan.markers import TOO_WHITE, Printed, View, find_view
-from ...scan.photo import jpeg_quality, read_photo
+from ...scan.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper
 from ...scan.place_by_strokes import find_scan_view
 from .layout import Chart
 from .page import bar_rings, label_box
@@ -28,6 +28,7 @@ WORST_QUALITY = 12.0  # of a JPEG: its squares of 8 pixels take the places of ed
 UNSURE_MM, MOST_UNSURE_MM = 0.1, 0.5  # of a place on the sheet: remarked on, refused
 # Standard deviation of a sheet's place on a scan, by rooms that hold the marks of brushes that trail as thought
 SCAN_PLACEMENT_MM = 3.0
+HALF_TURN_DEG = 179.0  # from here on it is upside down, whichever way it was turned
 ALIKE_MM = 0.15  # photographs of one flat sheet; a robot paints a second one less alike
 
 
@@ -77,6 +78,7 @@ def read_chart_photos(
             _refuse_unsure(view, pixels, corners)
             fine = reads[0].flat.px_per_mm if reads else None
             flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
+            refuse_dark_paper(float(np.median(grey_light(flat.pixels[::3, ::3]))))
             reads.append(Read(chart, flat, view, find_marks(flat, rooms, printed, labels)))
         except Error as refusal:
             raise Error(
@@ -221,7 +223,9 @@ def told(read: Read) -> str:
     if not view.seen:
         across, down = view.homography[:2, 0]
         turn = math.degrees(math.atan2(-down, across))
-        return f"{strokes} from a scan, turned by {turn:.1f} degrees to the left, {view.px_per_mm:.1f} pixels per mm"
+        side = " to the left" if turn > 0 else " to the right"
+        turned = f"{abs(turn):.1f} degrees{side if abs(turn) < HALF_TURN_DEG else ''}"
+        return f"{strokes} from a scan, turned by {turned}, {view.px_per_mm:.1f} pixels per mm"
     return (
         f"{strokes}, {len(view.seen)} markers within {view.residual_mm:.3f} mm (rms), "
         f"{view.px_per_mm:.1f} pixels per mm, edges blurred over {view.blur_mm:.2f} mm"

@@ -104,6 +104,9 @@ def speed(text: str) -> float:
     return value
 
 
+LEAST_DPI, MOST_DPI = 102.0, 20000.0  # the former are 4 pixels per mm
+
+
 def resolution(text: str) -> float:
     try:
         value = float(text)
@@ -111,8 +114,9 @@ def resolution(text: str) -> float:
         raise argparse.ArgumentTypeError(
             f"{text[:24]!r} is not a number of dots per inch; write for example 600"
         ) from None
-    if not 10 <= value <= 20000:
-        raise argparse.ArgumentTypeError(f"{value:g} is outside the range [10, 20000]")
+    if not LEAST_DPI <= value <= MOST_DPI:
+        sentence = f"{value:g} dpi is outside the range [{LEAST_DPI:g}, {MOST_DPI:g}] dpi"
+        raise argparse.ArgumentTypeError(f"{sentence} in which a scan can be measured")
     return value
 
 
