@@ -25,16 +25,18 @@ direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 1
 stroke: the name of what it paints, made of origin, a StrokeId, and set by a name or one.
 poses_mm: (n, 3) x, y, z [mm], straight moves in between, depth linear along each; read-only and not copied when read,
 to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
-the straight moves are. speed_mm_s; layer, colour; settings, to be set as a
-whole; extra: unknown keys of the file, as JSON.)")
+the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
+load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
+file, as JSON.)")
         .def(py::init([](StrokeId stroke, Poses poses_mm, double speed_mm_s, std::string layer, std::string colour,
-                         Settings settings, std::string extra, std::vector<Arc> arcs) {
+                         Settings settings, std::string extra, std::vector<Arc> arcs, int load) {
                  return Pass{std::move(stroke), std::move(poses_mm), std::move(arcs),     speed_mm_s,
-                             std::move(layer),  std::move(colour),   std::move(settings), std::move(extra)};
+                             std::move(layer),  std::move(colour),   std::move(settings), load,
+                             std::move(extra)};
              }),
              py::arg("stroke") = "", py::arg("poses_mm") = Poses(0, 3), py::arg("speed_mm_s") = 20.0,
              py::arg("layer") = "", py::arg("colour") = "", py::arg("settings") = Settings{}, py::arg("extra") = "{}",
-             py::arg("arcs") = std::vector<Arc>{})
+             py::arg("arcs") = std::vector<Arc>{}, py::arg("load") = 0)
         .def_property(
             "stroke", [](const Pass& p) { return p.stroke.name(); },
             [](Pass& p, StrokeId stroke) { p.stroke = std::move(stroke); })
@@ -49,6 +51,7 @@ whole; extra: unknown keys of the file, as JSON.)")
         .def_property(
             "settings", [](const Pass& p) { return p.settings; },
             [](Pass& p, Settings settings) { p.settings = std::move(settings); })
+        .def_readwrite("load", &Pass::load)
         .def_readwrite("extra", &Pass::extra);
     py::class_<Plan>(m, "Plan",
                      R"(TCP poses for every stroke, in the frame of the paper: plan.json as a value.

@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kFormat = "brushsvg/plan";
 const std::set<std::string> kPlanKeys{"format", "version", "brush", "brush_sha256", "sheet_mm", "passes"};
-const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s", "layer", "colour", "settings"};
+const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs",     "speed_mm_s",
+                                      "layer",  "colour",   "settings", "load"};
 
 /// What holds for every pass, read or about to be written. `path`: of the pass; `slack_mm`: how far above the
 /// paper still counts as on it.
@@ -47,6 +48,11 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
                         (pass.speed_mm_s > kLargestMm ? "at most 1e6" : "greater than 0") + ", not " +
                         in_words(pass.speed_mm_s),
                     path + ".speed_mm_s", pass.speed_mm_s);
+    }
+    if (pass.load < 0) {
+        throw Error("out-of-range",
+                    "load of stroke " + pass.stroke.name() + " must be at least 0, not " + std::to_string(pass.load),
+                    path + ".load", pass.load);
     }
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
 }
@@ -112,6 +118,7 @@ Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
     if (const auto layer = fields.find("layer")) pass.layer = text(*layer);
     if (const auto colour = fields.find("colour")) pass.colour = text(*colour);
     if (auto settings = fields.find("settings")) pass.settings = read_settings(std::move(*settings));
+    if (const auto load = fields.find("load")) pass.load = whole(*load);
     pass.extra = fields.extra();
     require_sound(pass, path, 0.0);
     return pass;
@@ -141,6 +148,7 @@ void append_pass(std::string& out, const Pass& pass, const std::string& path) {
         });
     }
     append_extra(out, parse_object(pass.extra, path + ".extra", kPassKeys), 5);
+    if (pass.load != 0) out += ",\n     \"load\": " + std::to_string(pass.load);
     out += ",\n     \"poses_mm\": ";
     append_rows(out, pass.poses_mm, 7, "poses_mm");
     out += '}';

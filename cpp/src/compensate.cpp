@@ -125,9 +125,19 @@ class Inverse {
     std::vector<double> crossings_;
 };
 
-/// How far the footprint reaches in front of its widest section [mm].
-double front_of_widest(const Brush& brush, double depth) {
-    return footprint_at(brush.footprints, depth, 1.0).col(0).maxCoeff() - brush.tip_to_widest(depth);
+/// How far the front of the footprint reaches beyond the drawn end of a mark [mm], half a width from its path's, with
+/// the widest section over that: less than 0 is what is missing. A blunt front is not what is left in the end: the
+/// brush is lifted while P rests, and the front of a shallower footprint may lie further ahead of P.
+double beyond_the_end(const Brush& brush, double depth, double half_width_mm) {
+    const auto front_of_contact = [&](double d) {
+        return footprint_at(brush.footprints, d, 1.0).col(0).maxCoeff() - brush.tip_gap(d);
+    };
+    const double end_mm = brush.lever_to_widest(depth) + half_width_mm;
+    double farthest = front_of_contact(depth);
+    if (farthest >= end_mm) return farthest - end_mm;
+    for (const Footprint& measured : brush.footprints.dragged)
+        if (measured.depth_mm < depth) farthest = std::max(farthest, front_of_contact(measured.depth_mm));
+    return std::min(farthest - end_mm, 0.0);
 }
 
 /// Arc lengths where the depth passes a given one: samples must stand there.
@@ -167,8 +177,7 @@ std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, 
         }
         s0 = b;
     }
-    const double beyond = front_of_widest(brush, depth_of(stroke, brush, 1.0)) - h1;
-    if (beyond > 0.0) s1 = length - beyond;
+    s1 = length - std::max(0.0, beyond_the_end(brush, depth_of(stroke, brush, 1.0), h1));
     return {s0, s1};
 }
 
@@ -188,23 +197,32 @@ constexpr int kStepsBack = 12;
 /// Shorter ways back that are tried where the whole one has no room.
 constexpr int kShorter = 4;
 constexpr int kHalvings = 30;  // of a few mm: to rounding
+/// Of the front of a footprint, what is wide enough to hide a pointed rear.
+constexpr double kHidingShare = 0.8;
+constexpr double kWithinReach = 0.999;
+constexpr double kStraightBack = 0.5;  // cosine
+/// Steps of the depth and of the way in which the mark is narrowed for that, as shares of the whole.
+constexpr double kNarrowingDepths = 1.0 / 64.0, kNarrowingWay = 1.0 / 12.0;
 
 /// A hidden beginning: the brush is set down heading back along the line, and drawn back until the round front of its
 /// footprint reaches the drawn beginning. There it turns over, and P rests, so it goes on where the widest section is
 /// as far in front of P as it was behind.
 struct HiddenBeginning {
     Samples back;
+    Stroke onward;             ///< the stroke whose mark begins as narrow as the front hides it
     double on_from_mm;         ///< arc length where the widest section goes on
     Eigen::Vector2d on_along;  ///< and the heading there
 };
 
 /// Whether the pointed rear of a footprint that is set down heading back along the line stays inside the stroke: each
-/// place on its axis is nearer to the line than it is to the edge, there where the rear is so narrow.
+/// place on its axis is nearer to the line than it is to the edge, there where the rear is so narrow. And whether the
+/// way back goes round no corner: P would be dragged past it.
 bool lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm) {
     constexpr int n = 6;
     const Sample widest = line.at(widest_mm);
     const Vector2d along = line.tangent(widest);
     const double rear = brush.tip_to_widest(widest.depth);
+    if (along.dot(line.tangent(line.at(0.0))) < kStraightBack) return false;
     for (int i = 1; i <= n; ++i) {
         const double t = double(i) / n, s = widest_mm + t * rear;
         const double half = half_width_at(stroke, std::min(1.0, s / line.length()));
@@ -215,29 +233,59 @@ bool lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, dou
     return true;
 }
 
+/// Arc length from which on the rear of a footprint as wide as the stroke lies behind `from_mm`, and the stroke
+/// narrowed up to there so that narrower ones do too. None where no depth does.
+std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Brush& brush, double length_mm,
+                                                  double from_mm) {
+    const double step_mm = kNarrowingWay * brush.tip_to_widest(depth_of(stroke, brush, 0.0));
+    std::vector<WidthKnot> knots;
+    for (double s = 0.0; s < length_mm; s += step_mm) {
+        const double at = s / length_mm, wanted = depth_of(stroke, brush, at);
+        double depth = wanted;
+        while (depth > 0.0 && s - brush.tip_to_widest(depth) < from_mm) depth -= kNarrowingDepths * wanted;
+        if (!(depth > brush.depth_range_mm[0])) return {};
+        knots.push_back({at, brush.half_width(depth)});
+        if (depth < wanted) continue;
+        if (knots.size() == 1) return {{s, stroke}};
+        Stroke out = stroke;
+        knots.back().half_width_mm = half_width_at(stroke, at);
+        for (const WidthKnot& knot : stroke.half_width)
+            if (knot.at > at) knots.push_back(knot);
+        out.half_width = std::move(knots);
+        return {{s, std::move(out)}};
+    }
+    return {};
+}
+
 /// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
                                                 const Inverse& inverse, double last_mm, double step_tolerance) {
     if (stroke.closed || brush.is_rigid() || !(line.length() > 0.0)) return {};
-    const auto lever = [&](double s) {
-        return brush.lever_to_widest(depth_of(stroke, brush, std::clamp(s / line.length(), 0.0, 1.0)));
+    const auto lever = [&](const Stroke& of, double s) {
+        return brush.lever_to_widest(depth_of(of, brush, std::clamp(s / line.length(), 0.0, 1.0)));
     };
-    const double e = lever(0.0);
+    const double e = lever(stroke, 0.0);
     if (!(e > 0.0)) return {};
     // there the front reaches the drawn beginning, half a width before the path's
-    const double turn_mm = front_of_widest(brush, depth_of(stroke, brush, 0.0)) - half_width_at(stroke, 0.0);
-    // as far back as it goes on from, or what there is room for; less leaves a waist
-    double from_mm = turn_mm + 2.0 * e;
+    double turn_mm = beyond_the_end(brush, depth_of(stroke, brush, 0.0), half_width_at(stroke, 0.0));
+    const double front_mm = turn_mm + half_width_at(stroke, 0.0);
+    const auto onward = narrowed(stroke, brush, line.length(), turn_mm - kHidingShare * front_mm);
+    if (!onward) return {};
+    // P may not rest so far before the path that its first point is out of reach
+    turn_mm = std::max(turn_mm, -kWithinReach * (e + lever(onward->second, 0.0)));
+    // as far back as it goes on from with all its width, or what there is room for; less leaves a waist
+    const double way_mm = std::max(2.0 * e, onward->first - turn_mm);
+    double from_mm = turn_mm + way_mm;
     for (int tries = 0; from_mm > last_mm || !lies_inside(stroke, brush, line, std::max(from_mm, 0.0)); ++tries) {
         if (tries == kShorter) return {};
-        from_mm -= 2.0 * e / kShorter;
+        from_mm -= way_mm / kShorter;
     }
 
-    HiddenBeginning found;
+    HiddenBeginning found{{}, onward->second, 0.0, {}};
     for (int i = 0; i <= kStepsBack; ++i) {
         const double s = from_mm + (turn_mm - from_mm) * i / kStepsBack;
         Sample sample = line.at(std::max(s, 0.0));
-        if (!(lever(s) > 0.0)) return {};
+        if (!(lever(stroke, s) > 0.0)) return {};
         if (s < 0.0) sample.middle += s * line.tangent(sample);  // a blunt front reaches less far than round caps do
         found.back.push_back(sample);
     }
@@ -253,7 +301,7 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
             }
     few.push_back(found.back.back());
     found.back = few;
-    const auto beyond = [&](double s) { return (line.at(s).middle - contact).norm() - lever(s); };
+    const auto beyond = [&](double s) { return (line.at(s).middle - contact).norm() - lever(found.onward, s); };
     double a = std::max(0.0, turn_mm + e), b = std::min(turn_mm + 4.0 * e, last_mm);
     if (!(a < b) || beyond(a) > 0.0 || !(beyond(b) > 0.0)) return {};
     for (int i = 0; i < kHalvings; ++i) {
@@ -263,6 +311,26 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
     found.on_from_mm = b;
     found.on_along = (line.at(b).middle - contact).normalized();
     return found;
+}
+
+/// The stroke up to where the front of the footprint reaches the drawn end, half a width beyond the path's: a blunt one
+/// has to go beyond that itself.
+Stroke up_to_its_end(const Stroke& stroke, const Brush& brush) {
+    if (stroke.closed || brush.is_rigid()) return stroke;
+    const Line line(stroke, brush);
+    const double length_mm = line.length();
+    const double beyond_mm = -beyond_the_end(brush, depth_of(stroke, brush, 1.0), half_width_at(stroke, 1.0));
+    if (!(length_mm > 0.0) || !(beyond_mm > 0.0)) return stroke;
+    const auto [s0, s1] = painted_stretch(stroke, brush, length_mm);
+    if (!(s1 - s0 > 1e-6)) return stroke;  // a dab
+    Stroke out = stroke;
+    const Index last = stroke.middle_mm.rows();
+    const Sample end = line.at(length_mm);
+    out.middle_mm.conservativeResize(last + 1, Eigen::NoChange);
+    for (int i = 0; i < 4; ++i)
+        out.middle_mm.row(last).segment<2>(2 * i) = end.middle + i / 3.0 * beyond_mm * line.tangent(end);
+    for (WidthKnot& knot : out.half_width) knot.at *= length_mm / (length_mm + beyond_mm);
+    return out;
 }
 
 Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }
@@ -278,15 +346,17 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
         s0 = hidden->on_from_mm;
         first = hidden->on_along;
     }
+    const Stroke& painted = hidden ? hidden->onward : stroke;
+    const Line onward(painted, brush);
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)
-        samples = line.coarse(s0, s1, places_of_depths(stroke, brush, line.length(), inverse.crossings()));
+        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, line.length(), inverse.crossings()));
     if (samples.size() < 2) {
         hidden.reset();
         samples = dab(stroke, line);
         inverse(samples);
     } else {
-        refine_steps(line, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
+        refine_steps(onward, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
     }
     PoseList out;
     if (hidden) {
@@ -414,7 +484,8 @@ Pass beginning_of(const Pass& pass, double length_mm) {
 }
 
 /// The beginning that differs less from the wanted mark, near it.
-Beginning best_beginning(const Stroke& stroke, const Brush& brush, const Line& line, double step_tolerance) {
+Beginning best_beginning(const Stroke& wanted_stroke, const Stroke& stroke, const Brush& brush, const Line& line,
+                         double step_tolerance) {
     const double last_mm = painted_stretch(stroke, brush, line.length())[1];
     if (!hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
         return Beginning::exposed;
@@ -426,7 +497,7 @@ Beginning best_beginning(const Stroke& stroke, const Brush& brush, const Line& l
     const Vector2d at = line.at(0.0).middle;
     const double side = 2.0 * kLookedAt * half, made = kMade * half + 4.0 * brush.lag(depth);
     const Window window{at.x() - 0.5 * side, at.y() - 0.5 * side, side, side};
-    const Coverage wanted = wanted_coverage({stroke}, window, kPixels / half);
+    const Coverage wanted = wanted_coverage({wanted_stroke}, window, kPixels / half);
     const auto mark = [&](const Pass& pass) {
         Marks marks;
         marks.passes = {simulate(beginning_of(pass, made), brush, 0.05 * half)};
@@ -491,14 +562,17 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
+    const Stroke whole = up_to_its_end(stroke, brush);
+    const Line whole_line(whole, brush);
     Beginning start = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
-    if (start == Beginning::automatic) start = best_beginning(stroke, brush, line, step_tolerance);
+    const bool choose = start == Beginning::automatic;
+    if (choose) start = best_beginning(stroke, whole, brush, whole_line, step_tolerance);
     // the plan is simulated before it is handed over; finer steps as long as they help
     if (options.few_poses) step_tolerance *= kStepShare;
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = pass;
-        closed_form(stroke, brush, line, start, step_tolerance, turns).into(trial);
+        closed_form(whole, brush, whole_line, start, step_tolerance, turns).into(trial);
         if (options.few_poses && thin_out(trial, kThinShare, kSurely * options.tolerance_mm, stroke, brush,
                                           options.tolerance_mm, result.pass, result.miss)) {
             result.miss.has_turn_in_place = turns;
@@ -524,6 +598,15 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
     if (options.few_poses)
         thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
     result.miss.has_turn_in_place = turns;
+    if (choose && start == Beginning::hidden && !result.miss.within_tolerance) {
+        Stroke plain = stroke;
+        plain.settings.start.reset();
+        CompensateOptions pointed = options;
+        pointed.start = Beginning::exposed;
+        CompensatedPass other = compensate(plain, brush, pointed);
+        other.pass.settings = stroke.settings;
+        if (other.miss.largest_mm < result.miss.largest_mm) return other;
+    }
     return result;
 }
 

@@ -114,7 +114,7 @@ Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* 
     for (const Arc& arc : pass.arcs)
         if (arc.first >= first && arc.last <= last)
             out.arcs.push_back({at[arc.first - first], at[arc.last - first], arc.centre_mm, arc.direction});
-    out.stroke.load = number;
+    out.stroke.load = out.load = number;
     return out;
 }
 
@@ -162,6 +162,7 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintL
         const double landing = brush.lag(back->stance.depth_mm);
         lasts_to = back->along_mm + options.every_mm - landing;
     }
+    if (parts.empty()) return {pass};
     parts.push_back(part(fine, brush, from, nullptr, int(parts.size()) + 1));
     return parts;
 }

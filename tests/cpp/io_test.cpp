@@ -49,7 +49,7 @@ const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name":
 const std::string kPlan = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50.5],
   "author": "me", "passes": [
     {"stroke": "a", "poses_mm": [[1, 2, 0], [3.5, 2, -1]], "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456",
-     "settings": {"dry": true, "order": -3}, "tilt": [[0, 1, 5, 5, -1]], "mood": "calm"},
+     "settings": {"dry": true, "order": -3}, "tilt": [[0, 1, 5, 5, -1]], "load": 2, "mood": "calm"},
     {"stroke": "b", "poses_mm": [[7, 8, -2]]}]})";
 
 const std::string kArcs = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50],
@@ -226,7 +226,9 @@ TEST_CASE("plan.json: every key arrives and is written back") {
     CHECK(pass.settings.order == -3);
     CHECK(!pass.settings.passes);
     CHECK(pass.settings.extra == R"({"dry":true})");
+    CHECK(pass.load == 2);
     CHECK(pass.extra == R"({"tilt":[[0,1,5,5,-1]],"mood":"calm"})");
+    CHECK(plan.passes[1].load == 0);
     CHECK(plan.passes[1].speed_mm_s == 20.0);
     CHECK(!plan.passes[1].settings.order);
     CHECK(plan.passes[1].settings.extra == "{}");
@@ -242,6 +244,7 @@ TEST_CASE("plan.json: every key arrives and is written back") {
     {"stroke": "a", "speed_mm_s": 12.5, "layer": "ink", "colour": "#123456", "settings": {"order":-3,"dry":true},
      "tilt": [[0,1,5,5,-1]],
      "mood": "calm",
+     "load": 2,
      "poses_mm": [[1, 2, 0], [3.5, 2, -1]]},
     {"stroke": "b", "speed_mm_s": 20, "layer": "", "colour": "", "settings": {},
      "poses_mm": [[7, 8, -2]]}
@@ -277,6 +280,9 @@ TEST_CASE("plan.json: each fault is named with its key") {
         {"\"passes\": [", "\"passes\": [3, ", "passes[0]", "must be an object, not 3"},
         {"\"passes\"", "\"parts\"", "passes", "missing"},
         {"\"brush\":", "\"brosse\":", "brush", "missing"},
+        {"\"load\": 2", "\"load\": \"2\"", "passes[0].load", "must be a number, not a string"},
+        {"\"load\": 2", "\"load\": 1.5", "passes[0].load", "must be a whole number, not 1.5"},
+        {"\"load\": 2", "\"load\": -1", "passes[0].load", "load of stroke a must be at least 0, not -1"},
         {"\"mood\"", "\"poses_mm\"", "passes[0].poses_mm", "stands twice"},
     };
     for (const Fault& fault : faults) {
@@ -378,6 +384,8 @@ TEST_CASE("plan.json: what cannot be read back is not written") {
     CHECK(refused([&](Plan& p) { p.passes[0].settings.width_mm = nan; }) == "passes[0].settings.width_mm");
     CHECK(refused([&](Plan& p) { p.passes[0].settings.brush = "\xc3"; }) == "passes[0].settings");
     CHECK(refused([&](Plan& p) { p.passes[0].extra = "{\"stroke\": 1}"; }) == "passes[0].extra");
+    CHECK(refused([&](Plan& p) { p.passes[0].extra = "{\"load\": 3}"; }) == "passes[0].extra");
+    CHECK(refused([&](Plan& p) { p.passes[0].load = -1; }) == "passes[0].load");
     CHECK(refused([&](Plan& p) { p.passes[0].layer = "\xc3"; }) == "passes[0].layer");
     CHECK(refused([&](Plan& p) { p.sheet_mm = {0.0, 10.0}; }) == "sheet_mm");
 }

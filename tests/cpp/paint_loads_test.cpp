@@ -67,6 +67,7 @@ TEST_CASE("parts are no longer than the paint lasts, named and complete") {
     CHECK(length(parts[0]) < 15.0 + lift);
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (k > 0) CHECK(parts[k].stroke.name() == "wave+" + std::to_string(k + 1));
+        CHECK(parts[k].load == int(k) + 1);
         if (k > 0) CHECK(length(parts[k]) < 40.0 + lift);
         CHECK(parts[k].poses_mm(0, 2) == 0.0);
         CHECK(parts[k].poses_mm(parts[k].poses_mm.rows() - 1, 2) == 0.0);
@@ -82,6 +83,7 @@ TEST_CASE("a paint that lasts leaves the pass as it is") {
     const std::vector<Pass> parts = interrupted(whole, brush, {1000.0, 1000.0, 5.0});
     REQUIRE(parts.size() == 1);
     CHECK(parts[0].poses_mm == whole.poses_mm);
+    CHECK(parts[0].load == 0);
 }
 
 TEST_CASE("a straight line has places to stop at between its few poses") {

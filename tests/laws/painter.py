@@ -111,22 +111,18 @@ def chart_strokes(deepest, depths=5):
     return out
 
 
-def paint(rng, brush, strokes, faults, vertices=33):
-    """A Sheet: what this brush paints along the strokes, with faults drawn at random."""
+def paint(rng, brush, strokes, faults, regions=None):
+    """A Sheet: what this brush paints along the strokes, with faults drawn at random.
+
+    regions: asked in place of swept(), for who has swept these strokes on paper of this height before.
+    """
     height = rng.normal(0, faults.height)
-    plans = np.array([_stepped(poses, height) for _, poses in strokes])
-    laws = [brush.law("lag")] * len(strokes)
-    contacts = oracle.step_all(plans, laws, 20, "rope")
-    longest = (brush.widest_per_half + brush.front_per_half) * brush.law("half_width")(brush.deepest)
-    plans = np.array([_closer(*both, longest) for both in zip(plans, contacts, strict=True)])
-    contacts = oracle.step_all(plans, laws, 20, "rope")
     shift, turn = rng.normal(0, faults.placement, 2), rng.normal(0, faults.turn)
     centre = np.mean(np.concatenate([poses[:, :2] for _, poses in strokes]), axis=0)
     sheet = Sheet(height=height)
-    for (name, poses), plan, contact in zip(strokes, plans, contacts, strict=True):
-        if not _down(plan, contact).any():
-            continue  # the paper lies too low for it
-        region = _painted(brush, plan, contact, vertices)
+    for (name, poses), region in zip(strokes, (regions or swept)(brush, strokes, height), strict=True):
+        if region is None:
+            continue
         moved = rng.normal(0, faults.displacement, 2)
         rings = [_noisy(rng, np.array(ring.coords)[:-1], faults) for ring in _rings(region)]
         c, s = np.cos(turn), np.sin(turn)
@@ -138,6 +134,20 @@ def paint(rng, brush, strokes, faults, vertices=33):
         sheet.marks.append((name, poses, rings))
         sheet.displacements.append(moved)
     return sheet
+
+
+def swept(brush, strokes, height, vertices=33):
+    """For each stroke the region that the brush paints on paper of this height; None where it does not reach it."""
+    plans = np.array([_stepped(poses, height) for _, poses in strokes])
+    laws = [brush.law("lag")] * len(strokes)
+    contacts = oracle.step_all(plans, laws, 20, "rope")
+    longest = (brush.widest_per_half + brush.front_per_half) * brush.law("half_width")(brush.deepest)
+    plans = np.array([_closer(*both, longest) for both in zip(plans, contacts, strict=True)])
+    contacts = oracle.step_all(plans, laws, 20, "rope")
+    return [
+        _painted(brush, plan, contact, vertices) if _down(plan, contact).any() else None
+        for plan, contact in zip(plans, contacts, strict=True)
+    ]
 
 
 def _stepped(poses, height):

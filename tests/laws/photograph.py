@@ -6,7 +6,9 @@ along its ray down to the sheet. Only the JPEG is OpenCV's. Lengths in mm, sheet
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -81,7 +83,7 @@ class Sheet:
             x = np.sort(xa[crossing] + (y - ya[crossing]) / (yb - ya)[crossing] * (xb - xa)[crossing]) - c0
             row = out[k // lines]
             for a, b in zip(x[::2], x[1::2], strict=True):
-                a, b = np.clip([a, b], 0, out.shape[1] - 1)
+                a, b = (min(max(at, 0), out.shape[1] - 1) for at in (a, b))
                 first, last = int(a), int(b)
                 if first == last:
                     row[first] += (b - a) / lines
@@ -93,21 +95,26 @@ class Sheet:
 
 
 def page(made, seed=0):
-    """The printed chart: markers by their bits, the bar, and bars in place of letters."""
-    sheet = Sheet(made.plan.sheet_mm, seed)
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, made.dictionary))
+    """The printed chart: markers by their bits, the bar, and bars in place of letters. Its paint is the caller's."""
+    return deepcopy(_printed(made.plan.sheet_mm, made.dictionary, made.markers, made.bar, made.labels, seed))
+
+
+@lru_cache(maxsize=1)  # tests of a file paint on the same page, which is of a hundred megabytes
+def _printed(sheet_mm, dictionary_name, markers, bar, labels, seed):
+    sheet = Sheet(sheet_mm, seed)
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary_name))
     bits = dictionary.markerSize + 2
-    for marker in made.markers:
+    for marker in markers:
         black = cv2.aruco.generateImageMarker(dictionary, marker.id, bits) == 0
         corners = np.array(marker.corners_mm)
         right, down = (corners[1] - corners[0]) / bits, (corners[3] - corners[0]) / bits
         for row, column in np.argwhere(black):
             at = corners[0] + column * right + row * down
             sheet.paint([np.array([at, at + right, at + right + down, at + down])], INK)
-    if made.bar:
-        (x, y), length = made.bar.at_mm, made.bar.length_mm
+    if bar:
+        (x, y), length = bar.at_mm, bar.length_mm
         sheet.paint([box(x, y - 0.15, x + length, y + 0.15)], INK)
-    for label in made.labels:
+    for label in labels:
         x, y = label.at_mm
         size = min(2.3, label.width_mm / (0.6 * len(label.text)))
         for k in range(len(label.text)):

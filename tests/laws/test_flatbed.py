@@ -2,7 +2,7 @@
 the glass, or it is refused in a sentence that says what to do."""
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 
 import cv2
 import numpy as np
@@ -56,6 +56,7 @@ def placed(points_mm, turn_deg):
     return (np.asarray(points_mm) - np.array(A5) / 2) @ to + np.array(GLASS) / 2 + [2.0, -3.0]
 
 
+@lru_cache(maxsize=1)  # what is refused is refused of the same scan; more would be hundreds of megabytes
 def scanned(dpi=300, turn_deg=0.0, **how):
     """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid beside the sheet."""
     made, fine = sheet(**how), dpi / 25.4
@@ -69,7 +70,9 @@ def scanned(dpi=300, turn_deg=0.0, **how):
     light += np.random.default_rng(3).normal(scale=0.006, size=light.shape)
     light = np.clip(light, 0, 1)
     coded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
-    return np.round(coded * 255).astype(np.uint8)
+    pixels = np.round(coded * 255).astype(np.uint8)
+    pixels.flags.writeable = False
+    return pixels
 
 
 def read(pixels, dpi=300, made=None):
@@ -175,7 +178,7 @@ def test_an_empty_sheet_is_refused():
 
 
 def test_half_a_sheet_is_refused():
-    pixels = scanned()
+    pixels = scanned().copy()
     pixels[: pixels.shape[0] // 2] = 230
     assert code_of(pixels)[0] in ("photo-paint-elsewhere", "scan-resolution")
 

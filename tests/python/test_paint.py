@@ -1,5 +1,6 @@
 """Fetching paint: when, where, in which order, and never below what is safe."""
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -176,7 +177,7 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
     for poses in (np.column_stack([step, np.full(40, -5.0)]), hairline):
         passes = [_core.Pass("rub", poses + np.array([30, 30, 0]), 20.0, "", "#000000")]
         plan = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell)
-        assert [a_pass.stroke for a_pass in plan.loads] == ["rub"]
+        assert [(a_pass.stroke, a_pass.load) for a_pass in plan.loads] == [("rub", 0)]
         (told,) = too_long(plan, brush, cell)
         assert agrees(told, f"load-too-long {painted_mm(passes[0]):.0f}", "rub")
         passes[0].settings = REFUSED
@@ -220,6 +221,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     ]
     names_of_loads = [("short", 1), ("long", 1), ("long", 2), ("long", 3), ("last", 1)]
     assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in loads.loads] == names_of_loads
+    assert [a_pass.load for a_pass in loads.loads] == [0, 1, 2, 3, 0]
     assert {a_pass.settings for a_pass in loads.loads} == {_core.Settings()}
     assert names(visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
     assert max(map(painted_mm, loads.loads)) < 120 + 8
@@ -248,7 +250,9 @@ def test_loads_that_were_written_as_a_plan_are_not_cut_again():
     """Parts are longer than a load by what the brush comes back: as strokes they would be cut once more."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     loads = in_loads(long_plan(brush), brush, cell)
-    back = _core.read_plan(_core.write_plan(loads.as_plan()))
+    text = _core.write_plan(loads.as_plan())
+    assert [a_pass.get("load") for a_pass in json.loads(text)["passes"]] == [None, 1, 2, 3, None]
+    back = _core.read_plan(text)
     again = in_loads(back, brush, cell)
     assert [a_pass.stroke for a_pass in again.loads] == [a_pass.stroke for a_pass in loads.loads]
     assert again.strokes() == loads.strokes() == ["short", "long", "long", "long", "last"]
@@ -261,9 +265,9 @@ def test_loads_that_were_written_as_a_plan_are_not_cut_again():
         lost = _core.Plan(back.brush, "", back.sheet_mm, [back.passes[k] for k in passes])
         with refused("load-out-of-order"):
             in_loads(lost, brush, cell)
-    one = _core.Pass("one", back.passes[0].poses_mm, extra='{"load": "2"}')
-    with refused("wrong-type load 2", "one"):
-        in_loads(_core.Plan(back.brush, "", back.sheet_mm, [one]), brush, cell)
+    for written, code in (('"2"', "wrong-type"), ("-2", "out-of-range")):
+        with refused(code, "passes[2].load"):
+            _core.read_plan(text.replace('"load": 2', f'"load": {written}'))
 
 
 def test_what_every_load_does_is_told_once_of_its_stroke():

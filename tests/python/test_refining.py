@@ -82,7 +82,7 @@ def test_a_refined_plan_tells_of_strokes_left_in_closed_form(tmp_path):
 
 
 TWO = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100"><g fill="none"
-stroke="#000" stroke-linecap="round"><path id="one" d="M20 20 H60" stroke-width="3"/>
+stroke="#000" stroke-linecap="round"><path id="one" d="M20 20 H40 V40" stroke-width="3"/>
 <path id="far" d="{d}" stroke-width="{width}"/></g></svg>"""
 
 

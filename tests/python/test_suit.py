@@ -34,10 +34,10 @@ def painted(strokes):
 def test_too_large_a_drawing_is_advised_to_shrink():
     found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
-    assert found.best == 0.35
+    assert found.best == 0.5
     advice = size_advice.advice(found)
-    assert re.search(r"0\.98 at 0\.35 times .* 0\.00 .*--scale 0\.35\)", advice), advice
-    assert "--scale 0.7)" in size_advice.advice(found, 2.0)
+    assert re.search(r"0\.97 at 0\.5 times .* 0\.00 .*--scale 0\.5\)", advice), advice
+    assert "--scale 1)" in size_advice.advice(found, 2.0)
     assert "--scale" not in size_advice.advice(found, None)
 
 

@@ -42,9 +42,8 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
             arcs=ARCS.get(name, ()),
             colour=colour,
             layer="",
-            extra="{}",
             settings=_core.Settings(),
-            origin=SimpleNamespace(load=1),
+            load=0,
         )
         for (name, poses), colour in zip_longest(strokes.items(), colours, fillvalue="")
     ]

@@ -41,6 +41,7 @@ struct Pass {
     std::string layer;
     std::string colour;
     Settings settings;
+    int load = 0;              ///< which of its stroke's loads of paint it is, from 1; 0 for a stroke that is whole
     std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
 };
 

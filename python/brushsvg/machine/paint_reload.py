@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -19,8 +18,8 @@ class PlanInLoads:
     """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
 
     No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. Of a part
-    the key load says which of its stroke it is, in a plan.json, too: as a rule plans are kept as they were planned, and
-    cut for the machine.
+    load says which of its stroke it is, in a plan.json, too: as a rule plans are kept as they were planned, and cut for
+    the machine.
     """
 
     sheet_mm: tuple[float, float]
@@ -50,7 +49,8 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
     """
     loads, last = list(plan.passes), None
     for a_pass in loads:
-        if (number := _load(a_pass)) > 1 and (last is None or _load(last) != number - 1):
+        if is_later_part(a_pass) and (last is None or last.load != a_pass.load - 1):
+            number = a_pass.load
             sentence = f"load {number} of a stroke stands where no load {number - 1} of it comes before"
             raise Error(sentence, a_pass.stroke, code="load-out-of-order")
         last = a_pass
@@ -58,11 +58,8 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
         every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
         loads = []
         for a_pass in plan.passes:
-            whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or _load(a_pass)
-            parts = [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-            for number, part in enumerate(parts, 1) if len(parts) > 1 else ():
-                part.extra = json.dumps({**json.loads(part.extra), "load": number})
-            loads += parts
+            whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
+            loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
 
 
@@ -134,23 +131,7 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
 
 def is_later_part(a_pass) -> bool:
     """Whether a load goes on with the stroke that the load before it paints."""
-    return _load(a_pass) > 1
-
-
-def _load(a_pass) -> int:
-    """Which load of its stroke a pass is, from 1; 0 for a stroke that is whole."""
-    try:
-        extra = json.loads(a_pass.extra)
-    except ValueError:
-        extra = None
-    if not isinstance(extra, dict):
-        raise Error(
-            f"extra must be a JSON object, not {a_pass.extra!r:.40}", a_pass.stroke, code="wrong-type"
-        )
-    load = extra.get("load", 0)
-    if type(load) is not int:
-        raise Error(f"load must be a whole number, not {load!r:.40}", a_pass.stroke, code="wrong-type")
-    return load
+    return a_pass.load > 1
 
 
 def _station_for(a_pass, cell: Cell) -> Station:

@@ -1,4 +1,4 @@
-"""What forbids to run a plan on a machine, each in one sentence."""
+"""Limits of a machine that moves are held against: places, heights, speeds. Each one broken is a sentence."""
 
 from __future__ import annotations
 

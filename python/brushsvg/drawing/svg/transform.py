@@ -1,4 +1,4 @@
-"""Matrices of SVG, and the attribute they are written as; CSS: svg_css_transform.
+"""Matrices of SVG, and the attribute they are written as; CSS: css_transform.
 
 A matrix (a, b, c, d, e, f) maps (x, y) to (a x + c y + e, b x + d y + f).
 """
