@@ -313,6 +313,9 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
     return found;
 }
 
+/// What a front may stay short of the drawn end, as a share of its half width: less is not seen and costs a pose.
+constexpr double kShortOfEnd = 0.05;
+
 /// The stroke up to where the front of the footprint reaches the drawn end, half a width beyond the path's: a blunt one
 /// has to go beyond that itself.
 Stroke up_to_its_end(const Stroke& stroke, const Brush& brush) {
@@ -320,7 +323,7 @@ Stroke up_to_its_end(const Stroke& stroke, const Brush& brush) {
     const Line line(stroke, brush);
     const double length_mm = line.length();
     const double beyond_mm = -beyond_the_end(brush, depth_of(stroke, brush, 1.0), half_width_at(stroke, 1.0));
-    if (!(length_mm > 0.0) || !(beyond_mm > 0.0)) return stroke;
+    if (!(length_mm > 0.0) || !(beyond_mm > kShortOfEnd * half_width_at(stroke, 1.0))) return stroke;
     const auto [s0, s1] = painted_stretch(stroke, brush, length_mm);
     if (!(s1 - s0 > 1e-6)) return stroke;  // a dab
     Stroke out = stroke;
