@@ -16,6 +16,7 @@
 #include "brushsvg/simulate.hpp"
 #include "landing.hpp"
 #include "middle_line.hpp"
+#include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
 #include "tolerance.hpp"
 #include "usable.hpp"
@@ -125,21 +126,6 @@ class Inverse {
     std::vector<double> crossings_;
 };
 
-/// How far the front of the footprint reaches beyond the drawn end of a mark [mm], half a width from its path's, with
-/// the widest section over that: less than 0 is what is missing. A blunt front is not what is left in the end: the
-/// brush is lifted while P rests, and the front of a shallower footprint may lie further ahead of P.
-double beyond_the_end(const Brush& brush, double depth, double half_width_mm) {
-    const auto front_of_contact = [&](double d) {
-        return footprint_at(brush.footprints, d, 1.0).col(0).maxCoeff() - brush.tip_gap(d);
-    };
-    const double end_mm = brush.lever_to_widest(depth) + half_width_mm;
-    double farthest = front_of_contact(depth);
-    if (farthest >= end_mm) return farthest - end_mm;
-    for (const Footprint& measured : brush.footprints.dragged)
-        if (measured.depth_mm < depth) farthest = std::max(farthest, front_of_contact(measured.depth_mm));
-    return std::min(farthest - end_mm, 0.0);
-}
-
 /// Arc lengths where the depth passes a given one: samples must stand there.
 std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
                                      const std::vector<double>& depths) {
@@ -156,29 +142,6 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
         }
     }
     return out;
-}
-
-/// Where along the line the widest section starts and stops: the tip begins the mark and the footprint's front ends it,
-/// half a width beyond the path's ends.
-std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, double length) {
-    if (stroke.closed) return {0.0, length};
-    const double h0 = half_width_at(stroke, 0.0), h1 = half_width_at(stroke, 1.0);
-    constexpr int n = 400;
-    double s0 = 0.0, s1 = length;
-    for (int i = 0; i <= n; ++i) {
-        s0 = length * i / n;
-        if (s0 - brush.tip_to_widest(depth_of(stroke, brush, s0 / std::max(length, 1e-300))) + h0 >= 0.0) break;
-    }
-    if (s0 > 0.0) {  // the crossing lies in the last step
-        double a = std::max(0.0, s0 - length / n), b = s0;
-        for (int i = 0; i < 60; ++i) {
-            const double s = 0.5 * (a + b);
-            (s - brush.tip_to_widest(depth_of(stroke, brush, s / length)) + h0 >= 0.0 ? b : a) = s;
-        }
-        s0 = b;
-    }
-    s1 = length - std::max(0.0, beyond_the_end(brush, depth_of(stroke, brush, 1.0), h1));
-    return {s0, s1};
 }
 
 /// A mark no longer than a footprint: one landing that leaves the widest section at the path's end.
@@ -311,29 +274,6 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
     found.on_from_mm = b;
     found.on_along = (line.at(b).middle - contact).normalized();
     return found;
-}
-
-/// What a front may stay short of the drawn end, as a share of its half width: less is not seen and costs a pose.
-constexpr double kShortOfEnd = 0.05;
-
-/// The stroke up to where the front of the footprint reaches the drawn end, half a width beyond the path's: a blunt one
-/// has to go beyond that itself.
-Stroke up_to_its_end(const Stroke& stroke, const Brush& brush) {
-    if (stroke.closed || brush.is_rigid()) return stroke;
-    const Line line(stroke, brush);
-    const double length_mm = line.length();
-    const double beyond_mm = -beyond_the_end(brush, depth_of(stroke, brush, 1.0), half_width_at(stroke, 1.0));
-    if (!(length_mm > 0.0) || !(beyond_mm > kShortOfEnd * half_width_at(stroke, 1.0))) return stroke;
-    const auto [s0, s1] = painted_stretch(stroke, brush, length_mm);
-    if (!(s1 - s0 > 1e-6)) return stroke;  // a dab
-    Stroke out = stroke;
-    const Index last = stroke.middle_mm.rows();
-    const Sample end = line.at(length_mm);
-    out.middle_mm.conservativeResize(last + 1, Eigen::NoChange);
-    for (int i = 0; i < 4; ++i)
-        out.middle_mm.row(last).segment<2>(2 * i) = end.middle + i / 3.0 * beyond_mm * line.tangent(end);
-    for (WidthKnot& knot : out.half_width) knot.at *= length_mm / (length_mm + beyond_mm);
-    return out;
 }
 
 Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }

@@ -6,6 +6,7 @@
 
 #include "brushsvg/simulate.hpp"
 #include "nearest.hpp"
+#include "stroke_ends.hpp"
 #include "tolerance.hpp"
 
 namespace brushsvg {
@@ -21,16 +22,12 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
     const Ring widest = widest_points(marks, brush);
-    const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     // a blunt front goes beyond the path's end, and on its way back to a hidden beginning beyond that
-    const Index n = line.rows();
-    MiddlePolyline onward(n + 1, 4);
-    onward << line, line.row(n - 1);
-    if (n > 1) onward.row(n).head<2>() += line(n - 1, 3) * (line.row(n - 1) - line.row(n - 2)).head<2>().normalized();
-    MiddlePolyline longer(n + 2, 4);
-    longer << line.row(0), onward;
-    if (n > 1) longer.row(0).head<2>() -= line(0, 3) * (line.row(1) - line.row(0)).head<2>().normalized();
-    Nearest nearest(onward), before_turn(longer);
+    const MiddlePolyline line = flatten(up_to_its_end(stroke, brush), std::min(0.005, 0.05 * tolerance_mm));
+    MiddlePolyline longer(line.rows() + 1, 4);
+    longer << line.row(0), line;
+    if (line.rows() > 1) longer.row(0).head<2>() -= line(0, 3) * (line.row(1) - line.row(0)).head<2>().normalized();
+    Nearest nearest(line), before_turn(longer);
     // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and where
     // the brush turns over it hardly touches
     std::size_t begin = 0, end = marks.taut.size();

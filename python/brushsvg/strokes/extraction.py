@@ -162,7 +162,7 @@ def _names(elements: list[tuple[Element, int]]) -> tuple[list[str], list[Notice]
         for each in _all_names(element, base, count)
     }
     taken: set[str] = set()
-    taken_of: set[str] = set()  # the names whose lanes' and loads' names are taken
+    taken_of: set[str] = set()  # the names whose lanes' names are taken
     last_suffix: dict[str, int] = {}
     result: list[str] = []
     notices: list[Notice] = []
@@ -193,9 +193,9 @@ def _names(elements: list[tuple[Element, int]]) -> tuple[list[str], list[Notice]
 
 
 def _of_which(name: str) -> str:
-    """The stroke whose lane or load has this name; none for one that cannot be such."""
-    found = re.fullmatch(r"(.+?)(~[0-9]+)?(\+[0-9]+)?", name, re.DOTALL)
-    return found[1] if found and found[1] != name else ""
+    """The stroke whose lane has this name; none for one that cannot be such."""
+    found = re.fullmatch(r"(.+?)~[0-9]+(\+[0-9]+)?", name, re.DOTALL)
+    return found[1] if found else ""
 
 
 def _all_names(element: Element, name: str, count: int) -> list[str]:
