@@ -288,7 +288,8 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool
     # a stroke is landed no faster than it is painted
     landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
     speed = max(speeds, default=0.0)
-    if leans:  # straight down is so only up to rounding: the slower feed tells what was meant
+    # straight down is so only up to rounding: the slower feed tells what was meant; a servo is slow where it is steep
+    if leans or cell.servo is None:
         sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
         slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
         for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import re
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -467,6 +468,17 @@ def _corners(way: Way, job: Job) -> list[str]:
     if bad.any():
         k = int(bad.argmax())
         return [f"a corner may be cut by {cut[k]:.3g} mm, line {way.run.legs[k].line}"]
+    return _overlapping(way, ends, job) if way.run.blends_by_radius else []
+
+
+def _overlapping(way: Way, ends: np.ndarray, job: Job) -> list[str]:
+    """The manual of URScript: a move whose blend overlaps with that of the one before or after it is skipped."""
+    for a, b in itertools.pairwise(way.run.legs):
+        far_mm = math.dist(b.start, b.end)
+        if b.kind in ("wait", "stop", "arc") or a.kind in ("wait", "stop") or not (a.cut_mm > 0 and far_mm > 0):
+            continue
+        if a.cut_mm + b.cut_mm > far_mm + ROUNDING_MM and ends[way.run.legs.index(b), 2] <= job.touch_mm:
+            return [f"blends overlap on {far_mm:.3g} mm, line {b.line}"]
     return []
 
 
