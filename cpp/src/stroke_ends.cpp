@@ -51,11 +51,14 @@ std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, 
 
 Stroke up_to_its_end(const Stroke& stroke, const Brush& brush) {
     if (stroke.closed || brush.is_rigid()) return stroke;
-    const Line line(stroke, brush);
-    const double length_mm = line.length();
-    const double beyond_mm = -beyond_the_end(brush, depth_of(stroke, brush, 1.0), half_width_at(stroke, 1.0));
-    if (!(length_mm > 0.0) || !(beyond_mm > kShortOfEnd * half_width_at(stroke, 1.0))) return stroke;
-    const auto [s0, s1] = painted_stretch(stroke, brush, length_mm);
+    Stroke painted = stroke;  // what is wider than the brush is painted as wide as that
+    const auto [least, greatest] = brush.half_width_range_mm();
+    for (WidthKnot& knot : painted.half_width) knot.half_width_mm = std::clamp(knot.half_width_mm, least, greatest);
+    const Line line(painted, brush);
+    const double length_mm = line.length(), half_mm = half_width_at(painted, 1.0);
+    const double beyond_mm = -beyond_the_end(brush, depth_of(painted, brush, 1.0), half_mm);
+    if (!(length_mm > 0.0) || !(beyond_mm > kShortOfEnd * half_mm)) return stroke;
+    const auto [s0, s1] = painted_stretch(painted, brush, length_mm);
     if (!(s1 - s0 > 1e-6)) return stroke;  // a dab
     Stroke out = stroke;
     const Index last = stroke.middle_mm.rows();
