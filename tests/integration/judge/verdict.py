@@ -473,11 +473,12 @@ def _corners(way: Way, job: Job) -> list[str]:
 
 def _overlapping(way: Way, ends: np.ndarray, job: Job) -> list[str]:
     """The manual of URScript: a move whose blend overlaps with that of the one before or after it is skipped."""
-    for a, b in itertools.pairwise(way.run.legs):
-        far_mm = math.dist(b.start, b.end)
-        if b.kind in ("wait", "stop", "arc") or a.kind in ("wait", "stop") or not (a.cut_mm > 0 and far_mm > 0):
+    rests = ("wait", "stop")
+    for (a, b), end in zip(itertools.pairwise(way.run.legs), ends[1:], strict=True):
+        if a.kind in rests or b.kind in (*rests, "arc") or a.cut_mm <= 0 or end[2] > job.touch_mm:
             continue
-        if a.cut_mm + b.cut_mm > far_mm + ROUNDING_MM and ends[way.run.legs.index(b), 2] <= job.touch_mm:
+        far_mm = math.dist(b.start, b.end)
+        if 0 < far_mm < a.cut_mm + b.cut_mm - ROUNDING_MM:
             return [f"blends overlap on {far_mm:.3g} mm, line {b.line}"]
     return []
 
