@@ -45,6 +45,17 @@ def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
     assert _core.area(bar.wanted_mm) == pytest.approx(300)
 
 
+@pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, False)])
+def test_a_leg_stays_straight_to_a_cut_that_is_nearly_square_and_runs_into_a_sharp_corner(
+    slant_mm, is_straight
+):
+    """Cut at 84, 70 and 45 degrees. Towards a corner of 70 degrees, as an A's feet have, the leg made a hook."""
+    (leg,) = painted(path(f"M40 5V{40 + slant_mm}L46 40V5Z"))
+    line = _core.flatten(leg, 0.01)[:, :2]
+    assert (np.abs(line[:, 0] - 43).max() < 0.35) == is_straight
+    assert (line[-1, 1] < 50 - 40) == (not is_straight)
+
+
 @pytest.mark.parametrize(
     ("d", "start"),
     [
