@@ -36,6 +36,7 @@ class Arm:
     out: int = 0  # first row outside of the crossing's discs
     mate: Arm | None = None
     other: Arm | None = None  # the same branch from its other end, None where that is free
+    corner: tuple[np.ndarray, float] | None = None  # where it begins at a corner, and the half width there
 
     @cached_property
     def direction(self) -> np.ndarray:
