@@ -75,7 +75,7 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
         for crossing in piece.ends:
             at_crossing.setdefault(crossing, set()).add(k)
     for number, crossing in enumerate(skeleton.crossings):
-        if not crossing.is_corner:
+        if not crossing.is_corner or crossing.has_tip:
             continue
         near = sorted(at_crossing.get(number, ()))
         here = [(k, side) for k in near for side in (0, 1) if _end(chains[k], side) == number]
