@@ -66,7 +66,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         job = replace(job, visits=visits(loads, cell, job.first_stroke))
     except Error as unserved:
         problems.append(unserved.notice())
-    made = _held(unchecked_program(loads, brush, cell, job), loads)
+    made = unchecked_program(loads, brush, cell, job)
     first, count = job.first_stroke, len(loads.loads)
     if count and not 1 <= first <= count:
         sentence = f"stroke {first} is outside the range [1, {count}] of this job"
@@ -84,14 +84,6 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     return Walked(loads, job, made, list(dict.fromkeys(problems)))
 
 
-def _held(made: Program, loads: PlanInLoads) -> Program:
-    """The program with its sections made once, where that is little: they are walked for limits, time and text."""
-    if sum(len(a_pass.poses_mm) for a_pass in loads.loads) > POSES_AT_ONCE:
-        return made
-    sections = cache(lambda: tuple(made.sections()))
-    return replace(made, sections=lambda: iter(sections()))
-
-
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
     """The same for a program's ways, its rise before the first move included."""
     found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
@@ -102,22 +94,23 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
 
 
 def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
-    """The same for who only asks how long it takes or wants to see it: limits are not looked at."""
-
-    frame = robot_from_paper(cell, job.z_offset_mm)
+    """The same for who only asks how long it takes or wants to see it: limits are not looked at. Its sections are made
+    once where they are few: they are walked for limits, time, length and text."""
+    frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
+    left = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
 
     def sections() -> Iterator[Section]:
-        count = len(loads.loads)
-        for number, a_pass in enumerate(loads.loads, 1):
-            if number < job.first_stroke:
-                continue
+        for number, a_pass in left:
             stations = job.visits[number - 1] if job.visits else ()
             yield from (visit(station, brush, cell) for station in stations)
             moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
             yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
 
+    made = cache(lambda: tuple(sections()))
+    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_AT_ONCE
     rise_mm = rise_over(cell, loads.sheet_mm, frame)
-    return Program((), cell, frame, sections, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
+    walk = (lambda: iter(made())) if is_little else sections
+    return Program((), cell, frame, walk, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
 
 
 def over(point, height_mm: float) -> np.ndarray:

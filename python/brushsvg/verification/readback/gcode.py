@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import cache, lru_cache
 
 from ...errors import Error
 from ...machine.cell import Cell
@@ -51,6 +52,14 @@ UNKNOWN_TO_GRBL = {
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
+@lru_cache(maxsize=10_000)  # a servo's steps are few lines, each many times
+def _words(line: str) -> tuple[tuple[str, float], ...]:
+    """Letters and numbers of a line; () for what is no line of words."""
+    if not _CODE.fullmatch(line):
+        return ()
+    return tuple((letter, float(value) + 0.0) for letter, value in _WORD.findall(line))
+
+
 def read_gcode(text: str, cell: Cell) -> Readback:
     """The program as steps. Error with the line for words that brushsvg does not write, or a missing G21, G90, M2."""
     return _Reader(cell).read(text)
@@ -73,6 +82,7 @@ class _Reader:
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
+        self.height_at = cache(lambda value: height_at(cell.servo, value))
         self.at = {axis: math.nan for axis in "XYZ"}
         self.feed_mm_s = 0.0
         self.rapid_mm_s = cell.speeds.travel_mm_s
@@ -117,11 +127,10 @@ class _Reader:
             )
 
     def _line(self, number: int, line: str) -> None:
-        if not _CODE.fullmatch(line):
+        if not (words := _words(line)):
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
             )
-        words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
         values = {letter: value for letter, value in words if letter not in "GM"}
         if codes == ["M30"] and not self.servo:
@@ -287,4 +296,4 @@ class _Reader:
                 f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo",
                 code="servo-out-of-range",
             )
-        return height_at(self.servo, value)
+        return self.height_at(value)
