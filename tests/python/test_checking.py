@@ -527,6 +527,7 @@ HARMLESS = {
     ],
     "grbl-servo": [
         (r"(?m)^(M3 S\d+\n)(G4)", r"\1(a remark)\n\2"),
+        (r"(?m)^(M3 S\d+\n)(G4)", r"\1(Anna, Monday)\n\2"),
         (r"(?m)^(M3 S6\d+\n)", r"\1\1"),
         (r"(?m)^(G1 X\S+ Y\S+) S(\d+)\n(G1 X\S+ Y\S+) S\2\n", r"\1 S\2\n\3\n"),
         (r"(?m)^F1200\.0", "F1080.0"),
@@ -545,6 +546,7 @@ HARMLESS = {
         (r"(?m)^(  set_tcp.*\n)", r"\1\1"),
         (r"(?m)^(  movel\(on_paper.*\n)", r"\1\1"),
         (r"(?m)^(  # stroke 2)", r"  # all is well\n\1"),
+        (r"(?m)^(  # stroke 2)", r"  # Anna, Monday: slower here\n\1"),
     ],
 }
 

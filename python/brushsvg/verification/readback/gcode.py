@@ -13,6 +13,7 @@ from ...machine.posts.gcode_servo import SERVO_END, height_at
 from . import Act, Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
+_ACTIVE = re.compile(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", re.IGNORECASE)
 _VALUE = r"(?:[GM]-?|[A-FH-LN-Z][+-]?)(?:\d+\.?\d*|\.\d+)"
 _CODE = re.compile(rf"(?:{_VALUE}(?: +|$))+")
 _WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
@@ -192,6 +193,8 @@ class _Reader:
                 f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",
                 code="line-unread",
             )
+        if self.comment is comment and _ACTIVE.match(said):
+            raise Error(f"line {number}: {line[:40]} is a comment that LinuxCNC acts on", code="line-unread")
         self.out.comment(number, said)
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
