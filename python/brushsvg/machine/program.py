@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from ..errors import Error, Notice
-from .cell import Cell, Station, robot_from_paper
+from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .paint_reload import PlanInLoads, visits
@@ -72,7 +72,8 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         sentence = f"stroke {first} is outside the range [1, {count}] of this job"
         return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
-    problems += broken_limits(left, loads.sheet_mm, brush, cell)
+    told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
+    problems += broken_limits(left, loads.sheet_mm, brush, cell, told_mm)
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:
