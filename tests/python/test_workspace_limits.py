@@ -16,7 +16,6 @@ from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
-from brushsvg.pipeline import preparation
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)
@@ -315,8 +314,3 @@ def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed
     assert call(capsys, "convert", drawing, program, "--start", "hidden")[0] == 1
     assert call(capsys, "convert", drawing, program)[0] == 0
     assert call(capsys, "check", program, drawing)[0] == 0
-
-
-def test_a_stroke_that_is_exposed_keeps_all_that_the_drawing_said_of_it():
-    said = {name for name in dir(_core.Settings) if not name.startswith("_")}
-    assert said == {*preparation.SETTINGS, "start"}
