@@ -18,3 +18,10 @@ def test_whatever_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
     assert [job for job in all_ if job.wrong] == []
     assert [job for job in all_ if job.denied] == []
     assert sum(not job.refused for job in all_) > JOBS / 3, "most are written"
+
+
+@pytest.mark.parametrize("dialect, number", [("jaka", 5031), ("grbl", 5064)])
+def test_circles_of_a_brush_that_trails_far_are_lines_on_paper_that_leans(dialect, number, tmp_path):
+    with quick_check() as check:
+        job = tried(dialect, number, tmp_path, check)
+    assert not (job.refused or job.wrong or job.denied), job

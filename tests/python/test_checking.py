@@ -527,6 +527,7 @@ HARMLESS = {
     ],
     "grbl-servo": [
         (r"(?m)^(M3 S\d+\n)(G4)", r"\1(a remark)\n\2"),
+        (r"(?m)^(M3 S\d+\n)(G4)", r"\1(Anna, Monday)\n\2"),
         (r"(?m)^(M3 S6\d+\n)", r"\1\1"),
         (r"(?m)^(G1 X\S+ Y\S+) S(\d+)\n(G1 X\S+ Y\S+) S\2\n", r"\1 S\2\n\3\n"),
         (r"(?m)^F1200\.0", "F1080.0"),
@@ -545,6 +546,7 @@ HARMLESS = {
         (r"(?m)^(  set_tcp.*\n)", r"\1\1"),
         (r"(?m)^(  movel\(on_paper.*\n)", r"\1\1"),
         (r"(?m)^(  # stroke 2)", r"  # all is well\n\1"),
+        (r"(?m)^(  # stroke 2)", r"  # Anna, Monday: slower here\n\1"),
     ],
 }
 
@@ -1108,3 +1110,35 @@ def test_a_line_that_no_header_has_is_named(desk, capsys):
     (desk / "two.ngc").write_text(text.replace("(sheet", "(colour: red)\n(sheet"))
     status, _, ((_, told),) = in_json(capsys, "check", "two.ngc")
     assert status == 1 and agrees(told, "program-changed 'line 3' '(colour: red)' nothing")
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+@pytest.mark.parametrize(
+    "poses",
+    [
+        [(20, 20, -2), (60, 20, -2)],
+        [(20, 20, 0), (30, 20, -2), (60, 30, -2)],
+        [(20, 20, -2), (40, 20, -2), (42, 20, 0)],
+        [(20, 20, 0), (20, 20, -2)],
+        [(20, 20, -2)],
+    ],
+)
+def test_a_plan_that_begins_or_ends_below_the_paper_is_set_down_and_lifted_there(desk, capsys, name, poses):
+    """Its own program was refused: it was read back with the ends that the plan does not name."""
+    plan = _core.Plan("round-6", "", (120.0, 80.0), [_core.Pass("a", np.array(poses, float), 10.0)])
+    (desk / "plan.json").write_text(_core.write_plan(plan))
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "plan.json", program, "--cell", name)[0] == 0
+    assert call(capsys, "check", program, "plan.json", "--cell", name)[::2] == (0, [])
+
+
+def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
+    """0.01 mm wide it was written, and rounded away: the program went over the paper, and check refused it."""
+    (desk / "two.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
+        '<path id="hair" fill="none" stroke="#000" stroke-width="0.01" d="M20 20h40"/></svg>'
+    )
+    status, _, (*_, (_, told)) = in_json(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")
+    assert (status, told.where, told.code) == (1, "hair", "never-pressed")
+    assert call(capsys, "convert", "two.svg", "two.gcode", "--cell", "grbl-3axis")[0] == 0
+    assert call(capsys, "check", "two.gcode", "two.svg")[0] == 0

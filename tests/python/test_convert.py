@@ -3,15 +3,18 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from diagnostics import refused
 
+from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
 from brushsvg.evaluation import report
 from brushsvg.machine import writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
 from brushsvg.pipeline import prediction, preparation, trials
+from brushsvg.planning import travel_order
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
@@ -98,6 +101,19 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
     assert [p.stroke for p in moved.plan.passes] == [s.id for s in moved.strokes] == ["a", "near", "far"]
     assert [p.stroke for p in work.plan.passes] == [s.id for s in work.strokes] == ["a", "far", "near"]
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256
+
+
+def test_the_loads_of_a_stroke_stay_together_whatever_begins_nearer():
+    """The second load counted as one of another stroke, behind which it came."""
+    rows = {"a": (0, 40, 1), "a+2": (35, 80, 2), "b": (40, 20, 0)}
+    passes = []
+    for name, (begin, end, load) in rows.items():
+        poses = [(begin, 20, 0), (begin, 20, -2), (end, 20, -2), (end, 20, 0)]
+        passes.append(_core.Pass(name, np.array(poses, dtype=float), 10.0))
+        passes[-1].load = load
+    assert travel_order.nearest_first(passes) == [0, 1, 2]
+    passes[1].load = 0
+    assert travel_order.nearest_first(passes) == [0, 2, 1], "b begins where a ends"
 
 
 FEW_COLOURS = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"

@@ -179,6 +179,29 @@ def turned(points, degrees):
 FITTED = [(0, 0), (30, 40), (80, -10), (100, 20)]
 
 
+@pytest.mark.parametrize("weights", [None, [1.0] * 4 + [2.0] * 4])
+def test_a_spline_that_jumps_is_two_lines(weights):
+    points = np.array([(0, 0), (10, 0), (20, 10), (30, 10), (30, 40), (40, 40), (50, 50), (60, 50)], float)
+    knots = [0] * 4 + [1] * 4 + [2] * 4
+    element = only(
+        drawing(lambda m: add_spline(m, 3, knots, np.column_stack((points, 0 * points[:, 0])), weights))
+    )
+    for subpath, part in zip(element.subpaths, (points[:4], points[4:]), strict=True):
+        assert apart(subpath, BSpline([0] * 4 + [1] * 4, part, 3)(np.linspace(0, 1, 4000))) < 1e-3
+    near = points.copy()
+    near[4] = near[3] + (0.004, 0)  # what few digits make of one place
+    whole = only(drawing(lambda m: add_spline(m, 3, knots, np.column_stack((near, 0 * near[:, 0])), weights)))
+    assert len(whole.subpaths) == 1
+
+
+def test_a_fit_point_that_stands_twice_is_one():
+    document = drawing()
+    document.modelspace().add_spline([FITTED[0], FITTED[1], FITTED[1], FITTED[2]])
+    other = drawing()
+    other.modelspace().add_spline(FITTED[:3])
+    assert np.array_equal(only(document).subpaths[0].cubics, only(other).subpaths[0].cubics)
+
+
 def test_fit_points_are_met():
     (subpath,) = only(drawing(lambda m: m.add_spline(FITTED))).subpaths
     assert len(subpath.cubics) == 3

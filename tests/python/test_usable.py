@@ -5,7 +5,7 @@ import pytest
 from diagnostics import refused
 from small_drawings import line
 
-from brushsvg import Stroke, _core, find_brush
+from brushsvg import Error, Stroke, _core, find_brush
 
 BRUSH = find_brush("round-6")
 SHEET = (100.0, 60.0)
@@ -43,3 +43,10 @@ def test_degrees_of_freedom_are_one_number():
     """Of a column and a row of a hundred thousand each, their product was built."""
     with pytest.raises(TypeError):
         _core.as_normal(np.ones((100_000, 1)), np.ones(100_000))
+
+
+@pytest.mark.parametrize("freedom", [0.0, -1.0, 1e-300, float("nan")])
+def test_an_interval_from_no_spare_values_is_refused(freedom):
+    for ask in (lambda: _core.deviations_of_95(freedom), lambda: _core.as_normal(np.ones(3), freedom)):
+        with pytest.raises(Error):
+            ask()

@@ -301,3 +301,16 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     (tmp_path / "a.svg").write_text(EDGES.format(own="hidden"), encoding="utf-8")
     status, _, told = call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)
     assert status == 1 and "own" in told[-1], "who asks for a hidden beginning is told"
+
+
+def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed(tmp_path, capsys):
+    """Beside a cap of 7.6 mm the front of a footprint shows by 0.3 mm: beyond the edge, the drawing was refused."""
+    drawn = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
+        '<path id="edge" d="M96.18 45l-18.73 -37.09" stroke="#000" fill="none" stroke-width="7.6"/></svg>'
+    )
+    (tmp_path / "a.svg").write_text(drawn, encoding="utf-8")
+    drawing, program = str(tmp_path / "a.svg"), str(tmp_path / "a.ngc")
+    assert call(capsys, "convert", drawing, program, "--start", "hidden")[0] == 1
+    assert call(capsys, "convert", drawing, program)[0] == 0
+    assert call(capsys, "check", program, drawing)[0] == 0

@@ -45,7 +45,8 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
     """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
-    already stays as it is. Error for a part that does not follow the one before it.
+    already stays as it is. What begins or ends below the paper is set down and lifted there. Error for a part that does
+    not follow the one before it.
     """
     loads, last = list(plan.passes), None
     for a_pass in loads:
@@ -60,7 +61,32 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
         for a_pass in plan.passes:
             whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
             loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-    return PlanInLoads(tuple(plan.sheet_mm), tuple(loads))
+    return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)))
+
+
+def _from_paper_to_paper(a_pass):
+    """The pass; where it begins or ends below the paper, set down or lifted on the spot there."""
+    poses = np.asarray(a_pass.poses_mm)
+    below = poses[[0, -1], 2] < 0 if len(poses) else np.zeros(2, dtype=bool)
+    if not below.any():
+        return a_pass
+    ends = poses[[0, -1]] * (1, 1, 0) + 0.0  # no -0
+    before, after = ends[:1][below[:1]], ends[1:][below[1:]]
+    arcs = [
+        _core.Arc(arc.first + len(before), arc.last + len(before), arc.centre_mm, arc.direction)
+        for arc in a_pass.arcs
+    ]
+    return _core.Pass(
+        a_pass.origin,
+        np.vstack([before, poses, after]),
+        a_pass.speed_mm_s,
+        a_pass.layer,
+        a_pass.colour,
+        a_pass.settings,
+        a_pass.extra,
+        arcs,
+        a_pass.load,
+    )
 
 
 def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:

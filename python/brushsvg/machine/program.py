@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from ..errors import Error, Notice
-from .cell import Cell, Station, robot_from_paper
+from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .paint_reload import PlanInLoads, visits
@@ -66,13 +66,14 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         job = replace(job, visits=visits(loads, cell, job.first_stroke))
     except Error as unserved:
         problems.append(unserved.notice())
-    made = _held(unchecked_program(loads, brush, cell, job), loads)
+    made = unchecked_program(loads, brush, cell, job)
     first, count = job.first_stroke, len(loads.loads)
     if count and not 1 <= first <= count:
         sentence = f"stroke {first} is outside the range [1, {count}] of this job"
         return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
-    problems += broken_limits(left, loads.sheet_mm, brush, cell)
+    told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
+    problems += broken_limits(left, loads.sheet_mm, brush, cell, told_mm)
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:
@@ -82,14 +83,6 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, list(dict.fromkeys(problems)))
-
-
-def _held(made: Program, loads: PlanInLoads) -> Program:
-    """The program with its sections made once, where that is little: they are walked for limits, time and text."""
-    if sum(len(a_pass.poses_mm) for a_pass in loads.loads) > POSES_AT_ONCE:
-        return made
-    sections = cache(lambda: tuple(made.sections()))
-    return replace(made, sections=lambda: iter(sections()))
 
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
@@ -102,22 +95,23 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
 
 
 def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
-    """The same for who only asks how long it takes or wants to see it: limits are not looked at."""
-
-    frame = robot_from_paper(cell, job.z_offset_mm)
+    """The same for who only asks how long it takes or wants to see it: limits are not looked at. Its sections are made
+    once where they are few: they are walked for limits, time, length and text."""
+    frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
+    left = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
 
     def sections() -> Iterator[Section]:
-        count = len(loads.loads)
-        for number, a_pass in enumerate(loads.loads, 1):
-            if number < job.first_stroke:
-                continue
+        for number, a_pass in left:
             stations = job.visits[number - 1] if job.visits else ()
             yield from (visit(station, brush, cell) for station in stations)
             moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
             yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
 
+    made = cache(lambda: tuple(sections()))
+    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_AT_ONCE
     rise_mm = rise_over(cell, loads.sheet_mm, frame)
-    return Program((), cell, frame, sections, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
+    walk = (lambda: iter(made())) if is_little else sections
+    return Program((), cell, frame, walk, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
 
 
 def over(point, height_mm: float) -> np.ndarray:

@@ -21,10 +21,10 @@ def touching_mm_s(brush, cell: Cell) -> float:
     return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
 
 
-def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[Notice]:
+def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) -> list[Notice]:
     """A notice of the stroke or station for each limit that passes break wherever the paper lies.
 
-    brush: asked for nothing but its name and how fast it may go.
+    brush: asked for nothing but its name and how fast it may go. least_mm: pressed by less, rounding may leave nothing.
     """
     problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
     limit = touching_mm_s(brush, cell)
@@ -39,6 +39,12 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell) -> list[Notice]:
             found = [*_heights(poses, cell)]
             if not (poses[:, 2] < 0).any():
                 sentence = "the brush is never pressed to the paper: nothing would be painted"
+                found.append(Notice("", sentence, code="never-pressed"))
+            elif (depth_mm := -poses[:, 2].min()) < least_mm:
+                sentence = (
+                    f"the brush is pressed by {depth_mm:.3g} mm, less than the {least_mm:.3g} mm that a program of "
+                    f"cell {cell.name} tells apart: nothing would be painted"
+                )
                 found.append(Notice("", sentence, code="never-pressed"))
             if cell.servo:
                 found += _too_steep(poses, cell, limit)

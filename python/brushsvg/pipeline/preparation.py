@@ -15,7 +15,7 @@ from ..drawing.design import Notice
 from ..errors import Error
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
-from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
+from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
 from ..machine.program import Job, walked
 from ..planning import travel_order
 from ..planning.refinement import refined
@@ -168,11 +168,13 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
 
 def _begun_within_reach(painted: list, brush, plan, compensated, options: Options) -> list:
     """The strokes, those exposed that choose how they begin, cannot be run as they chose, and can exposed: a hidden
-    beginning is landed on the far side, from where the tool may not be. The list itself where there are none."""
+    beginning is landed on the far side, from where the tool may not be, and its round front may be wider than what is
+    wanted. The list itself where there are none."""
 
     def astray(of) -> set[str]:
         loads = in_loads(of, brush, options.cell)
         problems = walked(loads, brush, options.cell, Job(options.z_offset_mm)).problems
+        problems += off_sheet(_core.simulate(of, brush), brush, of.sheet_mm)
         return {problem.where for problem in problems}
 
     choosing = {stroke.id for stroke in painted if (stroke.settings.start or options.start) == "auto"}

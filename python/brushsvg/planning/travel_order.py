@@ -10,7 +10,8 @@ import numpy as np
 def nearest_first(passes) -> list[int]:
     """Numbers of the passes in the order of the shortest way from the end of one to the start of the next.
 
-    Only passes that follow each other in one layer change places; none is painted backwards.
+    Only passes that follow each other in one layer change places; none is painted backwards. The loads of one stroke
+    stay together.
     """
     return [int(k) for group in _groups(passes) for k in _nearest(passes, group)]
 
@@ -23,13 +24,19 @@ def _groups(passes) -> list[list[int]]:
 
 
 def _nearest(passes, group: list[int]) -> list[int]:
-    starts = np.array([passes[k].poses_mm[0, :2] for k in group])
-    ends = np.array([passes[k].poses_mm[-1, :2] for k in group])
+    strokes: list[list[int]] = []
+    for k in group:
+        if strokes and passes[k].load > 1:
+            strokes[-1].append(k)
+        else:
+            strokes.append([k])
+    starts = np.array([passes[stroke[0]].poses_mm[0, :2] for stroke in strokes])
+    ends = np.array([passes[stroke[-1]].poses_mm[-1, :2] for stroke in strokes])
     order, here = [0], ends[0]  # the first stays the first
-    left = np.arange(1, len(group))
+    left = np.arange(1, len(strokes))
     while len(left):
         next_ = int(np.linalg.norm(starts[left] - here, axis=1).argmin())
         order.append(int(left[next_]))
         here = ends[left[next_]]
         left = np.delete(left, next_)
-    return [group[k] for k in order]
+    return [k for number in order for k in strokes[number]]

@@ -175,9 +175,11 @@ def _world(points: np.ndarray, ocs) -> np.ndarray:
 def _spline(entity, tolerance: float) -> list[Curve]:
     dxf = entity.dxf
     if len(entity.control_points):
-        return [Curve(b_spline(dxf.degree, entity.knots, entity.control_points, entity.weights, tolerance))]
-    tangents = dxf.get("start_tangent"), dxf.get("end_tangent")
-    return [Curve(interpolated(entity.fit_points, tangents, tolerance))]
+        lines = b_spline(dxf.degree, entity.knots, entity.control_points, entity.weights, tolerance)
+    else:
+        tangents = dxf.get("start_tangent"), dxf.get("end_tangent")
+        lines = interpolated(entity.fit_points, tangents, tolerance)
+    return [Curve(cubics) for cubics in lines]
 
 
 # Faces and fillings ---------------------------------------------------------------------------------
@@ -228,8 +230,10 @@ def _edge(edge, tolerance: float) -> list[Curve]:
     points = [(*point, 0.0) for point in edge.control_points]
     if not points:
         fit_points = [(*point, 0.0) for point in edge.fit_points]
-        return [Curve(interpolated(fit_points, (edge.start_tangent, edge.end_tangent), tolerance))]
-    return [Curve(b_spline(edge.degree, edge.knot_values, points, edge.weights, tolerance))]
+        lines = interpolated(fit_points, (edge.start_tangent, edge.end_tangent), tolerance)
+    else:
+        lines = b_spline(edge.degree, edge.knot_values, points, edge.weights, tolerance)
+    return [Curve(cubics) for cubics in lines]
 
 
 def _outline(pieces: list[np.ndarray]) -> np.ndarray:

@@ -10,6 +10,7 @@ _LARGEST_DEGREE = 32  # CAD programs stop at 25; the work grows with its square
 _MOST_FIT_POINTS = 2000  # ezdxf solves a full system of equations for them
 _MOST_HALVINGS = 12  # a piece 4096 times shorter that still does not fit has no tangent
 _MOST_PIECES = 100_000
+_JUMPS = 100  # tolerances: by less the digits of a file are off, and no brush is lifted for it
 
 
 def joined(cubics: np.ndarray) -> np.ndarray:
@@ -19,18 +20,21 @@ def joined(cubics: np.ndarray) -> np.ndarray:
     return cubics
 
 
-def interpolated(fit_points, tangents, tolerance: float) -> np.ndarray:
+def interpolated(fit_points, tangents, tolerance: float) -> list[np.ndarray]:
     """Cubics (n, 4, 3) through fit points as CAD programs lay them; tangents: at the start and end, or None."""
     if len(fit_points) > _MOST_FIT_POINTS:
         raise ValueError(f"{len(fit_points)} fit points without control points, {_MOST_FIT_POINTS} are read")
+    places = [tuple(point) for point in fit_points]
+    fit_points = [point for before, point in zip([None, *places], places, strict=False) if point != before]
     both = None if any(tangent is None for tangent in tangents) else tangents
     tool = ezdxf.math.fit_points_to_cad_cv(fit_points, both)
     points = [point.xyz for point in tool.control_points]
     return b_spline(tool.degree, tool.knots(), points, tool.weights(), tolerance)
 
 
-def b_spline(degree: int, knots, points, weights, tolerance: float) -> np.ndarray:
-    """Cubics (n, 4, 3). points: (n, 3); no knots: evenly spaced ones, clamped; no weights: all alike.
+def b_spline(degree: int, knots, points, weights, tolerance: float) -> list[np.ndarray]:
+    """Lines of cubics (n, 4, 3): one, unless the curve jumps at a knot that stands there degree + 1 times. points:
+    (n, 3); no knots: evenly spaced ones, clamped; no weights: all alike.
 
     ValueError if they do not go together.
     """
@@ -53,9 +57,10 @@ def b_spline(degree: int, knots, points, weights, tolerance: float) -> np.ndarra
         raise ValueError("each control point needs one weight above 0")
     weights = weights / weights.max()
     pieces = _beziers(np.column_stack((points * weights[:, None], weights)), knots, degree)
-    if degree <= 3 and np.ptp(weights) == 0:
-        return joined(_elevated(pieces[..., :3]))
-    return joined(_fitted(pieces, tolerance))
+    is_exact = degree <= 3 and np.ptp(weights) == 0
+    cubics = _elevated(pieces[..., :3]) if is_exact else _fitted(pieces, tolerance)
+    jumps = np.linalg.norm(cubics[1:, 0] - cubics[:-1, 3], axis=1) > _JUMPS * tolerance
+    return [joined(line) for line in np.split(cubics, np.flatnonzero(jumps) + 1)]
 
 
 def _beziers(points: np.ndarray, knots: np.ndarray, degree: int) -> np.ndarray:

@@ -84,11 +84,7 @@ class Readback:
         return self.sections[-1]
 
     def comment(self, number: int, text: str) -> None:
-        """Perhaps the title of a section. Error for one that LinuxCNC acts on."""
-        if re.match(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", text, re.IGNORECASE):
-            raise Error(
-                f"line {number}: ({text[:40]}) is a comment that LinuxCNC acts on", code="line-unread"
-            )
+        """Perhaps the title of a section."""
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
         if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import cache, lru_cache
 
 from ...errors import Error
 from ...machine.cell import Cell
@@ -12,6 +13,7 @@ from ...machine.posts.gcode_servo import SERVO_END, height_at
 from . import Act, Readback, Step
 
 _COMMENT = re.compile(r"\(([^()]*)\)")
+_ACTIVE = re.compile(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", re.IGNORECASE)
 _VALUE = r"(?:[GM]-?|[A-FH-LN-Z][+-]?)(?:\d+\.?\d*|\.\d+)"
 _CODE = re.compile(rf"(?:{_VALUE}(?: +|$))+")
 _WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
@@ -51,6 +53,14 @@ UNKNOWN_TO_GRBL = {
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
+@lru_cache(maxsize=10_000)  # a servo's steps are few lines, each many times
+def _words(line: str) -> tuple[tuple[str, float], ...]:
+    """Letters and numbers of a line; () for what is no line of words."""
+    if not _CODE.fullmatch(line):
+        return ()
+    return tuple((letter, float(value) + 0.0) for letter, value in _WORD.findall(line))
+
+
 def read_gcode(text: str, cell: Cell) -> Readback:
     """The program as steps. Error with the line for words that brushsvg does not write, or a missing G21, G90, M2."""
     return _Reader(cell).read(text)
@@ -73,6 +83,7 @@ class _Reader:
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
+        self.height_at = cache(lambda value: height_at(cell.servo, value))
         self.at = {axis: math.nan for axis in "XYZ"}
         self.feed_mm_s = 0.0
         self.rapid_mm_s = cell.speeds.travel_mm_s
@@ -117,11 +128,10 @@ class _Reader:
             )
 
     def _line(self, number: int, line: str) -> None:
-        if not _CODE.fullmatch(line):
+        if not (words := _words(line)):
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
             )
-        words = [(letter, float(value) + 0.0) for letter, value in _WORD.findall(line)]
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
         values = {letter: value for letter, value in words if letter not in "GM"}
         if codes == ["M30"] and not self.servo:
@@ -183,6 +193,8 @@ class _Reader:
                 f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",
                 code="line-unread",
             )
+        if self.comment is comment and _ACTIVE.match(said):
+            raise Error(f"line {number}: {line[:40]} is a comment that LinuxCNC acts on", code="line-unread")
         self.out.comment(number, said)
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
@@ -287,4 +299,4 @@ class _Reader:
                 f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo",
                 code="servo-out-of-range",
             )
-        return height_at(self.servo, value)
+        return self.height_at(value)
