@@ -239,7 +239,13 @@ def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sa
 
 def coded(light):
     """8-bit sRGB of linear light."""
-    return _codes()[np.round(np.clip(light, 0, 1) * 65535).astype(np.uint16)]
+    out = np.empty(light.shape, np.uint8)
+    for top in range(0, len(light), 32):  # which the processor's own memory holds
+        here = np.clip(light[top : top + 32], 0, 1)
+        here *= 65535
+        here += 0.5
+        out[top : top + 32] = _codes()[here.astype(np.uint16)]
+    return out
 
 
 @cache

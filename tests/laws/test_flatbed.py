@@ -64,6 +64,11 @@ def blurred(dpi, **how):
     return cv2.GaussianBlur(made.shown, None, 0.4 * photograph.TEXELS * 25.4 / dpi)
 
 
+@lru_cache(maxsize=1)
+def grain(shape):
+    return np.random.default_rng(3).standard_normal(size=shape, dtype=np.float32) * np.float32(0.006)
+
+
 @lru_cache(maxsize=1)  # what is refused is refused of the same scan; more would be hundreds of megabytes
 def scanned(dpi=300, turn_deg=0.0, **how):
     """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid beside the sheet."""
@@ -74,9 +79,7 @@ def scanned(dpi=300, turn_deg=0.0, **how):
     to = cv2.getAffineTransform(np.float32(texels - 0.5), np.float32(pixels - 0.5))
     size = tuple(round(side * fine) for side in GLASS)
     light = cv2.warpAffine(made, to, size, borderValue=(0.8, 0.8, 0.8))
-    grain = np.random.default_rng(3).standard_normal(size=light.shape, dtype=np.float32)
-    grain *= np.float32(0.006)
-    light += grain
+    light += grain(light.shape)
     pixels = photograph.coded(light)
     pixels.flags.writeable = False
     return pixels
