@@ -14,7 +14,7 @@ from brushsvg.machine import preflight, writer
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.pictures.marks_png import MIDDLE_LINE, Panel, panels_png
-from brushsvg.pipeline import comparison, outputs, prediction, preparation
+from brushsvg.pipeline import outputs, prediction, preparation, trials
 
 
 def main(drawing: Path, directory: Path) -> None:
@@ -22,7 +22,7 @@ def main(drawing: Path, directory: Path) -> None:
     ways = ("none", "constant", "closed", "refined")
     works = {how: preparation.prepare(drawing, preparation.Options(compensation=how)) for how in ways}
     work = works["closed"]
-    works["best"] = comparison.best_constant(work)
+    works["best"] = trials.best_constant(work)
     marks = {how: prediction.predict(works[how]) for how in works}
     loads = in_loads(work.plan, work.brush, cell)
     walk = preflight.look(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)

@@ -3,11 +3,11 @@
 
 namespace {
 
-/// Names and values of what is said, as they are written in Python.
-py::list said(const brushsvg::Settings& settings) {
-    py::list out;
+/// What is said, by the names that it has in Python.
+py::dict said(const brushsvg::Settings& settings) {
+    py::dict out;
     const auto say = [&out](const char* name, const auto& value) {
-        if (value) out.append(py::str("{}={!r}").format(name, *value));
+        if (value) out[name] = *value;
     };
     each_setting(settings, say);
     say("extra", settings.extra == "{}" ? std::nullopt : std::optional(settings.extra));
@@ -48,8 +48,18 @@ chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be chang
              [](const Settings& self, const py::object& other) {
                  return py::isinstance<Settings>(other) && said(self).equal(said(other.cast<const Settings&>()));
              })
-        .def("__hash__", [](const Settings& self) { return py::hash(py::tuple(said(self))); })
+        .def("__hash__", [](const Settings& self) { return py::hash(py::tuple(said(self).attr("items")())); })
+        .def(
+            "replaced",
+            [](const Settings& self, const py::kwargs& fields) {
+                py::dict all = said(self);
+                all.attr("update")(fields);
+                return py::type::of<Settings>()(**all);
+            },
+            "A copy in which the fields that are given are these.")
         .def("__repr__", [](const Settings& self) {
-            return py::str("Settings({})").format(py::str(", ").attr("join")(said(self)));
+            py::list parts;
+            for (const auto& [name, value] : said(self)) parts.append(py::str("{}={!r}").format(name, value));
+            return py::str("Settings({})").format(py::str(", ").attr("join")(parts));
         });
 }

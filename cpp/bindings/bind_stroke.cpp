@@ -63,7 +63,15 @@ set as a whole.)")
         .def_readwrite("colour", &Stroke::colour)
         .def_property(
             "settings", [](const Stroke& s) { return s.settings; },
-            [](Stroke& s, Settings settings) { s.settings = std::move(settings); });
+            [](Stroke& s, Settings settings) { s.settings = std::move(settings); })
+        .def(
+            "replaced",
+            [](const Stroke& s, const py::kwargs& fields) {
+                py::object made = py::cast(Stroke(s));
+                for (const auto& [name, value] : fields) py::setattr(made, name, value);
+                return made;
+            },
+            "A copy in which the fields that are given are these.");
     m.def(
         "flatten",
         [](const Stroke& stroke, double tolerance_mm) {

@@ -413,7 +413,7 @@ constexpr double kLookedAt = 3.0, kMade = 6.0, kPixels = 8.0;
 constexpr double kWorthHiding = 0.2;
 /// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
 /// the thin ends of drops.
-constexpr double kCalm = 1.5;
+constexpr double kCalm = 0.3;
 
 /// The pass up to where its path is so long, the brush left on the paper.
 Pass beginning_of(const Pass& pass, double length_mm) {

@@ -10,9 +10,10 @@ namespace {
 
 // area over r^2 that an outer corner leaves of a disc in it: tan(a/2) - a/2 for a turn by a, here 45 degrees
 constexpr double kLeastCorner = 0.02;
-// A corner that adds as much to the disc at a line's end is where the line ends, if no other adds half of it: the even
-// corners of a square end add 0.21 each.
-constexpr double kLeastEnd = 0.3, kEndStandsOut = 1.4;
+// A corner that adds as much to the disc at a line's end, one of 68 degrees, is where the line ends, if no other adds
+// nearly as much. Lines to corners that are blunter end in hooks, of which the eye sees more than of what is left
+// blank.
+constexpr double kLeastEnd = 0.5, kEndStandsOut = 1.4;
 // What the end of a stem adds, beside or beyond what leaves it there, over what any branch must: its two corners
 // together, 0.43 if they are right-angled, are too much to be left blank, and a line to where they part leaves little
 // of them.

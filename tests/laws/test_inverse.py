@@ -598,6 +598,14 @@ def test_auto_hides_nothing_for_which_the_line_would_be_missed(cubic, half_width
     np.testing.assert_array_equal(poses_of(bent, [(0.0, half_width)], start="auto"), exposed)
 
 
+@pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 3.9, 4.1])
+def test_bars_of_all_widths_begin_alike(half_width):
+    """Wide ones began pointed beside round ones: a roof on every stem of a sans."""
+    bar = line((60, 90), (60, 40))
+    hidden = poses_of(bar, [(0.0, half_width)], start="hidden")
+    np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), hidden)
+
+
 def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
     bar = line((20, 20), (60, 20))
     exposed, hidden = poses_of(bar, [(0.0, 2.0)]), poses_of(bar, [(0.0, 2.0)], start="hidden")

@@ -11,7 +11,7 @@ from brushsvg.cli import main
 from brushsvg.evaluation import report
 from brushsvg.machine import writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
-from brushsvg.pipeline import comparison, prediction, preparation
+from brushsvg.pipeline import prediction, preparation, trials
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
@@ -30,7 +30,7 @@ def total(work):
 
 
 def test_the_best_constant_lag_is_the_best_of_all(drawing):
-    best = comparison.best_constant(preparation.prepare(drawing))
+    best = trials.best_constant(preparation.prepare(drawing))
     assert best.options.compensation == "constant"
     assert 3 < best.options.lag_mm < 12
     assert best.options.lag_mm % 0.25 == 0
@@ -45,7 +45,7 @@ def test_the_best_constant_lag_is_the_best_of_all(drawing):
 
 def test_the_best_constant_lag_of_a_pen_is_none(drawing):
     work = preparation.prepare(drawing, preparation.Options(brush=find_brush("rigid")))
-    assert comparison.best_constant(work).options.lag_mm == 0
+    assert trials.best_constant(work).options.lag_mm == 0
 
 
 def test_the_comparison_is_a_table(drawing):

@@ -45,6 +45,39 @@ def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
     assert _core.area(bar.wanted_mm) == pytest.approx(300)
 
 
+@pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, False)])
+def test_a_leg_stays_straight_to_a_cut_that_is_nearly_square_and_runs_into_a_sharp_corner(
+    slant_mm, is_straight
+):
+    """Cut at 84, 70 and 45 degrees. Towards a corner of 70 degrees, as an A's feet have, the leg made a hook."""
+    (leg,) = painted(path(f"M40 5V{40 + slant_mm}L46 40V5Z"))
+    line = _core.flatten(leg, 0.01)[:, :2]
+    assert (np.abs(line[:, 0] - 43).max() < 0.35) == is_straight
+    assert (line[-1, 1] < 50 - 40) == (not is_straight)
+
+
+@pytest.mark.parametrize("inner_mm", [12, 14, 16])
+@pytest.mark.parametrize("blunt_mm", [5, 6, 7, 8])
+def test_the_legs_of_an_apex_are_straight_and_begin_beside_each_other(blunt_mm, inner_mm):
+    """Both began at one place and bent towards it, or one went on into the apex."""
+    left, right = 25 - blunt_mm / 2, 25 + blunt_mm / 2
+    legs = painted(path(f"M10 45L{left} 5H{right}L40 45H34L25 {inner_mm}L16 45Z"))
+    assert len(legs) == 2
+    for leg in legs:
+        line = _core.flatten(leg, 0.01)[:, :2]
+        along = (line[-1] - line[0]) / np.hypot(*(line[-1] - line[0]))
+        assert np.abs((line - line[0]) @ [-along[1], along[0]]).max() < 0.1
+    (one, _), (other, _) = (ends(leg)[0] for leg in legs)
+    assert abs(one - other) > 0.08 * blunt_mm
+
+
+def test_what_turns_at_a_corner_as_one_stroke_is_one_line():
+    """A gap between its parts would be refused."""
+    (hook,) = painted(path("M10 10H40V20L16 45L12 41L32 16H10Z"))
+    assert len(hook.middle_mm) > 2
+    assert hook.middle_mm[1:, :2] == pytest.approx(hook.middle_mm[:-1, 6:])
+
+
 @pytest.mark.parametrize(
     ("d", "start"),
     [

@@ -278,6 +278,32 @@ def test_no_test_and_no_binding_is_forgotten():
 
 # The documents --------------------------------------------------------------------------------------
 
+
+def listed() -> dict[str, set[str]]:
+    """By folder of the package, what the list in the order of the arrow has of it."""
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    found: dict[str, set[str]] = {}
+    folder = ""
+    for line in text.split("The package, in the order of the arrow:")[1].split("## ")[0].splitlines():
+        first, *rest = re.split(r"\s{2,}", line.strip())
+        if "/" in first and rest:
+            folder, rest = first.rstrip("/"), rest[1:]
+        else:
+            rest = [first, *rest]
+        found.setdefault(folder, set()).update(" ".join(rest).split())
+    return found
+
+
+FOLDERS = sorted(path.name for path in PACKAGE.iterdir() if (path / "__init__.py").exists())
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_the_list_of_the_package_has_every_file(folder):
+    here = [path for path in (PACKAGE / folder).iterdir() if not path.name.startswith("_")]
+    names = {path.stem if path.suffix == ".py" else f"{path.name}/" for path in here}
+    assert listed()[folder] == names
+
+
 DOCUMENTS = ("ARCHITECTURE.md", "docs/equations.md", "docs/brush.md")
 
 

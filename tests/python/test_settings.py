@@ -65,3 +65,24 @@ def test_a_pass_carries_what_its_stroke_says():
     stroke = _core.Stroke("a", [[0, 0, 5, 0, 9, 0, 20, 0]], half_width=[(0, 1)], settings=Settings(order=4))
     made = _core.compensate([stroke], find_brush("round-6"), (50, 50))
     assert made.plan.passes[0].settings == stroke.settings == Settings(order=4)
+
+
+def test_what_is_not_replaced_stays():
+    settings = Settings(**ALL)
+    for name in ALL:
+        now = settings.replaced(**{name: None})
+        assert now == Settings(**{key: value for key, value in ALL.items() if key != name})
+    assert settings.replaced(order=9) == Settings(**{**ALL, "order": 9})
+    stroke = _core.Stroke("a/1", [[0, 0, 5, 0, 9, 0, 20, 0]], False, [(0, 1)], "ink", "#123456", settings)
+    stroke.wanted_mm = [np.array([[0, 0], [5, 0], [0, 5]])]
+    fields = ("id", "middle_mm", "closed", "half_width", "layer", "colour", "settings", "wanted_mm")
+    for name, value in (("id", "b"), ("closed", True), ("layer", "x"), ("settings", Settings())):
+        now = stroke.replaced(**{name: value})
+        assert getattr(now, name) == value
+        for other in set(fields) - {name}:
+            assert np.array_equal(getattr(now, other), getattr(stroke, other)), other
+    assert stroke.id == "a/1", "the stroke itself is as it was"
+    with pytest.raises(AttributeError):
+        stroke.replaced(width=1)
+    with pytest.raises(TypeError):
+        settings.replaced(width=1)

@@ -16,7 +16,6 @@ from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
-from brushsvg.pipeline import preparation
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)
@@ -302,8 +301,3 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     (tmp_path / "a.svg").write_text(EDGES.format(own="hidden"), encoding="utf-8")
     status, _, told = call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)
     assert status == 1 and "own" in told[-1], "who asks for a hidden beginning is told"
-
-
-def test_a_stroke_that_is_exposed_keeps_all_that_the_drawing_said_of_it():
-    said = {name for name in dir(_core.Settings) if not name.startswith("_")}
-    assert said == {*preparation.SETTINGS, "start"}

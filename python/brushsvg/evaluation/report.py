@@ -155,8 +155,7 @@ def _beside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
     if not stroke.wanted_mm:
         return 0.0
     within = _core.intersect([_square(place_mm, size_mm / 2)], stroke.wanted_mm)
-    bare = _core.Stroke(middle_mm=stroke.middle_mm, half_width=stroke.half_width, closed=stroke.closed)
-    discs = _core.wanted_outline(bare, RING_TOLERANCE_MM)
+    discs = _core.wanted_outline(stroke.replaced(wanted_mm=[]), RING_TOLERANCE_MM)
     return _core.area(within) - _core.area(_core.intersect(within, discs))
 
 

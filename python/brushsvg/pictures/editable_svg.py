@@ -142,9 +142,8 @@ def _line(stroke, height_mm: float) -> str:
 
 
 def _outline(stroke, height_mm: float) -> str:
-    plain = _core.Stroke(middle_mm=stroke.middle_mm, closed=stroke.closed, half_width=stroke.half_width)
     parts = []
-    for ring in _core.wanted_outline(plain, _OUTLINE_MM):
+    for ring in _core.wanted_outline(stroke.replaced(wanted_mm=[]), _OUTLINE_MM):
         points = np.round(np.column_stack([ring[:, 0], height_mm - ring[:, 1]]), 3) + 0.0
         parts.append(("M" + "L".join(["%.6g,%.6g"] * len(points)) + "Z") % tuple(points.ravel().tolist()))
     return "".join(parts)

@@ -186,22 +186,7 @@ def _begun_within_reach(painted: list, brush, plan, compensated, options: Option
 
 
 def _exposed(stroke):
-    was = stroke.settings
-    settings = _core.Settings(**{name: getattr(was, name) for name in SETTINGS}, start="exposed")
-    made = _core.Stroke(
-        stroke.origin,
-        stroke.middle_mm,
-        stroke.closed,
-        stroke.half_width,
-        stroke.layer,
-        stroke.colour,
-        settings,
-    )
-    made.wanted_mm = stroke.wanted_mm
-    return made
-
-
-SETTINGS = ("brush", "kind", "order", "passes", "reload", "skip", "speed_mm_s", "width_mm", "extra")
+    return stroke.replaced(settings=stroke.settings.replaced(start="exposed"))
 
 
 def _forbidden(brush, options: Options):

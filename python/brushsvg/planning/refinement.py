@@ -65,15 +65,7 @@ def towards_reach(painted, wanted, brush):
     half = np.interp(np.linspace(0, 1, 101), *np.array(wanted.half_width).T)
     if np.maximum(half - greatest, 0).mean() <= SPARED * greatest:
         return painted
-    return _core.Stroke(
-        painted.origin,
-        painted.middle_mm,
-        painted.closed,
-        painted.half_width,
-        painted.layer,
-        painted.colour,
-        painted.settings,
-    )
+    return painted.replaced(wanted_mm=[])
 
 
 def _forbidden(passes: list, closed, moved: list[bool], forbidden) -> list[int]:

@@ -134,9 +134,8 @@ def _overlap_at(factor: float, units, brush, made) -> float:
 def scaled(stroke, factor: float):
     """The stroke so many times as large, widths too."""
     half_width = [(at, half * factor) for at, half in stroke.half_width]
-    made = _core.Stroke(stroke.origin, np.asarray(stroke.middle_mm) * factor, stroke.closed, half_width)
-    made.wanted_mm = [ring * factor for ring in stroke.wanted_mm]
-    return made
+    rings = [ring * factor for ring in stroke.wanted_mm]
+    return stroke.replaced(middle_mm=stroke.middle_mm * factor, half_width=half_width, wanted_mm=rings)
 
 
 def suit(brush: str, rows, overlap: float | None, refused) -> Suit:

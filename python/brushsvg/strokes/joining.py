@@ -93,15 +93,8 @@ class _Chain:
             cubics = cubics.copy()
             cubics[-1, 3] = cubics[0, 0]
             cubics, half_width = begun_amid_a_side(cubics, half_width)
-        like = self.first
-        return _core.Stroke(
-            like.origin,
-            cubics.reshape(-1, 8),
-            self.is_ring,
-            half_width,
-            like.layer,
-            like.colour,
-            like.settings,
+        return self.first.replaced(
+            middle_mm=cubics.reshape(-1, 8), closed=self.is_ring, half_width=half_width, wanted_mm=[]
         )
 
 

@@ -58,7 +58,11 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
 def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list[Blank]:
     """Of one element; without shapely where the strokes leave too little."""
     discs = _core.unite(
-        [ring for stroke in strokes for ring in _core.wanted_outline(_bare(stroke), _SWEPT_MM)]
+        [
+            ring
+            for stroke in strokes
+            for ring in _core.wanted_outline(stroke.replaced(wanted_mm=[]), _SWEPT_MM)
+        ]
     )
     whole = _core.area(rings)
     finest, greatest = _finest(brush), brush.half_width_range_mm()[1]
@@ -191,7 +195,3 @@ def _finest(brush) -> float:
     measured = brush.lag.calibrated_mm
     least = brush.half_width_range_mm()[0]
     return max(least, brush.half_width(measured[0])) if measured else least
-
-
-def _bare(stroke):
-    return _core.Stroke(middle_mm=stroke.middle_mm, half_width=stroke.half_width, closed=stroke.closed)

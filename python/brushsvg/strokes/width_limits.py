@@ -150,14 +150,15 @@ def _left_over(filling) -> str:
 
 def _like(stroke, line, lane: int = 1):
     of = stroke.origin
-    name = _core.StrokeId(of.element, of.part, of.repeat, lane)
-    return _core.Stroke(
-        name, line.middle_mm, line.closed, line.half_width, stroke.layer, stroke.colour, stroke.settings
+    return stroke.replaced(
+        id=_core.StrokeId(of.element, of.part, of.repeat, lane),
+        middle_mm=line.middle_mm,
+        closed=line.closed,
+        half_width=line.half_width,
+        wanted_mm=[],
     )
 
 
 def _clamped(stroke, least: float, greatest: float):
     """The stroke with its widths cut to the range."""
-    made = _like(stroke, clamped(stroke, least, greatest))
-    made.wanted_mm = stroke.wanted_mm
-    return made
+    return stroke.replaced(half_width=clamped(stroke, least, greatest).half_width)

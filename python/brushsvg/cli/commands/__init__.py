@@ -3,6 +3,8 @@
 An import inside a function is of what only that command needs: the others start without it.
 """
 
+from .animate import animate_file
+from .border import border_file
 from .brush import brush_check, brush_list, brush_new, brush_plot, brush_show
 from .calibrate import calibrate_file
 from .cell import cell_check, cell_list, cell_new, cell_show
@@ -10,11 +12,12 @@ from .chart import chart_file
 from .check import check_file
 from .compare import compare_files
 from .convert import convert_file
+from .height import height_file
+from .import_drawing import import_file
 from .plugin import install_plugin
+from .predict import predict_file
 from .report import report_file
 from .scan import scan_file
-from .setup import border_file, height_file
-from .show import animate_file, import_file, predict_file
 from .text import text_file
 
 __all__ = [

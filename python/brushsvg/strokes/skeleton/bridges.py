@@ -8,7 +8,7 @@ from ... import _core
 from ...geometry.cubics import at
 from .junctions import Arm, Crossing
 
-_PLACES = 9  # looked at on the way from a corner's disc to where the lines of its arms meet
+_PLACES = 25  # looked at on the way from a corner's disc to where the lines of its arms meet
 
 
 def bridge(a: Arm, b: Arm) -> np.ndarray:
@@ -21,44 +21,62 @@ def bridge(a: Arm, b: Arm) -> np.ndarray:
 
 
 def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
-    """From the crossing to where the arm leaves it: straight on, at the width it has there; at a corner from where the
-    lines of both arms meet."""
+    """From the crossing to where the arm leaves it: straight on, at the width it has there."""
     start = arm.line[arm.out]
     if crossing.is_corner:
-        end, half = crossing.corner
-    else:
-        back = -arm.direction
-        centre = crossing.discs[:, :2].mean(axis=0)
-        end = start[:2] + max(float((centre - start[:2]) @ back), 0.0) * back
-        room = (crossing.discs[:, 2] - np.hypot(*(crossing.discs[:, :2] - end).T)).max()
-        half = min(start[2], max(room, 0.3 * start[2]))
-    t = np.linspace(0, 1, 6)[:-1, None]
-    return np.column_stack([end + t * (start[:2] - end), half + t[:, 0] * (start[2] - half)])
+        return straight(*arm.corner, start)
+    back = -arm.direction
+    centre = crossing.discs[:, :2].mean(axis=0)
+    end = start[:2] + max(float((centre - start[:2]) @ back), 0.0) * back
+    room = (crossing.discs[:, 2] - np.hypot(*(crossing.discs[:, :2] - end).T)).max()
+    return straight(end, min(start[2], max(room, 0.3 * start[2])), start)
+
+
+STEPS = 5  # of a straight way to where a line begins
+
+
+def straight(end_mm: np.ndarray, half_mm: float, start: np.ndarray) -> np.ndarray:
+    """Rows from a place with its half width up to a row of a line, which is left out."""
+    t = np.linspace(0, 1, STEPS + 1)[:-1, None]
+    return np.column_stack([end_mm + t * (start[:2] - end_mm), half_mm + t[:, 0] * (start[2] - half_mm)])
 
 
 def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """Where both arms of each corner begin: where their lines meet, or as near to that as the shape has room for the
-    brush; and the half width there."""
+    """Where the arms of each corner begin: straight on, each on its own line, as far as the shape has room for the
+    brush. And where both do as one stroke: where their lines meet, or as near to that as there is room."""
     corners = [crossing for crossing in crossings if crossing.is_corner]
-    places = [
-        crossing.discs[0, :2] + np.linspace(0, 1, _PLACES)[:, None] * _ray(crossing) for crossing in corners
-    ]
+    ways = [way for crossing in corners for way in _ways(crossing)]
+    places = np.array([tail + np.linspace(0, 1, _PLACES)[:, None] * by for tail, by in ways])
     rooms = _core.clearance(rings, np.reshape(places, (-1, 2)))
-    for crossing, along, room in zip(corners, places, np.reshape(rooms, (-1, _PLACES)), strict=True):
-        wide = max(arm.line[arm.out, 2] for arm in crossing.arms)
-        fits = np.flatnonzero(room >= 0.9 * min(wide, crossing.discs[0, 2]))
-        last = fits[-1] if len(fits) else 0
-        crossing.corner = (along[last], min(float(room[last]), 1.2 * wide))
+    found = list(
+        zip(np.reshape(places, (-1, 3, _PLACES, 2)), np.reshape(rooms, (-1, 3, _PLACES)), strict=True)
+    )
+    for crossing, (along, room) in zip(corners, found, strict=True):
+        disc = crossing.discs[0, 2]
+        widths = [arm.line[arm.out, 2] for arm in crossing.arms]
+        crossing.corner = _farthest(along[0], room[0], max(widths), disc) or (crossing.discs[0, :2], disc)
+        for k, arm in enumerate(crossing.arms):
+            arm.corner = _farthest(along[k + 1], room[k + 1], widths[k], disc) or crossing.corner
 
 
-def _ray(crossing: Crossing) -> np.ndarray:
-    """From a corner's disc towards where the lines of its arms meet; nothing where they are one line."""
-    one, two = crossing.arms
-    p, q = one.line[one.out], two.line[two.out]
-    back, d = -one.direction, -two.direction
+def _farthest(
+    along: np.ndarray, room: np.ndarray, wide: float, disc: float
+) -> tuple[np.ndarray, float] | None:
+    """The last place up to which there is room for the brush, and the half width there."""
+    last = int(np.logical_and.accumulate(room >= 0.95 * min(wide, disc)).sum()) - 1
+    return (along[last], min(float(room[last]), 1.2 * wide)) if last >= 0 else None
+
+
+def _ways(crossing: Crossing) -> list[tuple[np.ndarray, np.ndarray]]:
+    """From a corner's disc to where the lines of its arms meet, and from where either arm begins beyond that."""
+    (p, back), (q, d) = ((arm.line[arm.out, :2], -arm.direction) for arm in crossing.arms)
+    centre, radius = crossing.discs[0, :2], crossing.discs[0, 2]
     cross = back[0] * d[1] - back[1] * d[0]
-    if abs(cross) < 0.2:
-        return np.zeros(2)
-    off = q[:2] - p[:2]
-    ray = p[:2] + (off[0] * d[1] - off[1] * d[0]) / cross * back - crossing.discs[0, :2]
-    return ray * min(1.0, 1.5 * crossing.discs[0, 2] / max(np.hypot(*ray), 1e-9))
+    meet = centre  # of one line, or there and back
+    if abs(cross) >= 0.2:
+        meet = p + ((q - p)[0] * d[1] - (q - p)[1] * d[0]) / cross * back
+    ray = meet - centre
+    return [
+        (centre, ray * min(1.0, 1.5 * radius / max(np.hypot(*ray), 1e-9))),
+        *((at, np.clip((meet - at) @ way + radius, 0, 3 * radius) * way) for at, way in ((p, back), (q, d))),
+    ]

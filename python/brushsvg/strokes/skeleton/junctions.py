@@ -36,6 +36,7 @@ class Arm:
     out: int = 0  # first row outside of the crossing's discs
     mate: Arm | None = None
     other: Arm | None = None  # the same branch from its other end, None where that is free
+    corner: tuple[np.ndarray, float] | None = None  # where it begins at a corner, and the half width there
 
     @cached_property
     def direction(self) -> np.ndarray:
@@ -57,6 +58,7 @@ class Crossing:
     dropped: float = 0.0  # the largest that a branch dropped there would add, in squares of the radius
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
+    has_tip: bool = False  # of legs that meet, which are strokes of their own
     corner: tuple[np.ndarray, float] | None = (
         None  # where both arms begin, and the half width there; see joints
     )
@@ -93,8 +95,25 @@ def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]
             _share(*both)
         arms += both
     for crossing in crossings:
+        _leave_out_tip(crossing)
         _join(crossing)
-    return crossings, arms
+    return crossings, [arm for arm in arms if arm.branch not in crossings[arm.crossing].inner]
+
+
+def _leave_out_tip(crossing: Crossing) -> None:
+    """The blunt tip in which two legs meet, as of an A, is no line: both legs run on into it."""
+    if len(crossing.arms) != 3 or len(crossing.discs) > 1:
+        return
+    x, y, radius = crossing.discs[0]
+    for tip in crossing.arms:
+        one, two = (arm for arm in crossing.arms if arm is not tip)
+        is_beyond = one.direction @ two.direction > 0 > (one.direction + two.direction) @ tip.direction
+        end = tip.line[-1, :2] - (x, y)
+        if tip.other is None and is_beyond and np.hypot(*end) < radius:
+            crossing.arms = [one, two]
+            crossing.inner.append(tip.branch)
+            crossing.has_tip = True
+            return
 
 
 def _merged(nodes, lines, ends, degree) -> tuple[dict[int, list[int]], set[int]]:

@@ -11,7 +11,9 @@ import numpy as np
 
 from ...geometry.polylines import length, steps
 from ...geometry.rings import signed_area
+from .bridges import STEPS, straight
 from .graph import Piece, Skeleton
+from .junctions import Crossing
 
 # Lines run towards this direction: down, and to the right where they lie flatter than 30 degrees.
 TOWARDS = np.array([np.cos(np.radians(-60)), np.sin(np.radians(-60))])
@@ -73,7 +75,7 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
         for crossing in piece.ends:
             at_crossing.setdefault(crossing, set()).add(k)
     for number, crossing in enumerate(skeleton.crossings):
-        if not crossing.is_corner:
+        if not crossing.is_corner or crossing.has_tip:
             continue
         near = sorted(at_crossing.get(number, ()))
         here = [(k, side) for k in near for side in (0, 1) if _end(chains[k], side) == number]
@@ -89,9 +91,18 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
         first, second = (i, j) if side_i == 1 else (j, i)
         at_crossing[_end(chains[second], 1)].add(first)
         at_crossing[_end(chains[second], 1)].discard(second)
+        chains[first][-1] = to_corner(chains[first][-1], 1, crossing)
+        chains[second][0] = to_corner(chains[second][0], 0, crossing)
         chains[first] += chains.pop(second)
         lengths[first] += lengths[second]
     return list(chains.values())
+
+
+def to_corner(piece: Piece, side: int, crossing: Crossing) -> Piece:
+    """A piece that begins (side 0) or ends at a corner as the other line does that it goes on with."""
+    line = piece.line if side == 0 else piece.line[::-1]
+    line = np.vstack([straight(*crossing.corner, line[STEPS]), line[STEPS:]])
+    return replace(piece, line=line if side == 0 else line[::-1])
 
 
 def _end(chain: list[Piece], side: int) -> int | None:

@@ -1,16 +1,15 @@
-"""brushsvg border and brushsvg height: what is run before the first stroke."""
+"""brushsvg border: the tool goes round where will be painted."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from ...brush.library import find_brush
 from ...machine import header_lines, preflight, writer
 from ...machine.motion import duration_s
 from ...machine.program import Job
-from ...pipeline import outputs, preparation
+from ...pipeline import outputs
 from ..console import about
-from .options import brush_of, exact_cell, settled, typed, warn_of_example
+from .options import settled, typed, warn_of_example
 from .outputs import check_places, suffix_of, write
 from .prepare import look
 
@@ -34,20 +33,3 @@ def border_file(args) -> None:
         text = writer.text_of(post, replace(made, header=header))
     warn_of_example(args, cell)
     write(args, {args.output: text}, seconds=duration_s(made))
-
-
-def height_file(args) -> None:
-    from ...machine.setup_programs import paper_height
-
-    check_places(args.output)
-    cell = exact_cell(args.cell)
-    brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
-    with about(args.output):
-        post = writer.post_for(suffix_of(args.output), cell)
-    with about(cell.name):
-        made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
-        heights_mm = (args.highest, args.lowest, args.step)
-        header = header_lines.height_header(brush.name, args.sheet, heights_mm, made)
-        text = writer.text_of(post, replace(made, header=header))
-    warn_of_example(args, cell)
-    write(args, {args.output: text}, sum(1 for _ in made.sections()), duration_s(made))

@@ -1,0 +1,18 @@
+"""brushsvg animate: a program as it is painted, to play in a browser."""
+
+from __future__ import annotations
+
+from ...pipeline import outputs
+from ..console import about
+from .options import settled, typed
+from .outputs import check_places, write
+from .prepare import look, seconds_of
+
+
+def animate_file(args) -> None:
+    check_places(args.output)
+    looked = look(settled(typed(args), args.input), outlines=True, at_loads=True)
+    work, loads, cell = looked.work, looked.loads, looked.work.options.cell
+    with about(args.input):
+        page = outputs.played(work, loads, looked.marks, cell, args.speed)
+    write(args, {args.output: page}, len(loads.loads), seconds_of(loads, work.brush, cell))

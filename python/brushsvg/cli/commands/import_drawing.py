@@ -1,0 +1,36 @@
+"""brushsvg import: what was understood of a drawing."""
+
+from __future__ import annotations
+
+from ...drawing import read_drawing
+from ...drawing.layout import arrange
+from ...errors import Error
+from ...strokes.extraction import strokes as strokes_of
+from ..console import about, stage, warn
+from .options import layout_of, reading_of, typed
+from .outputs import check_places, suffix_of, write
+
+
+def import_file(args) -> None:
+    check_places(args.output)
+    chosen = typed(args)
+    with about(args.input):
+        stage("reading")
+        design = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen))
+        try:
+            strokes, notices = strokes_of(design, args.paths_as)
+        except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+            if args.editable:
+                raise
+            strokes, notices = [], [nothing.notice()]
+        notices = [*design.notices, *notices]
+        warn(args.input, notices)
+        if args.editable:
+            from ...pictures.editable_svg import lines_svg
+
+            picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
+        else:
+            from ...pictures.overview import overview
+
+            picture = overview(suffix_of(args.output), design, strokes, notices)
+    write(args, {args.output: picture}, len(strokes))

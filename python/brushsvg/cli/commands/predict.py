@@ -1,0 +1,29 @@
+"""brushsvg predict: what will be painted."""
+
+from __future__ import annotations
+
+from ...pipeline import outputs
+from ..console import about, say, stage
+from .options import settled, typed
+from .outputs import check_places, suffix_of, write
+from .prepare import look, seconds_of
+
+
+def predict_file(args) -> None:
+    check_places(args.output)
+    suffix = suffix_of(args.output)
+    outlines = suffix != ".png" or args.band
+    looked = look(settled(typed(args), args.input), outlines=outlines, whole=suffix == ".json")
+    work, marks = looked.work, looked.marks
+    with about(args.input):
+        band = None
+        if args.band:
+            from ...evaluation.uncertainty import band as band_of
+
+            stage("finding the confidence band")
+            band = band_of(work.plan, work.brush, marks)
+            if not any(band.rings):
+                say(work.brush.name, band.words)
+        picture = outputs.picture(suffix, work, marks, band)
+    seconds = seconds_of(looked.loads, work.brush, work.options.cell)
+    write(args, {args.output: picture}, len(work.plan.passes), seconds)
