@@ -499,8 +499,9 @@ def united(regions):
     return regions[0] if len(regions) else shapely.Polygon()
 
 
-def swept(outlines, convex):
-    """Shapely region swept by a moving outline given at close samples, (n, 2) each.
+def swept(outlines, convex, unite=shapely.union_all):
+    """Shapely region swept by a moving outline given at close samples, (n, 2) each. unite: decides at which of its
+    vertices a ring begins, too.
 
     Hulls of neighbours where the outline is convex and hardly turns, or turns about a point outside (turning about
     one of its flank it leaves a waist that a hull would fill), else the outlines and what each of their edges sweeps.
@@ -525,4 +526,4 @@ def swept(outlines, convex):
         shapely.make_valid(shapely.polygons(np.vstack([first, second]))),
     ]
     regions = np.concatenate(regions)
-    return united(regions[shapely.area(regions) > 1e-12])
+    return unite(regions[shapely.area(regions) > 1e-12])
