@@ -71,6 +71,19 @@ def test_the_legs_of_an_apex_are_straight_and_begin_beside_each_other(blunt_mm, 
     assert abs(one - other) > 0.08 * blunt_mm
 
 
+@pytest.mark.parametrize(
+    ("d", "least"),
+    [
+        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.968),  # 0.959 beside each other
+        ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.958),  # 0.935 towards one place
+    ],
+)
+def test_lines_that_meet_in_a_round_corner_cover_it_either_way(d, least):
+    made = painted(path(d))
+    shape = wanted(made)
+    assert _core.area(_core.intersect(marks(made), shape)) > least * _core.area(shape)
+
+
 def test_what_turns_at_a_corner_as_one_stroke_is_one_line():
     """A gap between its parts would be refused."""
     (hook,) = painted(path("M10 10H40V20L16 45L12 41L32 16H10Z"))

@@ -8,7 +8,14 @@ from ... import _core
 from ...geometry.cubics import at
 from .junctions import Arm, Crossing
 
+# Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
+# is one stroke's.
+NOTCH = 0.01
 _PLACES = 25  # looked at on the way from a corner's disc to where the lines of its arms meet
+_GRID = np.stack(np.meshgrid(*2 * [np.linspace(-1.6, 1.6, 17)]), axis=-1).reshape(-1, 2)
+_AROUND = _GRID[
+    np.hypot(*_GRID.T) <= 1.6
+]  # in radii of a corner's disc: where lines that meet there may leave a notch
 
 
 def bridge(a: Arm, b: Arm) -> np.ndarray:
@@ -43,20 +50,35 @@ def straight(end_mm: np.ndarray, half_mm: float, start: np.ndarray) -> np.ndarra
 
 def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     """Where the arms of each corner begin: straight on, each on its own line, as far as the shape has room for the
-    brush. And where both do as one stroke: where their lines meet, or as near to that as there is room."""
+    brush. Or, where that leaves a notch between them and as one stroke: where their lines meet, or as near to that as
+    there is room."""
     corners = [crossing for crossing in crossings if crossing.is_corner]
     ways = [way for crossing in corners for way in _ways(crossing)]
     places = np.array([tail + np.linspace(0, 1, _PLACES)[:, None] * by for tail, by in ways])
-    rooms = _core.clearance(rings, np.reshape(places, (-1, 2)))
-    found = list(
-        zip(np.reshape(places, (-1, 3, _PLACES, 2)), np.reshape(rooms, (-1, 3, _PLACES)), strict=True)
-    )
-    for crossing, (along, room) in zip(corners, found, strict=True):
+    around = np.array([disc[:2] + disc[2] * _AROUND for disc in (crossing.discs[0] for crossing in corners)])
+    asked = np.vstack([np.reshape(places, (-1, 2)), np.reshape(around, (-1, 2))])
+    rooms = np.array(_core.clearance(rings, asked))
+    inside = np.reshape(rooms[len(ways) * _PLACES :] > 0, (-1, len(_AROUND)))
+    rooms = np.reshape(rooms[: len(ways) * _PLACES], (-1, 3, _PLACES))
+    for k, (crossing, along) in enumerate(zip(corners, np.reshape(places, (-1, 3, _PLACES, 2)), strict=True)):
         disc = crossing.discs[0, 2]
         widths = [arm.line[arm.out, 2] for arm in crossing.arms]
-        crossing.corner = _farthest(along[0], room[0], max(widths), disc) or (crossing.discs[0, :2], disc)
-        for k, arm in enumerate(crossing.arms):
-            arm.corner = _farthest(along[k + 1], room[k + 1], widths[k], disc) or crossing.corner
+        meet = _farthest(along[0], rooms[k, 0], max(widths), disc) or (crossing.discs[0, :2], disc)
+        own = [_farthest(along[n], rooms[k, n], widths[n - 1], disc) or meet for n in (1, 2)]
+        bare = [_bare(crossing, ends, around[k][inside[k]]) for ends in (own, [meet, meet])]
+        crossing.corner = meet
+        for arm, end in zip(crossing.arms, own if bare[0] < bare[1] + NOTCH else [meet, meet], strict=True):
+            arm.corner = end
+
+
+def _bare(crossing: Crossing, ends: list[tuple[np.ndarray, float]], around: np.ndarray) -> float:
+    """Share of the places around a corner that its arms leave bare when they begin there."""
+    discs = np.vstack(
+        [straight(*end, arm.line[arm.out]) for arm, end in zip(crossing.arms, ends, strict=True)]
+    )
+    discs = np.vstack([discs, *(arm.line[arm.out :][:STEPS] for arm in crossing.arms)])
+    off = np.hypot(*(around[:, None] - discs[None, :, :2]).transpose(2, 0, 1))
+    return float((off > discs[:, 2]).all(axis=1).mean()) if len(around) else 0.0
 
 
 def _farthest(

@@ -20,6 +20,10 @@ NECK, STRAIGHTEST_THICK_RAD = 0.6, np.radians(120)
 # What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of
 # 90 degrees 0.21. More is the end of a stem, which a line that cuts the corner would leave bare.
 STEM_END = 0.3
+# Of the turns of two legs towards their tip the less is at least so much of the other: else one of them is a stem that
+# goes on, as of a b below its bowl.
+SIDED = 0.4
+ACUTE = 0.5  # cosine of the angle between legs, at most: wider apart they are a bend
 # Nodes of one crossing, and its arms of which pairs are tried: more is an asterisk of hairs, no writing, and would take
 # the square of it.
 MOST_NODES, MOST_ARMS = 64, 64
@@ -107,9 +111,9 @@ def _leave_out_tip(crossing: Crossing) -> None:
     x, y, radius = crossing.discs[0]
     for tip in crossing.arms:
         one, two = (arm for arm in crossing.arms if arm is not tip)
-        is_beyond = one.direction @ two.direction > 0 > (one.direction + two.direction) @ tip.direction
-        end = tip.line[-1, :2] - (x, y)
-        if tip.other is None and is_beyond and np.hypot(*end) < radius:
+        least, most = sorted(_turn(-leg.direction, tip.direction) for leg in (one, two))
+        is_amid = one.direction @ two.direction > ACUTE and SIDED * most < least < np.pi / 2
+        if tip.other is None and is_amid and np.hypot(*tip.line[-1, :2] - (x, y)) < radius:
             crossing.arms = [one, two]
             crossing.inner.append(tip.branch)
             crossing.has_tip = True
