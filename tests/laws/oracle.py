@@ -488,11 +488,20 @@ def union_of(outlines):
     """Shapely union of polygons (list of (n, 2)); those without area are left out."""
     polygons = shapely.polygons([np.vstack([o, o[:1]]) for o in outlines])
     polygons = shapely.make_valid(polygons)
-    return shapely.union_all(polygons[shapely.area(polygons) > 1e-12])
+    return united(polygons[shapely.area(polygons) > 1e-12])
 
 
-def swept(outlines, convex):
-    """Shapely region swept by a moving outline given at close samples, (n, 2) each.
+def united(regions):
+    """Of neighbours in pairs, and of these again: a third quicker than all at once where each lies on the next."""
+    while len(regions) > 1:
+        even = len(regions) // 2 * 2
+        regions = np.concatenate([shapely.union(regions[0:even:2], regions[1:even:2]), regions[even:]])
+    return regions[0] if len(regions) else shapely.Polygon()
+
+
+def swept(outlines, convex, unite=shapely.union_all):
+    """Shapely region swept by a moving outline given at close samples, (n, 2) each. unite: decides at which of its
+    vertices a ring begins, too.
 
     Hulls of neighbours where the outline is convex and hardly turns, or turns about a point outside (turning about
     one of its flank it leaves a waist that a hull would fill), else the outlines and what each of their edges sweeps.
@@ -517,4 +526,4 @@ def swept(outlines, convex):
         shapely.make_valid(shapely.polygons(np.vstack([first, second]))),
     ]
     regions = np.concatenate(regions)
-    return shapely.union_all(regions[shapely.area(regions) > 1e-12])
+    return unite(regions[shapely.area(regions) > 1e-12])

@@ -1,14 +1,15 @@
 """Photographs of painted charts, rendered: a camera with a lens that bends, tilted over a sheet under uneven light.
 
 Nothing of the reader: polygons become paint by the exact length of each scan line inside of them, every pixel looks
-along its ray down to the sheet. Only the JPEG is OpenCV's. Lengths in mm, sheets with y up, light in linear units.
+along its ray down to the sheet. Only the JPEG is OpenCV's, and how two pixels are mixed. Lengths in mm, sheets with y
+up, light in linear units.
 """
 
 from __future__ import annotations
 
 from copy import deepcopy
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import cv2
 import numpy as np
@@ -74,24 +75,28 @@ class Sheet:
         c0, c1 = max(0, int(ends[:, 0].min()) - 1), min(columns, int(ends[:, 0].max()) + 2)
         r0, r1 = max(0, int(ends[:, 1].min()) - 1), min(rows, int(ends[:, 1].max()) + 2)
         lines = 3  # per row
-        edges = np.vstack([np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in rings])
-        out = np.zeros((max(r1 - r0, 0), max(c1 - c0, 0) + 1))
-        xa, ya, xb, yb = edges.T
-        for k in range(lines * (r1 - r0)):
-            y = r0 + (k + 0.5) / lines
-            crossing = (ya <= y) != (yb <= y)
-            x = np.sort(xa[crossing] + (y - ya[crossing]) / (yb - ya)[crossing] * (xb - xa)[crossing]) - c0
-            row = out[k // lines]
-            for a, b in zip(x[::2], x[1::2], strict=True):
-                a, b = (min(max(at, 0), out.shape[1] - 1) for at in (a, b))
-                first, last = int(a), int(b)
-                if first == last:
-                    row[first] += (b - a) / lines
-                else:
-                    row[first] += (first + 1 - a) / lines
-                    row[first + 1 : last] += 1 / lines
-                    row[last] += (b - last) / lines
-        return out[:, :-1], (r0, r1, c0, c1)
+        xa, ya, xb, yb = np.vstack([np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in rings]).T
+        # which scan lines each edge crosses: those from its lower end on, without its upper end
+        first, last = (
+            np.clip(np.ceil((y - r0) * lines - 0.5), 0, max(r1 - r0, 0) * lines).astype(int)
+            for y in (np.minimum(ya, yb), np.maximum(ya, yb))
+        )
+        edge = np.repeat(np.arange(len(xa)), last - first)
+        line = np.arange(len(edge)) - np.repeat(np.cumsum(last - first) - last, last - first)
+        y = r0 + (line + 0.5) / lines
+        x = xa[edge] + (y - ya[edge]) / (yb - ya)[edge] * (xb - xa)[edge] - c0
+        order = np.lexsort((x, line))
+        row = line[order][::2] // lines
+        wide = max(c1 - c0, 0) + 1
+        a, b = np.clip(x[order].reshape(-1, 2).T, 0, wide - 1)
+        # of each span two texels in part, and those between them whole
+        left, right = a.astype(int), b.astype(int)
+        begun = np.zeros((max(r1 - r0, 0), wide + 1))
+        np.add.at(begun, (row, left), left + 1 - a)
+        np.add.at(begun, (row, left + 1), a - left)
+        np.add.at(begun, (row, right), b - right - 1)
+        np.add.at(begun, (row, right + 1), right - b)
+        return np.cumsum(begun, axis=1)[:, : wide - 1] / lines, (r0, r1, c0, c1)
 
 
 def page(made, seed=0):
@@ -180,38 +185,74 @@ def encoded(pixels, quality=92):
 def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
     """8-bit sRGB pixels (rows, columns, 3)."""
     rng = np.random.default_rng(seed)
-    columns, rows = camera.size_px
-    rotation, place, focal_px, middle = _posed(camera, sheet.size_mm)
-    out = np.empty((rows, columns, 3), np.float32)
-    for top in range(0, rows, 256):
-        v, u = np.mgrid[top : min(top + 256, rows), 0:columns].astype(float)
-        seen = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
-        distance = np.hypot(seen[..., 0], seen[..., 1])
-        ideal = distance.copy()
-        for _ in range(6):
-            ideal = distance / _bent(camera, ideal)
-        seen *= (ideal / np.maximum(distance, 1e-12))[..., None]
-        ray = seen @ rotation[:, :2].T + rotation[:, 2]
-        height = 0.0
-        for _ in range(1 if camera.sag_mm == 0 else 4):
-            at = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
-            height = _height(camera, sheet.size_mm, at)
-        out[top : top + len(v)] = _looked_up(sheet, at) * _lit(camera, sheet.size_mm, at)[..., None]
-        if camera.glare[2]:
-            away = np.hypot(at[..., 0] - camera.glare[0], at[..., 1] - camera.glare[1]) / camera.glare[2]
-            out[top : top + len(v)] += np.float32(1.5 * np.exp(-((np.minimum(away, 5.0)) ** 4)))[..., None]
-        corner = 0.5 * np.hypot(columns, rows) / focal_px
-        out[top : top + len(v)] *= (1 - camera.vignette * (distance / corner) ** 2)[..., None]
-    out *= camera.exposure
+    at, aside = _seen(
+        *(sheet.size_mm, camera.size_px, camera.focal, camera.tilt_deg, camera.turn_deg),
+        *(camera.bend, camera.fill, camera.aside_mm, camera.sag_mm),
+    )
+    out = _looked_up(sheet, at)
+    out *= _lit(camera, sheet.size_mm, at)[..., None]
+    if camera.glare[2]:
+        away = np.hypot(at[..., 0] - camera.glare[0], at[..., 1] - camera.glare[1]) / camera.glare[2]
+        out += 1.5 * np.exp(-((np.minimum(away, 5.0)) ** 4))[..., None]
+    out *= (camera.exposure * (1 - camera.vignette * aside**2))[..., None]
     if camera.blur_px:
         out = _blurred(out, camera.blur_px)
     if any(camera.motion_px):
         out = _moved(out, camera.motion_px)
-    out += rng.normal(size=out.shape).astype(np.float32) * (camera.noise * np.sqrt(np.maximum(out, 0.02)))
-    out = np.clip(out, 0, 1)
-    coded = np.where(out <= 0.0031308, 12.92 * out, 1.055 * np.maximum(out, 1e-9) ** (1 / 2.4) - 0.055)
-    pixels = np.round(coded * 255).astype(np.uint8)
+    grain = rng.standard_normal(size=out.shape, dtype=np.float32)
+    grain *= np.float32(camera.noise) * np.sqrt(np.maximum(out, np.float32(0.02)))
+    out += grain
+    pixels = coded(out)
     return np.ascontiguousarray(pixels[:, ::-1]) if mirrored else pixels
+
+
+@lru_cache(maxsize=2)  # most photographs of a file differ in paint alone
+def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sag_mm):
+    """Of each pixel, in single precision: the place on the sheet (rows, columns, 2), and its distance from the axis
+    over the corner's."""
+    camera = Camera(size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sag_mm=sag_mm)
+    columns, rows = size_px
+    rotation, place, focal_px, middle = _posed(camera, sheet_mm)
+    # the lens is the same all around its axis
+    farthest = np.hypot(*(np.array(size_px) / 2 + 10)) / focal_px
+    seen_at = np.linspace(0, 1.1 * farthest, 10_000)
+    ideal_at = seen_at.copy()
+    for _ in range(6):
+        ideal_at = seen_at / _bent(camera, ideal_at)
+    at = np.empty((rows, columns, 2), np.float32)
+    aside = np.empty((rows, columns), np.float32)
+    for top in range(0, rows, 256):
+        v, u = np.mgrid[top : min(top + 256, rows), 0:columns].astype(float)
+        seen = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
+        distance = np.hypot(seen[..., 0], seen[..., 1])
+        seen *= (np.interp(distance, seen_at, ideal_at) / np.maximum(distance, 1e-12))[..., None]
+        ray = seen @ rotation[:, :2].T + rotation[:, 2]
+        height = 0.0
+        for _ in range(1 if sag_mm == 0 else 4):
+            here = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
+            height = _height(camera, sheet_mm, here)
+        at[top : top + len(v)] = here
+        aside[top : top + len(v)] = distance / (0.5 * np.hypot(columns, rows) / focal_px)
+    at.flags.writeable = aside.flags.writeable = False
+    return at, aside
+
+
+def coded(light):
+    """8-bit sRGB of linear light."""
+    out = np.empty(light.shape, np.uint8)
+    for top in range(0, len(light), 32):  # which the processor's own memory holds
+        here = np.clip(light[top : top + 32], 0, 1)
+        here *= 65535
+        here += 0.5
+        out[top : top + 32] = _codes()[here.astype(np.uint16)]
+    return out
+
+
+@cache
+def _codes():
+    light = np.arange(65536) / 65535
+    code = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+    return np.round(code * 255).astype(np.uint8)
 
 
 def _lit(camera, size_mm, at):
@@ -230,13 +271,7 @@ def _looked_up(sheet, at):
     c = at[..., 0] * TEXELS - 0.5
     r = (sheet.size_mm[1] - at[..., 1]) * TEXELS - 0.5
     inside = (c >= 0) & (r >= 0) & (c <= columns - 2) & (r <= rows - 2)
-    c, r = np.clip(c, 0, columns - 2), np.clip(r, 0, rows - 2)
-    ci, ri = c.astype(int), r.astype(int)
-    fc, fr = (c - ci)[..., None].astype(np.float32), (r - ri)[..., None].astype(np.float32)
-    shown = sheet.shown
-    above = shown[ri, ci] * (1 - fc) + shown[ri, ci + 1] * fc
-    below = shown[ri + 1, ci] * (1 - fc) + shown[ri + 1, ci + 1] * fc
-    value = above * (1 - fr) + below * fr
+    value = cv2.remap(sheet.shown, c, r, cv2.INTER_LINEAR)
     value[~inside] = (0.22, 0.15, 0.1)
     return value
 
@@ -245,32 +280,21 @@ def _blurred(picture, sigma):
     reach = int(np.ceil(4 * sigma))
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
     kernel /= kernel.sum()
-    for axis in (0, 1):
-        padded = np.pad(picture, [(reach, reach) if k == axis else (0, 0) for k in range(3)], mode="edge")
-        length = picture.shape[axis]
-        total = np.zeros_like(picture)
-        for k, weight in enumerate(kernel):
-            total += np.float32(weight) * padded.take(range(k, k + length), axis=axis)
-        picture = total
-    return picture
+    return cv2.sepFilter2D(picture, -1, kernel, kernel, borderType=cv2.BORDER_REPLICATE)
 
 
 def _moved(picture, way_px):
     """The mean of what is seen along a straight way, in steps of half a pixel."""
     steps = max(2, round(2 * np.hypot(*way_px)))
-    total = np.zeros_like(picture)
-    rows, columns = picture.shape[:2]
+    reach = int(np.ceil(0.5 * np.abs(way_px).max())) + 1
+    kernel = np.zeros((2 * reach + 1, 2 * reach + 1))
     for share in np.linspace(-0.5, 0.5, steps):
         right, down = share * np.array(way_px)
-        (r, fr), (c, fc) = ((int(np.floor(v)), v - np.floor(v)) for v in (down, right))
+        (r, fr), (c, fc) = ((int(np.floor(v)), v - np.floor(v)) for v in (-down, -right))
         for dr, wr in ((r, 1 - fr), (r + 1, fr)):
             for dc, wc in ((c, 1 - fc), (c + 1, fc)):
-                at = (
-                    np.clip(np.arange(rows) - dr, 0, rows - 1),
-                    np.clip(np.arange(columns) - dc, 0, columns - 1),
-                )
-                total += np.float32(wr * wc) * picture[at[0]][:, at[1]]
-    return total / np.float32(steps)
+                kernel[reach + dr, reach + dc] += wr * wc / steps
+    return cv2.filter2D(picture, -1, kernel, borderType=cv2.BORDER_REPLICATE)
 
 
 def with_turn(jpeg, orientation):

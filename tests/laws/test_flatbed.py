@@ -18,6 +18,7 @@ from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import read_chart_photos, remarks, told
 from brushsvg.cli import main
 from brushsvg.errors import Error
+from brushsvg.scan.place_by_strokes import _along_ways
 
 A5 = (148.0, 210.0)
 TRUTH = painter.TrueBrush(
@@ -56,21 +57,30 @@ def placed(points_mm, turn_deg):
     return (np.asarray(points_mm) - np.array(A5) / 2) @ to + np.array(GLASS) / 2 + [2.0, -3.0]
 
 
+@lru_cache(maxsize=1)  # of hundreds of megabytes
+def blurred(dpi, **how):
+    """The sheet as the scanner's lens has it, however it lies."""
+    made = sheet(**how)
+    return cv2.GaussianBlur(made.shown, None, 0.4 * photograph.TEXELS * 25.4 / dpi)
+
+
+@lru_cache(maxsize=1)
+def grain(shape):
+    return np.random.default_rng(3).standard_normal(size=shape, dtype=np.float32) * np.float32(0.006)
+
+
 @lru_cache(maxsize=1)  # what is refused is refused of the same scan; more would be hundreds of megabytes
 def scanned(dpi=300, turn_deg=0.0, **how):
     """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid beside the sheet."""
-    made, fine = sheet(**how), dpi / 25.4
-    texels = np.array([(0, 0), (made.shown.shape[1], 0), (0, made.shown.shape[0])], float)
+    made, fine = blurred(dpi, **how), dpi / 25.4
+    texels = np.array([(0, 0), (made.shape[1], 0), (0, made.shape[0])], float)
     corners = placed([(0, A5[1]), A5, (0, 0)], turn_deg)
     pixels = np.column_stack([corners[:, 0], GLASS[1] - corners[:, 1]]) * fine
     to = cv2.getAffineTransform(np.float32(texels - 0.5), np.float32(pixels - 0.5))
     size = tuple(round(side * fine) for side in GLASS)
-    blur = 0.4 * photograph.TEXELS / fine
-    light = cv2.warpAffine(cv2.GaussianBlur(made.shown, None, blur), to, size, borderValue=(0.8, 0.8, 0.8))
-    light += np.random.default_rng(3).normal(scale=0.006, size=light.shape)
-    light = np.clip(light, 0, 1)
-    coded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
-    pixels = np.round(coded * 255).astype(np.uint8)
+    light = cv2.warpAffine(made, to, size, borderValue=(0.8, 0.8, 0.8))
+    light += grain(light.shape)
+    pixels = photograph.coded(light)
     pixels.flags.writeable = False
     return pixels
 
@@ -116,6 +126,18 @@ def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
     degrees, right = re.search(r"turned by (\d+\.\d) degrees( to the right)?", told(found)).groups()
     shown = float(degrees) * (-1 if right else 1)
     assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in told(found)
+
+
+@pytest.mark.parametrize("at_mm", [(12, 10), (150, 10), (12, 150), (150, 140)])
+def test_a_small_sheet_is_found_anywhere_on_a_large_glass(at_mm):
+    """Shifts farther than half of what the match repeats over are no shifts back."""
+    ways = [np.array(points, float) for points in ([(0, 0), (38, 0), (38, 30)], [(5, 22), (20, 22)])]
+    paint = np.zeros((600, 600), np.uint8)
+    for way in ways:
+        line = np.round(3 * (way * [1, -1] + at_mm + [0, 30])).astype(np.int32)
+        cv2.polylines(paint, [line[:, None]], False, 1, 9)
+    turn, shift = _along_ways(paint > 0, ways)
+    assert abs(turn) < 1e-9 and abs(shift - complex(at_mm[0], at_mm[1] + 30)) < 1.5, (turn, shift)
 
 
 def test_light_paint_on_dark_paper_is_read():

@@ -139,7 +139,8 @@ def dense_union(poses, shape, lag="round", close_mm=2e-4):
     for present, group in itertools.groupby(run, key=lambda o: o is not None):
         if present:
             group = list(group)
-            pieces.append(oracle.swept(group, convex) if len(group) > 1 else oracle.union_of(group))
+            swept = oracle.swept(group, convex, oracle.united) if len(group) > 1 else oracle.union_of(group)
+            pieces.append(swept)
     return shapely.union_all(pieces)
 
 

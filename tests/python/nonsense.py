@@ -290,8 +290,8 @@ def readings():
 
 
 def painted_marks():
-    poses = np.array([[0, 0, 0], [12, 0, -3], [30, 0, -3], [30, 25, -3.0]])
-    square = np.array([[-9, -3], [33, -3], [33, 25], [-9, 25.0]])
+    poses = np.array([[0, 0, 0], [5, 0, -3], [12, 0, -3], [12, 10, -3.0]])
+    square = np.array([[-4, -3], [15, -3], [15, 10], [-4, 10.0]])
     sound = _core.PaintedMark("a", poses, [square])
     yield [sound]
     yield [sound, sound]
@@ -300,8 +300,8 @@ def painted_marks():
     for rings in ([], [square[:2]], [square[::-1]], [square * 0]):
         yield [_core.PaintedMark("a", poses, rings)]
     for value in NUMBERS[:8]:  # small ones make marks that no brush paints
-        yield [_core.PaintedMark("a", np.where(poses == 30, value, poses), [square])]
-        yield [_core.PaintedMark("a", poses, [np.where(square == 33, value, square)])]
+        yield [_core.PaintedMark("a", np.where(poses == 12, value, poses), [square])]
+        yield [_core.PaintedMark("a", poses, [np.where(square == 15, value, square)])]
 
 
 def starts():

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 from diagnostics import agrees, heard, in_json, is_told
@@ -24,12 +25,22 @@ def drawing(*elements, size='width="120mm" height="60mm" viewBox="0 0 120 60"'):
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}><title>A line</title>{body}</svg>'
 
 
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """One sound drawing and a plan of it."""
+    folder = tmp_path_factory.mktemp("sound")
+    (folder / "a.svg").write_text(drawing(LINE, DAB))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        assert main(["convert", "a.svg", "plan.json"]) == 0
+    return folder
+
+
 @pytest.fixture
-def desk(tmp_path, monkeypatch):
-    """A directory with one sound drawing, a plan of it, and faulty things to refuse."""
+def desk(sound, tmp_path, monkeypatch):
+    """A directory with copies of these, in which tests put faulty things to refuse."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.svg").write_text(drawing(LINE, DAB))
-    assert main(["convert", "a.svg", "plan.json"]) == 0
+    copytree(sound, tmp_path, dirs_exist_ok=True)
     return tmp_path
 
 

@@ -1,6 +1,7 @@
 """Every command is fed nonsense: refused in lines of ours, with nothing written and nothing left over."""
 
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 
@@ -69,26 +70,35 @@ NONSENSE = {  # None: a folder; False: nothing
 PLACES = {"no folder": "no/out", "below a file": "a.svg/out", "a folder": "folder", "a full device": "full"}
 
 
-@pytest.fixture
-def desk(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path / "profile"))
-    (tmp_path / "a.svg").write_text(
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """What each test has a copy of: a folder with one file of each kind."""
+    folder = tmp_path_factory.mktemp("sound")
+    (folder / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
         '<path id="line" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/></svg>'
     )
-    (tmp_path / "font.svg").write_text(
+    (folder / "font.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
         '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
     )
-    for words in ("convert a.svg own.ngc", "convert a.svg plan.json", "cell new mine.toml"):
-        assert main(words.split()) == 0
-    assert main("brush new mine --lag 5 --width-at 3=2 --width-at 8=7".split()) == 0
-    assert main("chart strokes.json --sheet a5 --strokes few --chart page.json".split()) == 0
     rows = [f"{kind},{depth},{k * depth}" for depth in range(1, 7) for kind, k in (("lag", 2), ("width", 1))]
-    (tmp_path / "table.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
-    (tmp_path / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")
-    capsys.readouterr()
+    (folder / "table.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
+    (folder / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for words in ("convert a.svg own.ngc", "convert a.svg plan.json", "cell new mine.toml"):
+            assert main(words.split()) == 0
+        assert main("brush new mine --lag 5 --width-at 3=2 --width-at 8=7".split()) == 0
+        assert main("chart strokes.json --sheet a5 --strokes few --chart page.json".split()) == 0
+    return folder
+
+
+@pytest.fixture
+def desk(sound, tmp_path, monkeypatch, capsys):
+    copytree(sound, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path / "profile"))
     return tmp_path
 
 

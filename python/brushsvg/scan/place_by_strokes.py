@@ -23,6 +23,7 @@ ENOUGH_PX_PER_MM = (
 )
 COARSE_PX_PER_MM = 3.0  # in which marks are looked for
 WAYS_MM, NEAR_MM = 3.0, 2.0  # how broad ways are drawn, and over how much both pictures are blurred
+AROUND_MM = 10  # to which ways are broadened and blurred around them
 ASKEW_DEG, STEP_DEG = 8, 1  # a sheet lies on the glass aslant by so much at most; tried in steps
 EXTENT = (0.8, 1.25)  # of what is painted against the chart's: beyond, it is another resolution
 SCALE = (
@@ -129,7 +130,8 @@ def _along_ways(paint: np.ndarray, ways_mm: list[np.ndarray]) -> tuple[float, co
         fy=1 / COARSE_PX_PER_MM,
         interpolation=cv2.INTER_AREA,
     )
-    reach = 2 * int(math.hypot(*np.ptp(np.vstack(ways_mm), axis=0)) + max(small.shape))
+    # both beside each other with what is blurred around the ways: what lies beyond one end must not meet the other
+    reach = math.ceil(math.hypot(*np.ptp(np.vstack(ways_mm), axis=0))) + 2 * AROUND_MM + max(small.shape)
     size = cv2.getOptimalDFTSize(reach)
     seen = np.fft.rfft2(cv2.GaussianBlur(small, None, NEAR_MM), (size, size))
     down = [way[:, 0] - 1j * way[:, 1] for way in ways_mm]
@@ -141,7 +143,9 @@ def _along_ways(paint: np.ndarray, ways_mm: list[np.ndarray]) -> tuple[float, co
             for quarter in (0, 90, 180, 270)
             for askew in range(-ASKEW_DEG, ASKEW_DEG + 1, STEP_DEG)
         ]
-        best[is_mirrored] = max((_tried(seen, size, ways, turn) for turn in turns), key=lambda each: each[0])
+        best[is_mirrored] = max(
+            (_tried(seen, small.shape, size, ways, turn) for turn in turns), key=lambda each: each[0]
+        )
     if best[True][0] > best[False][0]:
         raise Error(
             "the scan is mirrored: turn off the mirroring of the scanner's program, or flip the picture back",
@@ -150,11 +154,14 @@ def _along_ways(paint: np.ndarray, ways_mm: list[np.ndarray]) -> tuple[float, co
     return best[False][1:]
 
 
-def _tried(seen: np.ndarray, size: int, ways: list[np.ndarray], turn: float) -> tuple[float, float, complex]:
-    """How much paint lies along the ways at the best shift; the turn; that shift."""
+def _tried(
+    seen: np.ndarray, shape: tuple[int, int], size: int, ways: list[np.ndarray], turn: float
+) -> tuple[float, float, complex]:
+    """How much paint lies along the ways at the best shift; the turn; that shift. shape: of the picture that was seen,
+    beyond which shifts are those up and to the left."""
     turned = [way * cmath.exp(1j * turn) for way in ways]
     every = np.concatenate(turned)
-    corner = complex(math.floor(every.real.min()), math.floor(every.imag.min())) - 4 * (1 + 1j)
+    corner = complex(math.floor(every.real.min()), math.floor(every.imag.min())) - AROUND_MM * (1 + 1j)
     drawn = np.zeros((size, size), np.float32)
     for way in turned:
         points = np.column_stack([(way - corner).real, (way - corner).imag])
@@ -162,7 +169,7 @@ def _tried(seen: np.ndarray, size: int, ways: list[np.ndarray], turn: float) -> 
     drawn = cv2.GaussianBlur(drawn, None, NEAR_MM)
     match = np.fft.irfft2(seen * np.conj(np.fft.rfft2(drawn)), (size, size))
     row, column = np.unravel_index(int(match.argmax()), match.shape)
-    row, column = (k - size if k > size / 2 else k for k in (row, column))
+    row, column = (k - size if k >= end else k for k, end in zip((row, column), shape, strict=True))
     return float(match.max() / np.linalg.norm(drawn)), turn, complex(column, row) - corner
 
 
