@@ -14,7 +14,7 @@ from brushsvg.drawing.text import text_svg
 from brushsvg.pictures.editable_svg import lines_svg
 
 FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&@$%?!&SGQRBDgase"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 LINE = "M 10,30 C 30,10 40,50 60,30 S 90,20 110,40"
 SOURCE = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"

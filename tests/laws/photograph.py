@@ -199,7 +199,7 @@ def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
         out = _blurred(out, camera.blur_px)
     if any(camera.motion_px):
         out = _moved(out, camera.motion_px)
-    grain = rng.standard_normal(size=out.shape, dtype=np.float32)
+    grain = rng.standard_normal(size=out.shape).astype(np.float32)
     grain *= np.float32(camera.noise) * np.sqrt(np.maximum(out, np.float32(0.02)))
     out += grain
     pixels = coded(out)
