@@ -21,7 +21,7 @@ import numpy as np
 from brushsvg import _core, find_brush
 from brushsvg.drawing.design import Design
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "integration"))
 from lettering import PACKAGES, Lettering, letter

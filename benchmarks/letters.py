@@ -36,7 +36,7 @@ from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.strokes.contour_fill import region, unpainted
 from brushsvg.strokes.skeleton import filled
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 LARGEST_MM = 100.0

@@ -17,8 +17,15 @@ import numpy as np
 from brushsvg import _core
 from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.text import text_svg
-from brushsvg.strokes.skeleton import LEAST_SHARE, _connected, _strokes, filled, outline_strokes
+from brushsvg.geometry.rings import with_holes
+from brushsvg.strokes.skeleton import filled
 from brushsvg.strokes.skeleton.graph import skeleton
+from brushsvg.strokes.skeleton.shape_to_strokes import (
+    LEAST_LIMB,
+    LEAST_SHARE,
+    _strokes,
+    outline_strokes,
+)
 from brushsvg.strokes.skeleton.writing_order import joined, ordered
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
@@ -55,9 +62,9 @@ def main() -> None:
     elements = glyphs(options.font.read_bytes(), options.count, options.size)
 
     filling, shapes = ms_each(elements, filled)
-    areas = [area for shape in shapes for area in _connected(shape)]
+    areas = [area for shape in shapes for area in with_holes(shape)]
     per_glyph = len(areas) / len(shapes)
-    axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE))
+    axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE, LEAST_LIMB))
     joined_up = list(zip(areas, axes, strict=True))
     joining, found = ms_each(joined_up, lambda each: skeleton(each[0], *each[1]))
     writing, _ = ms_each(

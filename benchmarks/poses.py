@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 TOLERANCE_MM = 0.05
 EVERY_MM = 0.5

@@ -45,7 +45,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .strokes.corners import lifted_at_corners
     from .strokes.extraction import strokes
     from .strokes.path_objects import path_from_pass, path_from_stroke, stroke_from_path
-    from .strokes.width_limits import within_reach
+    from .strokes.wide_shapes import within_reach
 
     __version__: str
 
@@ -69,7 +69,7 @@ _HOME = {
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
     "lifted_at_corners": "strokes.corners",
-    "within_reach": "strokes.width_limits",
+    "within_reach": "strokes.wide_shapes",
     "marks_png": "pictures.marks_png",
     "marks_svg": "pictures.marks_svg",
 } | dict.fromkeys(

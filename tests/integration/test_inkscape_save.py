@@ -9,7 +9,7 @@ from plugin import SOURCE, sentence
 
 from brushsvg import brush_names, cell_names, find_cell
 from brushsvg.machine.posts import POSTS
-from brushsvg.strokes.width_limits import WIDE
+from brushsvg.strokes.wide_shapes import WIDE
 
 SCHEMA = "/usr/share/inkscape/extensions/inkscape.extension.rng"
 GROUPS = """<svg xmlns="http://www.w3.org/2000/svg" width="6in" height="90mm" viewBox="10 5 300 200"

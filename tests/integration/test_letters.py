@@ -23,7 +23,7 @@ from brushsvg import _core, find_brush
 from brushsvg.drawing.design import Design, Element
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.skeleton import filled
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 SEED = 20260
 CHARACTERS = 300

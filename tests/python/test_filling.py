@@ -7,11 +7,11 @@ from diagnostics import agrees
 from svg_text import read
 
 from brushsvg import _core, find_brush
-from brushsvg.strokes import skeleton
 from brushsvg.strokes.contour_fill import contour_passes, painted, region
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.offset_passes import Line
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.skeleton import shape_to_strokes
+from brushsvg.strokes.wide_shapes import within_reach
 
 HALF_MM = 4.2  # of round-6 at its deepest
 SQUARE = "M5 0H50V45H5Z"
@@ -76,7 +76,7 @@ def test_holes_belong_to_no_stroke():
 
 
 def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
-    monkeypatch.setattr(skeleton, "MOST_CUT", 0)
+    monkeypatch.setattr(shape_to_strokes, "MOST_CUT", 0)
     test_holes_belong_to_no_stroke()
 
 

@@ -7,7 +7,7 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 WIDE = "M10 10H90V26H10Z"  # 16 mm; round-6 paints 8.4
 WEDGE = "M10 20L90 12V28Z"

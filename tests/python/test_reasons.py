@@ -6,7 +6,7 @@ import pytest
 from brushsvg import _core, compensate, find_brush, flatten, simulate
 from brushsvg.evaluation import report
 from brushsvg.evaluation.error_causes import _corner_deg
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 
 def stroke(points, half, closed=False, wanted=None):

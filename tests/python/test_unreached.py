@@ -10,7 +10,7 @@ from brushsvg.pipeline import outputs
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.strokes.unreached import Blank, notices, unreached
-from brushsvg.strokes.width_limits import within_reach
+from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'

@@ -24,7 +24,7 @@ from ..strokes.extraction import strokes as strokes_of
 from ..strokes.joining import joined
 from ..strokes.unreached import missed, unreached
 from ..strokes.unreached import notices as blank_notices
-from ..strokes.width_limits import within_reach
+from ..strokes.wide_shapes import within_reach
 from .json_files import read_plan
 
 DEFAULT_BRUSH = "round-6"

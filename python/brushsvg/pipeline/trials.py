@@ -11,7 +11,7 @@ from .. import _core
 from ..evaluation import report
 from ..planning import size_advice
 from ..planning.refinement import refined
-from ..strokes.width_limits import within_reach
+from ..strokes.wide_shapes import within_reach
 from .prediction import predict
 from .preparation import Options, Work, _way, prepare
 

@@ -14,7 +14,7 @@ LEAST_SHARE = 0.01  # of its shape
 # Besides, in squares of the brush's greatest half width: what a disc leaves of a corner of 60 degrees. Smaller pieces
 # are told where they are limbs, and not where they are corners.
 _CORNER = 0.69
-_LIMB_SHARE = 0.8  # of a disc in it, beyond: see skeleton.LEAST_SHARE
+_LIMB_SHARE = 0.8  # of a disc in it, beyond: see shape_to_strokes.LEAST_SHARE
 MISSED_SHARE = 0.03  # of its shape, beside which strokes run: pointed beginnings leave some of every letter
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
