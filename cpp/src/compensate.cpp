@@ -10,10 +10,11 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/excess_turning.hpp"
-#include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
+#include "hidden_beginning.hpp"
+#include "inverse.hpp"
 #include "landing.hpp"
 #include "middle_line.hpp"
 #include "stroke_ends.hpp"
@@ -38,93 +39,6 @@ void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, Pos
         out.add(from.contact + brush.lag(depth) * turned_by<double>(from.heading, c * angle), depth);
     }
 }
-
-/// q = m + (r - e) u with P dragged by m on the lever e (article's law read backwards).
-class Inverse {
- public:
-    Inverse(const Line& line, const Brush& brush) : line_(line), brush_(brush) {
-        const auto [lo, hi] = brush.depth_range_mm;
-        const auto e = difference(brush.tip_to_widest, brush.tip_gap, lo, hi);
-        ahead_ = make_law(e);
-        behind_ = make_law(e, -1.0);
-        for (const PolynomialPiece& piece : e)
-            for (double root : real_roots(piece.coefficients, piece.lo, piece.hi))
-                if (root > lo && root < hi) crossings_.push_back(root);
-    }
-    /// Depths where the widest section stands over the centre of friction.
-    const std::vector<double>& crossings() const { return crossings_; }
-
-    /// `first`: the heading at the first sample; none: along the line.
-    void operator()(Samples& samples, const std::optional<Vector2d>& first = {}) const {
-        std::size_t begin = 0;
-        while (begin + 1 < samples.size()) {
-            const int sign = sign_of(samples, begin);
-            std::size_t end = begin + 1;
-            while (end + 1 < samples.size() && sign_of(samples, end) == sign) ++end;
-            if (sign == 0)
-                follow_tangent(samples, begin, end);
-            else if (sign > 0)
-                forwards(samples, begin, end, begin == 0 && first ? *first : line_.tangent(samples[begin]));
-            else
-                backwards(samples, begin, end);
-            begin = end;
-        }
-        if (samples.size() == 1) {
-            Sample& only = samples[0];
-            only.contact = only.middle - brush_.lever_to_widest(only.depth) * only.heading;
-        }
-        for (Sample& sample : samples) sample.tcp = sample.contact + brush_.lag(sample.depth) * sample.heading;
-    }
-
- private:
-    int sign_of(const Samples& samples, std::size_t i) const {
-        if (ahead_.rigid) return 0;
-        const double e = brush_.lever_to_widest(0.5 * (samples[i].depth + samples[i + 1].depth));
-        return e > 0.0 ? 1 : e < 0.0 ? -1 : 0;
-    }
-    void follow_tangent(Samples& samples, std::size_t begin, std::size_t end) const {
-        for (std::size_t i = begin; i <= end; ++i) {
-            samples[i].heading = line_.tangent(samples[i]);
-            samples[i].contact = samples[i].middle;
-        }
-    }
-    /// The widest section leads: the forward law with lever e, from the stretch's beginning.
-    void forwards(Samples& samples, std::size_t begin, std::size_t end, const Vector2d& heading) const {
-        LagState<double> state;
-        state.heading = heading;
-        start(samples, begin, ahead_, 1.0, state);
-        for (std::size_t i = begin + 1; i <= end; ++i) step(samples, i - 1, i, ahead_, 1.0, state);
-    }
-    /// The widest section trails: unstable forwards, stable from the stretch's end to its beginning.
-    void backwards(Samples& samples, std::size_t begin, std::size_t end) const {
-        LagState<double> state;
-        state.heading = -line_.tangent(samples[end]);
-        start(samples, end, behind_, -1.0, state);
-        for (std::size_t i = end; i > begin; --i) step(samples, i, i - 1, behind_, -1.0, state);
-    }
-    void start(Samples& samples, std::size_t i, const LagLaw<double>& law, double sign, LagState<double>& state) const {
-        state.taut = state.heading_known = true;
-        state.contact = samples[i].middle - std::max(0.0, law.at(samples[i].depth)) * state.heading;
-        store(samples[i], sign, state);
-    }
-    void step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,
-              LagState<double>& state) const {
-        checkpoint();
-        advance(law, Move<double>(samples[from].middle, samples[to].middle, samples[from].depth, samples[to].depth),
-                state);
-        store(samples[to], sign, state);
-    }
-    static void store(Sample& sample, double sign, const LagState<double>& state) {
-        sample.contact = state.contact;
-        sample.heading = sign * state.heading;
-        sample.taut = state.taut;
-    }
-
-    const Line& line_;
-    const Brush& brush_;
-    LagLaw<double> ahead_, behind_;
-    std::vector<double> crossings_;
-};
 
 /// Arc lengths where the depth passes a given one: samples must stand there.
 std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
@@ -153,127 +67,6 @@ Samples dab(const Stroke& stroke, const Line& line) {
     sample.heading = line.length() > 0.0 ? line.tangent(sample) : Vector2d(1.0, 0.0);
     if (across.norm() > 0.5 * line.length() && line.length() > 0.0) sample.heading = across.normalized();
     return {sample};
-}
-
-/// Steps of the way back at a hidden beginning, a few times as long as the widest section's lever.
-constexpr int kStepsBack = 12;
-/// Shorter ways back that are tried where the whole one has no room.
-constexpr int kShorter = 4;
-constexpr int kHalvings = 30;  // of a few mm: to rounding
-/// Of the front of a footprint, what is wide enough to hide a pointed rear.
-constexpr double kHidingShare = 0.8;
-constexpr double kWithinReach = 0.999;
-constexpr double kStraightBack = 0.5;  // cosine
-/// Steps of the depth and of the way in which the mark is narrowed for that, as shares of the whole.
-constexpr double kNarrowingDepths = 1.0 / 64.0, kNarrowingWay = 1.0 / 12.0;
-
-/// A hidden beginning: the brush is set down heading back along the line, and drawn back until the round front of its
-/// footprint reaches the drawn beginning. There it turns over, and P rests, so it goes on where the widest section is
-/// as far in front of P as it was behind.
-struct HiddenBeginning {
-    Samples back;
-    Stroke onward;             ///< the stroke whose mark begins as narrow as the front hides it
-    double on_from_mm;         ///< arc length where the widest section goes on
-    Eigen::Vector2d on_along;  ///< and the heading there
-};
-
-/// Whether the pointed rear of a footprint that is set down heading back along the line stays inside the stroke: each
-/// place on its axis is nearer to the line than it is to the edge, there where the rear is so narrow. And whether the
-/// way back goes round no corner: P would be dragged past it.
-bool lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm) {
-    constexpr int n = 6;
-    const Sample widest = line.at(widest_mm);
-    const Vector2d along = line.tangent(widest);
-    const double rear = brush.tip_to_widest(widest.depth);
-    if (along.dot(line.tangent(line.at(0.0))) < kStraightBack) return false;
-    for (int i = 1; i <= n; ++i) {
-        const double t = double(i) / n, s = widest_mm + t * rear;
-        const double half = half_width_at(stroke, std::min(1.0, s / line.length()));
-        const Vector2d on_line = s <= line.length() ? line.at(s).middle : line.at(line.length()).middle;
-        if ((widest.middle + t * rear * along - on_line).norm() > half - (1.0 - t) * brush.half_width(widest.depth))
-            return false;
-    }
-    return true;
-}
-
-/// Arc length from which on the rear of a footprint as wide as the stroke lies behind `from_mm`, and the stroke
-/// narrowed up to there so that narrower ones do too. None where no depth does.
-std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Brush& brush, double length_mm,
-                                                  double from_mm) {
-    const double step_mm = kNarrowingWay * brush.tip_to_widest(depth_of(stroke, brush, 0.0));
-    std::vector<WidthKnot> knots;
-    for (double s = 0.0; s < length_mm; s += step_mm) {
-        const double at = s / length_mm, wanted = depth_of(stroke, brush, at);
-        double depth = wanted;
-        while (depth > 0.0 && s - brush.tip_to_widest(depth) < from_mm) depth -= kNarrowingDepths * wanted;
-        if (!(depth > brush.depth_range_mm[0])) return {};
-        knots.push_back({at, brush.half_width(depth)});
-        if (depth < wanted) continue;
-        if (knots.size() == 1) return {{s, stroke}};
-        Stroke out = stroke;
-        knots.back().half_width_mm = half_width_at(stroke, at);
-        for (const WidthKnot& knot : stroke.half_width)
-            if (knot.at > at) knots.push_back(knot);
-        out.half_width = std::move(knots);
-        return {{s, std::move(out)}};
-    }
-    return {};
-}
-
-/// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
-std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
-                                                const Inverse& inverse, double last_mm, double step_tolerance) {
-    if (stroke.closed || brush.is_rigid() || !(line.length() > 0.0)) return {};
-    const auto lever = [&](const Stroke& of, double s) {
-        return brush.lever_to_widest(depth_of(of, brush, std::clamp(s / line.length(), 0.0, 1.0)));
-    };
-    const double e = lever(stroke, 0.0);
-    if (!(e > 0.0)) return {};
-    // there the front reaches the drawn beginning, half a width before the path's
-    double turn_mm = beyond_the_end(brush, depth_of(stroke, brush, 0.0), half_width_at(stroke, 0.0));
-    const double front_mm = turn_mm + half_width_at(stroke, 0.0);
-    const auto onward = narrowed(stroke, brush, line.length(), turn_mm - kHidingShare * front_mm);
-    if (!onward) return {};
-    // P may not rest so far before the path that its first point is out of reach
-    turn_mm = std::max(turn_mm, -kWithinReach * (e + lever(onward->second, 0.0)));
-    // as far back as it goes on from with all its width, or what there is room for; less leaves a waist
-    const double way_mm = std::max(2.0 * e, onward->first - turn_mm);
-    double from_mm = turn_mm + way_mm;
-    for (int tries = 0; from_mm > last_mm || !lies_inside(stroke, brush, line, std::max(from_mm, 0.0)); ++tries) {
-        if (tries == kShorter) return {};
-        from_mm -= way_mm / kShorter;
-    }
-
-    HiddenBeginning found{{}, onward->second, 0.0, {}};
-    for (int i = 0; i <= kStepsBack; ++i) {
-        const double s = from_mm + (turn_mm - from_mm) * i / kStepsBack;
-        Sample sample = line.at(std::max(s, 0.0));
-        if (!(lever(stroke, s) > 0.0)) return {};
-        if (s < 0.0) sample.middle += s * line.tangent(sample);  // a blunt front reaches less far than round caps do
-        found.back.push_back(sample);
-    }
-    inverse(found.back, -line.tangent(found.back.front()));
-    const Vector2d contact = found.back.back().contact;
-    // as few steps as the tolerance asks for: nobody thins them out
-    Samples few{found.back.front()};
-    for (std::size_t i = 1, from = 0; i + 1 < found.back.size(); ++i)
-        for (std::size_t k = from + 1; k <= i; ++k)
-            if (off_chord(found.back[from], found.back[i + 1], found.back[k]) > step_tolerance) {
-                few.push_back(found.back[i]);
-                from = i;
-            }
-    few.push_back(found.back.back());
-    found.back = few;
-    const auto beyond = [&](double s) { return (line.at(s).middle - contact).norm() - lever(found.onward, s); };
-    double a = std::max(0.0, turn_mm + e), b = std::min(turn_mm + 4.0 * e, last_mm);
-    if (!(a < b) || beyond(a) > 0.0 || !(beyond(b) > 0.0)) return {};
-    for (int i = 0; i < kHalvings; ++i) {
-        const double s = 0.5 * (a + b);
-        (beyond(s) > 0.0 ? b : a) = s;
-    }
-    found.on_from_mm = b;
-    found.on_along = (line.at(b).middle - contact).normalized();
-    return found;
 }
 
 Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }

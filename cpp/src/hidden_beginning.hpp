@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "inverse.hpp"
+
+namespace brushsvg {
+
+/// A hidden beginning: the brush is set down heading back along the line, and drawn back until the round front of its
+/// footprint reaches the drawn beginning. There it turns over, and P rests, so it goes on where the widest section is
+/// as far in front of P as it was behind.
+struct HiddenBeginning {
+    Samples back;
+    Stroke onward;             ///< the stroke whose mark begins as narrow as the front hides it
+    double on_from_mm;         ///< arc length where the widest section goes on
+    Eigen::Vector2d on_along;  ///< and the heading there
+};
+
+/// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
+std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
+                                                const Inverse& inverse, double last_mm, double step_tolerance);
+
+}  // namespace brushsvg
