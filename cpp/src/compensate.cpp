@@ -13,6 +13,7 @@
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
+#include "dot.hpp"
 #include "hidden_beginning.hpp"
 #include "inverse.hpp"
 #include "landing.hpp"
@@ -223,12 +224,14 @@ Pass beginning_of(const Pass& pass, double length_mm) {
 Beginning best_beginning(const Stroke& wanted_stroke, const Stroke& stroke, const Brush& brush, const Line& line,
                          double step_tolerance) {
     const double last_mm = painted_stretch(stroke, brush, line.length())[1];
-    if (!hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
+    const std::optional<Dot> dot = dot_of(wanted_stroke, brush);
+    if (!dot && !hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
         return Beginning::exposed;
     bool turns = false;
     Pass exposed, hidden;
     closed_form(stroke, brush, line, Beginning::exposed, step_tolerance, turns).into(exposed);
-    closed_form(stroke, brush, line, Beginning::hidden, step_tolerance, turns).into(hidden);
+    (dot ? poses_of(*dot, brush) : closed_form(stroke, brush, line, Beginning::hidden, step_tolerance, turns))
+        .into(hidden);
     const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth);
     const Vector2d at = line.at(0.0).middle;
     const double side = 2.0 * kLookedAt * half, made = kMade * half + 4.0 * brush.lag(depth);
@@ -236,7 +239,7 @@ Beginning best_beginning(const Stroke& wanted_stroke, const Stroke& stroke, cons
     const Coverage wanted = wanted_coverage({wanted_stroke}, window, kPixels / half);
     const auto mark = [&](const Pass& pass) {
         Marks marks;
-        marks.passes = {simulate(beginning_of(pass, made), brush, 0.05 * half)};
+        marks.passes = {simulate(dot ? pass : beginning_of(pass, made), brush, 0.05 * half)};
         return marks;
     };
     const auto differs = [&](const Marks& marks) {
@@ -303,6 +306,11 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
     Beginning start = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
     const bool choose = start == Beginning::automatic;
     if (choose) start = best_beginning(stroke, whole, brush, whole_line, step_tolerance);
+    if (const std::optional<Dot> dot = dot_of(stroke, brush); dot && start == Beginning::hidden) {
+        poses_of(*dot, brush).into(pass);
+        result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
+        return result;
+    }
     // the plan is simulated before it is handed over; finer steps as long as they help
     if (options.few_poses) step_tolerance *= kStepShare;
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "brushsvg/simulate.hpp"
+#include "dot.hpp"
 #include "nearest.hpp"
 #include "stroke_ends.hpp"
 #include "tolerance.hpp"
@@ -21,7 +22,7 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     check(stroke);
     require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
-    const Ring widest = widest_points(marks, brush);
+    const Ring widest = is_dot(marks) ? marks.contact_mm : widest_points(marks, brush);
     // a blunt front goes beyond the path's end, and on its way back to a hidden beginning beyond that
     const MiddlePolyline line = flatten(up_to_its_end(stroke, brush), std::min(0.005, 0.05 * tolerance_mm));
     MiddlePolyline longer(line.rows() + 1, 4);

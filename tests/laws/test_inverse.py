@@ -576,7 +576,6 @@ def poses_of(middle, half_width, **options):
     [
         (line((20, 20), (60, 20)), [(0.0, 0.4)]),  # the widest section trails
         (line((20, 20), (60, 20)), [(0.0, 0.15), (0.5, 2.0), (1.0, 2.0)]),  # a taper
-        (line((20, 20), (22, 20)), [(0.0, 2.0)]),  # a dab
         (line((20, 20), (22, 20), (22, 50)), [(0.0, 3.0)]),  # the tip would come out beyond the corner
     ],
 )
@@ -584,6 +583,31 @@ def test_what_cannot_be_hidden_is_exposed(middle, half_width):
     exposed = poses_of(middle, half_width)
     for start in ("hidden", "auto"):
         np.testing.assert_array_equal(poses_of(middle, half_width, start=start), exposed)
+
+
+@pytest.mark.parametrize(
+    ("half_width", "length", "least"),
+    [(1.5, 0.0, 0.99), (4.0, 0.0, 0.99), (2.0, 0.5, 0.99), (4.0, 0.9, 0.98), (1.5, 1.35, 0.955)],
+)
+def test_a_dot_is_round(half_width, length, least):
+    import shapely
+
+    points = np.array([(50.0, 50.0), (50.0 + 0.6 * length * half_width, 50.0 + 0.8 * length * half_width)])
+    wanted = (shapely.LineString(points) if length else shapely.Point(points[0])).buffer(half_width, 64)
+
+    def overlap(poses):
+        mark = painted_region(poses)
+        return (mark & wanted).area / (mark | wanted).area
+
+    stroke = stroke_of(line(*points), [(0.0, half_width)])
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="hidden")
+    assert found.misses[0].within_tolerance
+    hidden = np.asarray(found.plan.passes[0].poses_mm)
+    assert hidden[0, 2] == hidden[-1, 2] == 0.0
+    assert (hidden[1:-1, 2] < 0.0).all()  # one touch
+    assert overlap(poses_of(line(*points), [(0.0, half_width)])) < 0.9
+    assert overlap(hidden) > least
+    np.testing.assert_array_equal(poses_of(line(*points), [(0.0, half_width)], start="auto"), hidden)
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,7 @@ enum class Compensation {
 enum class Beginning {
     exposed,  ///< pointed, as a footprint is behind
     hidden,   ///< set down inside of the stroke, back to its beginning, turned over: round, as a footprint is in front
+              ///< (a dot: turned round on the spot)
     automatic,  ///< hidden where the mark lies better on the wanted one there for it, by more than can hardly be seen
 };
 inline constexpr std::array<std::pair<std::string_view, Beginning>, 3> kBeginnings{

@@ -1,0 +1,112 @@
+#include "dot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/footprint.hpp"
+#include "landing.hpp"
+#include "middle_line.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// Of a half width: no longer a line is a dot.
+constexpr double kLongest = 1.4;
+/// Of a half width: a hole about P, where the whole footprint lies ahead of it.
+constexpr double kLargestHole = 0.1;
+/// A little less than all round: an arc that ends where it began would say nothing.
+constexpr double kTurnRad = 356.0 * EIGEN_PI / 180.0;
+/// What counts as turned round on the spot, and how far P may creep meanwhile.
+constexpr double kRoundRad = 6.0, kRestsMm = 0.02;
+constexpr int kHalvings = 40;
+
+/// How far from P the paint reaches when the brush is pressed to a depth and turned there [mm].
+double reach_mm(const Brush& brush, double depth) {
+    const auto at = [&](double d) {
+        Ring outline = footprint_at(brush.footprints, d, 1.0);
+        outline.col(0).array() -= brush.tip_gap(d);
+        return outline.rowwise().norm().maxCoeff();
+    };
+    double farthest = at(depth);
+    for (const Footprint& measured : brush.footprints.dragged)
+        if (measured.depth_mm < depth) farthest = std::max(farthest, at(measured.depth_mm));
+    return farthest;
+}
+
+/// None where the least depth reaches farther already; the greatest where none reaches so far.
+std::optional<double> depth_of_reach(const Brush& brush, double half_width_mm) {
+    auto [lo, hi] = brush.depth_range_mm;
+    lo = std::max(lo, 1e-3);
+    if (reach_mm(brush, lo) > half_width_mm) return {};
+    if (reach_mm(brush, hi) <= half_width_mm) return hi;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double depth = 0.5 * (lo + hi);
+        (reach_mm(brush, depth) > half_width_mm ? hi : lo) = depth;
+    }
+    return lo;
+}
+
+void turn_round(const Vector2d& contact_mm, double first_rad, double depth, const Brush& brush, PoseList& out) {
+    const int n = int(std::ceil(kTurnRad / kTurnChordRad));
+    const std::int64_t before = out.last();
+    for (int k = 1; k <= n; ++k) {
+        const double angle = first_rad + kTurnRad * k / n;
+        out.add(contact_mm + brush.lag(depth) * Vector2d(std::cos(angle), std::sin(angle)), depth);
+    }
+    out.arc(before, contact_mm, kTurnRad);
+}
+
+}  // namespace
+
+std::optional<Dot> dot_of(const Stroke& stroke, const Brush& brush) {
+    if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
+    const double length_mm = Line(stroke, brush).length();
+    const double from_half_mm = half_width_at(stroke, 0.0), to_half_mm = half_width_at(stroke, 1.0);
+    if (length_mm > kLongest * std::min(from_half_mm, to_half_mm)) return {};
+    const auto from = depth_of_reach(brush, from_half_mm), to = depth_of_reach(brush, to_half_mm);
+    if (!from || !to) return {};
+    if (-brush.tip_gap(*from) > kLargestHole * from_half_mm || -brush.tip_gap(*to) > kLargestHole * to_half_mm)
+        return {};
+    const Vector2d a = point_at(stroke.middle_mm, {0, 0.0});
+    const Vector2d b = point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0});
+    const bool is_point = (b - a).norm() <= 1e-6;
+    return Dot{a, b, *from, *to, is_point ? Vector2d(1.0, 0.0) : (b - a).normalized()};
+}
+
+PoseList poses_of(const Dot& dot, const Brush& brush) {
+    const double along_rad = std::atan2(dot.heading.y(), dot.heading.x());
+    PoseList out;
+    const double first_rad = along_rad - kTurnRad;
+    land({dot.from_mm, Vector2d(std::cos(first_rad), std::sin(first_rad)), dot.from_depth_mm}, brush, out);
+    turn_round(dot.from_mm, first_rad, dot.from_depth_mm, brush, out);
+    Vector2d last = dot.heading;
+    if ((dot.to_mm - dot.from_mm).norm() > 1e-6) {
+        out.add(dot.to_mm + brush.lag(dot.to_depth_mm) * dot.heading, dot.to_depth_mm);
+        turn_round(dot.to_mm, along_rad, dot.to_depth_mm, brush, out);
+        last = {std::cos(along_rad + kTurnRad), std::sin(along_rad + kTurnRad)};
+    }
+    lift({dot.to_mm, last, dot.to_depth_mm}, brush, out);
+    return out;
+}
+
+bool is_dot(const PassMarks& marks) {
+    double turned = 0.0;
+    Index from = 0;
+    for (Index i = 1; i < marks.contact_mm.rows(); ++i) {
+        const bool rests = marks.depth_mm[i] > 0.0 && marks.depth_mm[i - 1] > 0.0 &&
+                           (marks.contact_mm.row(i) - marks.contact_mm.row(from)).norm() < kRestsMm;
+        if (!rests) {
+            from = i;
+            turned = 0.0;
+            continue;
+        }
+        turned += std::remainder(marks.heading_rad[i] - marks.heading_rad[i - 1], 2.0 * EIGEN_PI);
+        if (std::abs(turned) > kRoundRad) return true;
+    }
+    return false;
+}
+
+}  // namespace brushsvg
