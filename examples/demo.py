@@ -11,6 +11,7 @@ from brushsvg.cli.console import RefusedError, about, say_notice, warn
 from brushsvg.evaluation import report
 from brushsvg.files import write_files
 from brushsvg.machine import preflight, writer
+from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.pictures.marks_png import MIDDLE_LINE, Panel, panels_png
@@ -68,7 +69,7 @@ def three_panels(works, marks, totals) -> bytes:
         total = totals[how]
         score = (f"{total.overlap:.2f}", "overlap with the drawing")
         off = f"{total.centre_mean_mm:.2f} mm mean, {total.centre_largest_mm:.2f} mm at most"
-        paths = [a_pass.poses_mm[:, :2] for a_pass in works[how].plan.passes]
+        paths = [with_chords(a_pass).poses_mm[:, :2] for a_pass in works[how].plan.passes]
         panels.append(Panel(title, score, ("centre-line error", off), wanted, marks[how].outline_mm, paths))
     return panels_png(panels, work.title, f"with brush {work.brush.name}. {one_line(work.brush)}")
 

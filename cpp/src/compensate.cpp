@@ -193,6 +193,11 @@ constexpr double kLongestLagMm = 1000.0;  // no brush is longer
 /// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
 /// of it for that, less costs time, and poses where the brush is loose, which stay as they are.
 constexpr double kStepShare = 0.35;
+/// And no more of it than of the default one: the steps' own corners would show, and from the same steps a coarser
+/// tolerance has no more poses left than a finer one.
+constexpr double kMostStepToleranceMm = 0.00875;
+/// Below a tolerance those that are tried as well.
+constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
 /// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
 /// little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
@@ -273,7 +278,9 @@ Beginning beginning_named(const std::string& name, const std::string& where) {
     throw Error("choice-unknown", "a stroke's start is exposed, hidden or auto, not \"" + name + "\"", where);
 }
 
-CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+namespace {
+
+CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
     check(stroke);
     require_usable(brush);
     require_tolerance(options.tolerance_mm, stroke.id);
@@ -312,7 +319,7 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         return result;
     }
     // the plan is simulated before it is handed over; finer steps as long as they help
-    if (options.few_poses) step_tolerance *= kStepShare;
+    if (options.few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = pass;
@@ -347,9 +354,29 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         plain.settings.start.reset();
         CompensateOptions pointed = options;
         pointed.start = Beginning::exposed;
-        CompensatedPass other = compensate(plain, brush, pointed);
+        CompensatedPass other = at_its_tolerance(plain, brush, pointed);
         other.pass.settings = stroke.settings;
         if (other.miss.largest_mm < result.miss.largest_mm) return other;
+    }
+    return result;
+}
+
+}  // namespace
+
+CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+    CompensatedPass result = at_its_tolerance(stroke, brush, options);
+    if (options.method != Compensation::closed || !options.few_poses) return result;
+    // who goes as far as he may in each move does not always get there in the fewest
+    for (const double finer_mm : kFinerTolerancesMm) {
+        if (finer_mm >= options.tolerance_mm) continue;
+        CompensateOptions finely = options;
+        finely.tolerance_mm = finer_mm;
+        CompensatedPass finer = at_its_tolerance(stroke, brush, finely);
+        if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows() ||
+            finer.miss.largest_mm > std::max(options.tolerance_mm, result.miss.largest_mm))
+            continue;
+        finer.miss.within_tolerance = finer.miss.largest_mm <= options.tolerance_mm;
+        result = finer;
     }
     return result;
 }

@@ -1,9 +1,11 @@
 #include "brushsvg/paint_loads.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
 #include "landing.hpp"
 #include "usable.hpp"
@@ -23,11 +25,29 @@ constexpr double kPlacesPerLoad = 200.0;
 
 constexpr double kMostLoads = 1000.0;  // of one stroke; with more the brush would only travel
 
-/// The pass with more poses along its straight moves. own[i]: whether it is one of the pass's.
+/// A brush that turns in place keeps its patch about so near to the arc's centre.
+constexpr double kRestsMm = 0.01;
+
+/// The pass with more poses along its moves. own[i]: whether it is one of the pass's.
 struct Fine {
     Pass pass;
     std::vector<bool> own;
 };
+
+/// The arc on which the pass goes on from a pose.
+const Arc* arc_of(const Pass& pass, Index pose) {
+    for (const Arc& arc : pass.arcs)
+        if (arc.first <= pose && pose < arc.last) return &arc;
+    return nullptr;
+}
+
+Eigen::RowVector3d on_arc(const Arc& arc, const Pass& pass, Index pose, double share) {
+    const Vector2d from = pass.poses_mm.row(pose).head<2>().transpose();
+    const Vector2d to = pass.poses_mm.row(pose + 1).head<2>().transpose();
+    const Vector2d spoke = from - arc.centre_mm;
+    const Vector2d at = arc.centre_mm + turned_by<double>(spoke, share * turn_between(arc, from, to));
+    return {at.x(), at.y(), pass.poses_mm(pose, 2)};
+}
 
 Fine refined(const Pass& pass, double between_mm) {
     const Index count = pass.poses_mm.rows();
@@ -38,13 +58,13 @@ Fine refined(const Pass& pass, double between_mm) {
         at.push_back(Index(poses.size()));
         poses.push_back(pass.poses_mm.row(i));
         out.own.push_back(true);
-        bool on_arc = i + 1 == count;
-        for (const Arc& arc : pass.arcs) on_arc = on_arc || (arc.first <= i && i < arc.last);
-        if (on_arc) continue;
+        if (i + 1 == count) continue;
         const Eigen::RowVector3d way = pass.poses_mm.row(i + 1) - pass.poses_mm.row(i);
+        const Arc* arc = arc_of(pass, i);
         const auto parts = Index(std::ceil(way.norm() / between_mm));
         for (Index k = 1; k < parts; ++k) {
-            poses.push_back(pass.poses_mm.row(i) + way * (double(k) / double(parts)));
+            const double share = double(k) / double(parts);
+            poses.push_back(arc ? on_arc(*arc, pass, i, share) : pass.poses_mm.row(i) + way * share);
             out.own.push_back(false);
         }
     }
@@ -57,7 +77,7 @@ Fine refined(const Pass& pass, double between_mm) {
     return out;
 }
 
-/// Where the pass may be cut: poses that the brush passes taut and pressed, inside no arc.
+/// Where the pass may be cut: poses that the brush passes taut and pressed, and not while it turns in place.
 struct Place {
     Index pose;
     double along_mm;  ///< path of the TCP up to it
@@ -70,9 +90,9 @@ std::vector<double> path_lengths(const Poses& poses) {
     return along;
 }
 
-bool inside_an_arc(const Pass& pass, Index pose) {
+bool turns_in_place(const Pass& pass, Index pose, const Vector2d& contact) {
     for (const Arc& arc : pass.arcs)
-        if (arc.first < pose && pose < arc.last) return true;
+        if (arc.first < pose && pose < arc.last) return (contact - arc.centre_mm).norm() < kRestsMm;
     return false;
 }
 
@@ -84,13 +104,11 @@ std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vecto
         const Index i = Index(std::lround(pose));
         if (pose != double(i) || (!marks.taut[row] && !brush.is_rigid()) || marks.depth_mm[row] < kLeastDepthMm)
             continue;
-        if (i == 0 || i + 1 >= pass.poses_mm.rows() || inside_an_arc(pass, i)) continue;
+        const Vector2d contact = marks.contact_mm.row(Index(row)).transpose();
+        if (i == 0 || i + 1 >= pass.poses_mm.rows() || turns_in_place(pass, i, contact)) continue;
         if (!out.empty() && out.back().pose == i) out.pop_back();  // the last row of a pose is what goes on
         const double u = marks.heading_rad[row];
-        out.push_back(
-            {i,
-             along[i],
-             {marks.contact_mm.row(Index(row)).transpose(), {std::cos(u), std::sin(u)}, marks.depth_mm[row]}});
+        out.push_back({i, along[i], {contact, {std::cos(u), std::sin(u)}, marks.depth_mm[row]}});
     }
     return out;
 }
@@ -111,9 +129,10 @@ Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* 
     Pass out = pass;
     list.into(out);
     out.arcs.clear();
-    for (const Arc& arc : pass.arcs)
-        if (arc.first >= first && arc.last <= last)
-            out.arcs.push_back({at[arc.first - first], at[arc.last - first], arc.centre_mm, arc.direction});
+    for (const Arc& arc : pass.arcs) {
+        const Index begins = std::max<Index>(arc.first, first), ends = std::min<Index>(arc.last, last);
+        if (begins < ends) out.arcs.push_back({at[begins - first], at[ends - first], arc.centre_mm, arc.direction});
+    }
     out.stroke.load = out.load = number;
     return out;
 }

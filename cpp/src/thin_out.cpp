@@ -3,12 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
 #include "nearest.hpp"
 #include "tolerance.hpp"
+#include "traced_pass.hpp"
 
 namespace brushsvg {
 namespace {
@@ -35,91 +38,85 @@ constexpr double kDeeper = 0.75;
 /// poses lie far apart, on straight lines, a mark beside the line is what else it would be next to: other sides of a
 /// triangle, a there with no back.
 constexpr double kSlipShare = 10.0;
+/// The edges of the mark turn by no more where two moves meet, eight degrees less a margin for what is rounded; and at
+/// the end of each they go where they went by so much: with less of it there is less left for the next one, with more
+/// that one cannot be as long.
+constexpr double kMostCornerRad = 0.125, kMostOffRad = 0.07;
+/// Of the tolerance, what a move may use up where it ends: with nothing left the next one could only jump back.
+constexpr double kEndShare = 0.5;
+/// Steps that are tried where none keeps its direction.
+constexpr Index kTries = 6;
+/// Arcs: flatter ones are lines, and what is nearly a whole circle is told by no two places; far centres hold too few
+/// digits in a program. Between two of its poses an arc turns by no more, for who only knows the chords.
+constexpr double kLeastTurnRad = 0.05, kMostArcRad = 5.0, kArcStepRad = 0.4;
+constexpr double kLeastRadiusMm = 2.0 * kArcRadiusMm[0], kMostRadiusMm = 1000.0;
+constexpr double kSameDepthMm = 1e-9;
+constexpr double kPi = 3.14159265358979323846;
 /// The footprint's tip may be off by so many tolerances: it lies inside the mark, its sides are what shows.
 constexpr double kTipShare = 3.0;
 
-/// What the brush does at every pose of the pass as it is.
-struct Traced {
-    Ring tcp, middle;
-    std::vector<double> depth, along;  ///< along: path of the TCP [mm]
-    double deepest = 0.0;
-    std::vector<Vector2d> contact, heading;
-    std::vector<bool> taut;     ///< at the pose
-    std::vector<bool> dragged;  ///< from the pose to the next: taut all the way, in a straight move
+/// Poses that lead on, and the circles that some of them lie on.
+struct Way {
+    std::vector<Vector3d> poses;
+    std::vector<Arc> arcs;
+};
 
-    Traced(const Pass& pass, const Brush& brush, const PassMarks& marks) {
-        const Index n = pass.poses_mm.rows();
-        tcp = pass.poses_mm.leftCols<2>();
-        middle.resize(n, 2);
-        depth.resize(n);
-        along.assign(n, 0.0);
-        contact.resize(n);
-        heading.resize(n);
-        taut.assign(n, false);
-        dragged.assign(n, true);
-        const Ring widest = widest_points(marks, brush);
-        for (std::size_t row = 0; row < marks.pose.size(); ++row) {
-            const double pose = marks.pose[row];
-            const Index i = Index(std::floor(pose));
-            const bool is_pose = pose == double(i);
-            if (!marks.taut[row]) {  // on the way to this pose and from it on
-                if (i < n) dragged[i] = false;
-                if (is_pose && i > 0) dragged[i - 1] = false;
-            }
-            if (!is_pose) continue;
-            middle.row(i) = widest.row(Index(row));
-            contact[i] = marks.contact_mm.row(Index(row)).transpose();
-            heading[i] = {std::cos(marks.heading_rad[row]), std::sin(marks.heading_rad[row])};
-            taut[i] = marks.taut[row];
-        }
-        for (Index i = 0; i < n; ++i) {
-            depth[i] = -pass.poses_mm(i, 2);
-            deepest = std::max(deepest, depth[i]);
-            if (i > 0) along[i] = along[i - 1] + (tcp.row(i) - tcp.row(i - 1)).norm();
-        }
-        for (Index i = 0; i + 1 < n; ++i)
-            if (!(along[i + 1] - along[i] > kLeastMoveMm) || depth[i] <= 0.0 || depth[i + 1] <= 0.0) dragged[i] = false;
-        if (n > 0) dragged[n - 1] = false;
-        for (const Arc& arc : pass.arcs)
-            for (Index i = arc.first; i < arc.last; ++i) dragged[i] = false;
-    }
+/// A circle from one place to another, about a centre.
+struct Circle {
+    Vector2d centre;
+    double radius, turn;
 
-    /// Where the TCP was after a way: x, y, depth. `near`: a pose to look from.
-    Vector3d at(double s, Index near) const {
-        Index i = near;
-        while (i > 0 && along[i] > s) --i;
-        while (i + 2 < tcp.rows() && along[i + 1] < s) ++i;
-        const double step = along[i + 1] - along[i], t = step > 0.0 ? (s - along[i]) / step : 0.0;
-        return pose(i) + t * (pose(i + 1) - pose(i));
+    /// Through three places; none where they lie on a line, or where no plan has such a circle.
+    static std::optional<Circle> through(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+        const Vector2d ab = b - a, ac = c - a;
+        const double cross = ab.x() * ac.y() - ab.y() * ac.x();
+        if (!(std::abs(cross) > 1e-9 * ac.squaredNorm())) return {};
+        const double s = ab.squaredNorm() / (2.0 * cross), t = ac.squaredNorm() / (2.0 * cross);
+        const Vector2d out(s * ac.y() - t * ab.y(), t * ab.x() - s * ac.x());
+        // the angle at the middle one is that of the inscribed triangle
+        const Vector2d ba = a - b, bc = c - b;
+        const double within = std::atan2(std::abs(ba.x() * bc.y() - ba.y() * bc.x()), ba.dot(bc));
+        const Circle found{a + out, out.norm(), std::copysign(2.0 * (kPi - within), cross)};
+        const double turn = std::abs(found.turn);
+        const bool fits = found.radius >= kLeastRadiusMm && found.radius <= kMostRadiusMm;
+        return fits && turn >= kLeastTurnRad && turn <= kMostArcRad ? std::optional(found) : std::nullopt;
     }
-    Vector3d pose(Index i) const { return {tcp(i, 0), tcp(i, 1), depth[i]}; }
+    Vector2d along(const Vector2d& at) const {
+        const Vector2d spoke = (at - centre) / radius;
+        return turn > 0.0 ? Vector2d(-spoke.y(), spoke.x()) : Vector2d(spoke.y(), -spoke.x());
+    }
+    /// Poses on it, beside the one that it begins at: a robot is told a pose on its way.
+    int poses() const { return std::max(2, int(std::ceil(std::abs(turn) / kArcStepRad))); }
 };
 
 /// One stretch of dragged moves, walked from its beginning: as far as possible in each move.
 class Walk {
  public:
-    Walk(const Traced& was, const Brush& brush, const LagLaw<double>& law, double tolerance_mm)
+    Walk(const TracedPass& was, const Brush& brush, const LagLaw<double>& law, double tolerance_mm)
         : was_(was), brush_(brush), law_(law), tolerance_(tolerance_mm) {}
 
-    /// Poses that lead from pose `first` to pose `last`, both ends left out.
-    std::vector<Vector3d> operator()(Index first, Index last) {
+    /// Poses that lead from pose `first` to pose `last`, that one included.
+    Way operator()(Index first, Index last) {
         first_ = first;
         last_ = last;
-        std::vector<Vector3d> out;
+        Way out;
         state_.taut = state_.heading_known = true;
         state_.contact = was_.contact[first];
         state_.heading = was_.heading[first];
         at_ = was_.pose(first);
         way_ = Vector3d::Zero();
+        edges_ = was_.leaving[first];
         Index i = first, stride = 4;
         while (i < last) {
-            const auto [j, step] = farthest(i, stride);
+            auto [j, step] = farthest(i, stride);
+            const auto [k, round] = farthest_round(i, j);
+            if (round.circle && double(k - i) >= double(round.circle->poses()) * double(j - i)) {
+                j = k;
+                step = round;
+            }
             stride = std::max<Index>(2, j - i);
-            way_ = step.to - at_;
-            at_ = step.to;
-            state_ = step.state;
+            take(step, out);
             i = j;
-            if (i < last) out.emplace_back(at_.x(), at_.y(), -at_.z());
         }
         return out;
     }
@@ -128,41 +125,91 @@ class Walk {
     struct Step {
         Vector3d to;  ///< x, y, depth
         LagState<double> state;
-        bool good = false;
+        std::optional<Circle> circle;  ///< none: straight
+        Edges edges;                   ///< at its end
+        bool near = false;             ///< the mark is where it was
+        double corner = 0.0;           ///< of the edges, as a share of what it may be
+
+        bool good() const { return near && corner <= 1.0; }
     };
+
+    void take(const Step& step, Way& out) {
+        const auto begin = Index(out.poses.size());
+        if (step.circle) {
+            const Circle& circle = *step.circle;
+            const int n = circle.poses();
+            for (int k = 1; k < n; ++k) {
+                const Vector2d on =
+                    circle.centre + turned_by<double>(Vector2d(at_.head<2>() - circle.centre), circle.turn * k / n);
+                out.poses.emplace_back(on.x(), on.y(), -at_.z());
+            }
+            out.arcs.push_back({begin, begin + n, circle.centre, circle.turn > 0.0 ? 1 : -1});
+            way_ << circle.along(step.to.head<2>()), 0.0;
+        } else {
+            way_ = step.to - at_;
+        }
+        out.poses.emplace_back(step.to.x(), step.to.y(), -step.to.z());
+        at_ = step.to;
+        state_ = step.state;
+        edges_ = step.edges;
+    }
 
     /// How far one move goes: to a pose, or beside it. Chords lie inside a curve, and the brush follows their mean. Out
     /// by q'' L^2 / 12 their error has none, and what is left goes back and forth too quickly for the brush. Where the
     /// curve changes on the way, more or less than that is better.
     std::pair<Index, Step> farthest(Index i, Index stride) const {
-        Index good = i + 1;
-        Step best = tried(i, good, was_.pose(good));
+        Index good = i;
+        Step best;
         for (double share : kBeside) {
-            Index step = stride, bad = last_ + 1;
-            for (Index j = std::min(good + step, last_); j > good; j = std::min(good + step, last_)) {
-                const Step trial = tried(i, j, beside(i, j, share));
-                if (!trial.good) {
-                    bad = j;
-                    break;
-                }
+            const auto trial = [&](Index j) { return straight(i, j, beside(i, j, share)); };
+            search(i, last_, good == i ? stride : 1, trial, good, best);
+        }
+        if (good > i) return {good, best};
+        // none keeps its direction: the one that bends least
+        good = i + 1;
+        best = straight(i, good, was_.pose(good));
+        for (Index j = i + 1; j <= std::min(i + kTries, last_); ++j)
+            for (double share : kBeside) {
+                const Step trial = straight(i, j, beside(i, j, share));
+                if (!trial.near || (best.near && trial.corner >= best.corner)) continue;
                 good = j;
                 best = trial;
-                step *= 2;
             }
-            while (bad - good > 1 && good < last_) {
-                const Index j = good + (bad - good) / 2;
-                const Step trial = tried(i, j, beside(i, j, share));
-                if (trial.good) {
-                    good = j;
-                    best = trial;
-                } else {
-                    bad = j;
-                }
-            }
-            stride = 1;
-        }
         return {good, best};
     }
+    /// How far one arc goes, through three places of the path.
+    std::pair<Index, Step> farthest_round(Index i, Index straight_to) const {
+        Index good = i;
+        Step best;
+        if (std::abs(at_.z() - was_.depth[i]) > kSameDepthMm) return {good, best};
+        const auto trial = [&](Index j) { return round(i, j); };
+        const Index level = std::min(last_, was_.level[i]);
+        if (level > i) search(i, level, std::max<Index>(4, 2 * (straight_to - i)), trial, good, best);
+        return {good, best};
+    }
+
+    /// The farthest good step beyond the one known, ever more at a time, and between the last good and the first bad
+    /// one by halves.
+    template <class Trial>
+    void search(Index i, Index last, Index step, Trial&& trial, Index& good, Step& best) const {
+        Index bad = last + 1;
+        const auto is_good = [&](Index j) {
+            const Step found = trial(j);
+            if (!found.good()) {
+                bad = j;
+                return false;
+            }
+            good = j;
+            best = found;
+            return true;
+        };
+        for (Index j = std::min(good + step, last); j > good && is_good(j); j = std::min(good + step, last)) step *= 2;
+        if (good == i)
+            while (bad - i > 1 && bad <= last && !is_good(i + (bad - i) / 2)) {
+            }
+        while (good > i && bad - good > 1 && good < last) is_good(good + (bad - good) / 2);
+    }
+
     Vector3d beside(Index i, Index j, double share) const {
         const Vector3d here = was_.pose(j);
         const double h = std::min(0.5 * (was_.along[j] - was_.along[i]), was_.along[last_] - was_.along[j]);
@@ -173,14 +220,34 @@ class Walk {
         return to;
     }
 
-    Step tried(Index i, Index j, const Vector3d& to) const {
-        checkpoint(10);
-        Step step{to, state_};
+    Step straight(Index i, Index j, const Vector3d& to) const {
+        Step step;
+        step.to = to;
         const Move<double> move(at_.head<2>(), to.head<2>(), at_.z(), to.z());
-        if (move.length > kLeastMoveMm && j > i + 1) {
-            const double turn = std::atan2(way_.cross(to - at_).norm(), way_.dot(to - at_));
-            if (turn > kMostTurnRad) return step;
-        }
+        if (!(move.length > kLeastMoveMm)) return step;
+        if (j > i + 1 && turn_to(to - at_) > kMostTurnRad) return step;
+        follow(move, i, j, move.depth_by / move.length, step);
+        return step;
+    }
+    Step round(Index i, Index j) const {
+        Step step;
+        step.to = was_.pose(j);
+        const Vector2d from = at_.head<2>(), to = step.to.head<2>();
+        const Vector2d middle = was_.at(0.5 * (was_.along[i] + was_.along[j]), (i + j) / 2).head<2>();
+        step.circle = Circle::through(from, middle, to);
+        if (!step.circle) return step;
+        const Vector2d along = step.circle->along(from);
+        if (turn_to({along.x(), along.y(), 0.0}) > kMostTurnRad) return step;
+        follow(ArcMove<double>(from, along, step.circle->radius, step.circle->turn, at_.z()), i, j, 0.0, step);
+        return step;
+    }
+    double turn_to(const Vector3d& along) const { return std::atan2(way_.cross(along).norm(), way_.dot(along)); }
+
+    /// What the brush does in a move in place of those from pose i to pose j.
+    template <class Motion>
+    void follow(const Motion& move, Index i, Index j, double deeper, Step& step) const {
+        checkpoint(10);
+        step.state = state_;
         bool good = true;
         // a pen smooths nothing: every pose may be a spike of its own
         const Index stride = law_.rigid ? 1 : std::max<Index>(1, (j - i) / kLooks);
@@ -195,22 +262,30 @@ class Walk {
                         const double at = std::min(t, end);
                         const LagState<double> now =
                             law_.rigid ? rigid(mv, at) : within_phase(piece, mv, start, begin, at);
-                        good = is_near(now, mv.depth(at), k);
+                        good = is_near(now, mv.depth(at), k, k < j ? tolerance_ : kEndShare * tolerance_);
                         k = k < j ? std::min(k + stride, j) : j + 1;
                     }
                 });
-        step.good = good && step.state.taut;
-        return step;
+        step.near = good && step.state.taut;
+        if (!step.near) return;
+        const LagState<double> begins = law_.rigid ? rigid(move, 0.0) : state_;
+        if (law_.rigid) step.state = rigid(move, 1.0);
+        const Edges leaving = edges_of(brush_, law_, begins, move.direction(0.0), at_.z(), deeper);
+        step.edges = edges_of(brush_, law_, step.state, move.direction(1.0), step.to.z(), deeper);
+        step.corner = std::max(corner_between(edges_, leaving) / kMostCornerRad,
+                               corner_between(step.edges, was_.reaching[j]) / kMostOffRad);
     }
-    static LagState<double> rigid(const Move<double>& move, double t) {
+    template <class Motion>
+    static LagState<double> rigid(const Motion& move, double t) {
         LagState<double> state;
+        state.taut = state.heading_known = true;
         state.contact = move.tcp(t);
-        state.heading = move.along;
+        state.heading = move.direction(t);
         return state;
     }
 
     /// Whether the footprint is where it was about pose k, to the tolerance.
-    bool is_near(const LagState<double>& now, double depth, Index k) const {
+    bool is_near(const LagState<double>& now, double depth, Index k, double tolerance_mm) const {
         const Vector2d middle = now.contact + brush_.lever_to_widest(depth) * now.heading;
         const double most_slip = kSlipShare * tolerance_;
         if ((middle - was_.middle.row(k).transpose()).squaredNorm() > most_slip * most_slip) return false;
@@ -221,24 +296,25 @@ class Walk {
             const double t = squared > 0.0 ? std::clamp((middle - a).dot(d) / squared, 0.0, 1.0) : 0.0;
             least = std::min(least, (middle - a - t * d).squaredNorm());
         }
-        if (least > tolerance_ * tolerance_) return false;
-        if (std::abs(brush_.half_width(depth) - brush_.half_width(was_.depth[k])) > tolerance_) return false;
+        if (least > tolerance_mm * tolerance_mm) return false;
+        if (std::abs(brush_.half_width(depth) - brush_.half_width(was_.depth[k])) > tolerance_mm) return false;
         if (law_.rigid) return true;
         const Vector2d& u = was_.heading[k];
         const double turned = std::abs(u.x() * now.heading.y() - u.y() * now.heading.x());
         return turned * brush_.tip_to_widest(depth) <= kTipShare * tolerance_ && u.dot(now.heading) > 0.0;
     }
 
-    const Traced& was_;
+    const TracedPass& was_;
     const Brush& brush_;
     const LagLaw<double>& law_;
     double tolerance_;
     Index first_ = 0, last_ = 0;
     LagState<double> state_;
-    Vector3d at_, way_;  ///< where the walk is, and the move that led there
+    Vector3d at_, way_;  ///< where the walk is, and the way that led there
+    Edges edges_;        ///< of the mark there
 };
 
-Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tolerance_mm) {
+Pass thinned(const Pass& pass, const Brush& brush, const TracedPass& was, double tolerance_mm) {
     const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
     const Index n = pass.poses_mm.rows();
     std::vector<Vector3d> poses;
@@ -247,6 +323,8 @@ Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tol
         now[i] = Index(poses.size());
         poses.push_back(pass.poses_mm.row(i).transpose());
     };
+    Pass out = pass;
+    out.arcs.clear();
     Walk walk(was, brush, law, tolerance_mm);
     for (Index i = 0; i < n;) {
         keep(i);
@@ -257,16 +335,23 @@ Pass thinned(const Pass& pass, const Brush& brush, const Traced& was, double tol
             ++i;
             continue;
         }
-        for (const Vector3d& pose : walk(i, end)) poses.push_back(pose);
+        Way way = walk(i, end);
+        for (Arc& arc : way.arcs) {
+            arc.first += now[i];
+            arc.last += now[i];
+            out.arcs.push_back(arc);
+        }
+        poses.insert(poses.end(), way.poses.begin(), way.poses.end() - 1);
         i = end;
     }
-    Pass out = pass;
     out.poses_mm.resize(Index(poses.size()), 3);
     for (Index i = 0; i < out.poses_mm.rows(); ++i) out.poses_mm.row(i) = poses[i].transpose();
-    for (Arc& arc : out.arcs) {
+    for (Arc arc : pass.arcs) {
         arc.first = now[arc.first];
         arc.last = now[arc.last];
+        out.arcs.push_back(arc);
     }
+    std::sort(out.arcs.begin(), out.arcs.end(), [](const Arc& a, const Arc& b) { return a.first < b.first; });
     return out;
 }
 
@@ -291,7 +376,7 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
     const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
     const PassMarks marks = simulate(pass, brush, exact_mm, false);
     if (pass.poses_mm.rows() < 4) return pass;
-    const Traced was(pass, brush, marks);
+    const TracedPass was(pass, brush, marks);
     const Ring middle = widest_points(marks, brush);
     // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
     for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {

@@ -52,13 +52,15 @@ TEST_CASE("turns up to 90 degrees are exact, beyond them what remains is what ge
 
 TEST_CASE("a turn in place is one arc about the resting contact, with the same mark as its chords") {
     const Brush brush = shipped("round-6");
+    CompensateOptions dense;  // with few poses, bends are arcs as well
+    dense.few_poses = false;
     for (double degrees : {120.0, 179.0, -150.0})
         for (double depth : {4.0, 1.0}) {  // the widest section ahead of the contact, and behind it
             const double a = degrees * kPi / 180;
             const Stroke s =
                 stroke_of(polyline({V(20, 20), V(60, 20), V(60 + 40 * std::cos(a), 20 + 40 * std::sin(a))}),
                           {{0.0, brush.half_width(depth)}});
-            Pass pass = compensate(s, brush).pass;
+            Pass pass = compensate(s, brush, dense).pass;
             REQUIRE(pass.arcs.size() == 1);
             const Arc arc = pass.arcs[0];
             CHECK(arc.direction == (degrees > 0 ? 1 : -1));
@@ -78,7 +80,7 @@ TEST_CASE("a turn in place is one arc about the resting contact, with the same m
             CHECK(std::abs(tracking_error_of(pass, s, brush, 0.05).largest_mm - exact.largest_mm) < 1e-3);
         }
     const Stroke bend = stroke_of(polyline({V(20, 20), V(60, 20), V(60, 60)}), {{0.0, brush.half_width(4.0)}});
-    CHECK(compensate(bend, brush).pass.arcs.empty());
+    CHECK(compensate(bend, brush, dense).pass.arcs.empty());
     // a corner at changing depth is none: the circle would not close
     const Stroke taper = stroke_of(polyline({V(20, 20), V(60, 20), V(30, 40)}), {{0.0, 0.8}, {1.0, 2.0}});
     const Pass tapered = compensate(taper, brush).pass;

@@ -133,6 +133,31 @@ TEST_CASE("arcs stay whole in the part that holds them") {
     }
 }
 
+TEST_CASE("a long bend is cut inside of its arcs") {
+    const Brush brush = shipped("round-6");
+    Stroke stroke;
+    stroke.id = "o";
+    const double reach = 4.0 / 3.0 * std::tan(std::acos(-1.0) / 8.0);
+    stroke.middle_mm.resize(4, 8);
+    Eigen::Vector2d spoke(50, 0);
+    for (int k = 0; k < 4; ++k) {
+        const Eigen::Vector2d centre(100, 100), next(-spoke.y(), spoke.x());
+        stroke.middle_mm.row(k) << (centre + spoke).transpose(), (centre + spoke + reach * next).transpose(),
+            (centre + next + reach * spoke).transpose(), (centre + next).transpose();
+        spoke = next;
+    }
+    stroke.half_width = {{0.0, 1.5}};
+    const Pass whole = compensate(stroke, brush).pass;
+    REQUIRE(!whole.arcs.empty());
+    const std::vector<Pass> parts = interrupted(whole, brush, {60.0, 60.0, 4.0});
+    CHECK(parts.size() >= 5);
+    for (const Pass& part : parts) {
+        for (std::size_t k = 0; k < part.arcs.size(); ++k) CHECK_NOTHROW(check_arc(part, k, ""));
+        CHECK(length(part) < 60.0 + 12.0);
+    }
+    CHECK(overlap(painted(parts, brush), painted({whole}, brush)) > 0.99);
+}
+
 TEST_CASE("a paint that does not get on is refused") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);

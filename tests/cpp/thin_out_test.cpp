@@ -85,11 +85,13 @@ TEST_CASE("a pass thinned out twice stays near itself, and arcs, landings and li
     const Pass pass = compensate(stroke, brush, options).pass;
     const Pass thin = thin_out(pass, brush, 0.05);
     REQUIRE(!pass.arcs.empty());
-    REQUIRE(thin.arcs.size() == pass.arcs.size());
-    for (std::size_t k = 0; k < thin.arcs.size(); ++k) {
-        CHECK(thin.arcs[k].last - thin.arcs[k].first == pass.arcs[k].last - pass.arcs[k].first);
-        CHECK(thin.poses_mm.row(thin.arcs[k].first) == pass.poses_mm.row(pass.arcs[k].first));
-        CHECK_NOTHROW(check_arc(thin, k, "s"));
+    for (std::size_t k = 0; k < thin.arcs.size(); ++k) CHECK_NOTHROW(check_arc(thin, k, "s"));
+    for (const Arc& turn : pass.arcs) {
+        const auto kept = std::find_if(thin.arcs.begin(), thin.arcs.end(),
+                                       [&](const Arc& arc) { return arc.centre_mm == turn.centre_mm; });
+        REQUIRE(kept != thin.arcs.end());
+        CHECK(kept->last - kept->first == turn.last - turn.first);
+        CHECK(thin.poses_mm.row(kept->first) == pass.poses_mm.row(turn.first));
     }
     CHECK(thin.poses_mm.topRows(2) == pass.poses_mm.topRows(2));
     CHECK(thin.poses_mm.bottomRows(5) == pass.poses_mm.bottomRows(5));

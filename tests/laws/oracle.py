@@ -441,6 +441,23 @@ class Middle:
         return out
 
 
+def chords(poses, arcs, step=0.02):
+    """The same pass (n, 3) with lines only: along its arcs chords no longer than `step` mm."""
+    poses, out = np.asarray(poses, float), []
+    on_arc = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
+    for k, pose in enumerate(poses):
+        out.append(pose[None])
+        if k not in on_arc:
+            continue
+        centre = np.asarray(on_arc[k].centre_mm)
+        (a, b), (c, d) = pose[:2] - centre, poses[k + 1, :2] - centre
+        turn, radius = np.arctan2(a * d - b * c, a * c + b * d), np.hypot(a, b)
+        angle = np.arctan2(b, a) + turn * np.linspace(0, 1, 2 + int(abs(turn) * radius / step))[1:-1]
+        between = centre + radius * unit(angle)
+        out.append(np.column_stack([between, np.full(len(between), pose[2])]))
+    return np.concatenate(out)
+
+
 def subdivide(poses, parts, step=np.inf):
     """The same pass (n, 3) with every move cut into at least `parts` equal parts no longer than `step` mm."""
     poses = np.asarray(poses, float)

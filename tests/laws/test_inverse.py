@@ -107,7 +107,9 @@ class Painted:
 
     def __init__(self, stroke, tolerance_mm, brush=ROUND, parts=6, step=0.25, **options):
         found = core.compensate([stroke], brush, (200.0, 200.0), tolerance_mm=tolerance_mm, **options)
-        self.miss, self.poses, self.warnings = found.misses[0], found.plan.passes[0].poses_mm, found.warnings
+        (planned,) = found.plan.passes
+        self.miss, self.warnings = found.misses[0], found.warnings
+        self.poses = oracle.chords(planned.poses_mm, planned.arcs)
         plan = make_plan(oracle.subdivide(self.poses, parts, step))
         self.rows = core.simulate(plan, brush, max(tolerance_mm, 2e-3)).passes[0]
         depth = self.rows.depth_mm

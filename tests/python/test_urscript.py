@@ -65,6 +65,19 @@ def rows_of(robot, cell):
     return rows
 
 
+def on_a_circle(start, via, end, count=200):
+    """Points between the first and the last of three on a level circle."""
+    (a, b, c), level = (np.array(each[:2]) @ (1, 1j) for each in (start, via, end)), start[2]
+    ratio = (c - a) / (b - a)
+    centre = (b - a) * (ratio - abs(ratio) ** 2) / (2j * ratio.imag) + a
+    turn = np.angle((c - centre) / (a - centre))
+    if np.sign(turn) != np.sign(((b - a).conjugate() * (c - b)).imag):
+        turn -= np.copysign(2 * np.pi, turn)
+    at = centre + (a - centre) * np.exp(1j * turn * np.linspace(0, 1, count + 1)[1:-1])
+    assert np.abs(at - b).min() < abs(a - centre) * abs(turn) / count
+    return list(np.column_stack([at.real, at.imag, np.full(len(at), level)]))
+
+
 def touched(robot, cell):
     """Those below the clearance."""
     return [row for row in rows_of(robot, cell) if row[1][2] < cell.heights.clearance_mm - 1e-6]
@@ -98,16 +111,18 @@ def test_the_marks_are_the_plans():
     cell = replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
     robot = run("".join(writer.encode(".script", work.plan, brush, "v", (), cell)))
     passes, here = [], []
-    for _, point, _, _ in rows_of(robot, cell):
+    rows, via = rows_of(robot, cell), False
+    for k, (name, point, _, _) in enumerate(rows):
         if point[2] > 1e-6 and here:
             passes.append(here)
             here = []
         elif point[2] <= 1e-6:
-            here.append(point)
+            via = name == "movec" and not via  # on its way, and then its end
+            here += on_a_circle(here[-1], point, rows[k + 1][1]) if via else [point]
     rings = []
-    for poses in ([a_pass.poses_mm for a_pass in work.plan.passes], [np.array(each) for each in passes]):
-        plan = _core.Plan("round-6", "", (400.0, 400.0), [_core.Pass("s", each, 20.0) for each in poses])
-        marks = _core.simulate(plan, brush)
+    told = [_core.Pass("s", np.array(each), 20.0) for each in passes]
+    for plan in (work.plan, _core.Plan("round-6", "", (400.0, 400.0), told)):
+        marks = _core.simulate(plan, brush, 0.005)
         _core.trace_outlines(marks, brush)
         rings.append(marks.outline_mm)
     assert _core.overlap(*rings) > 0.999

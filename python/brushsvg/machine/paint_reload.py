@@ -10,7 +10,10 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length
-from .cell import Cell, Station
+from .arc_chords import chords, with_chords
+from .cell import Cell, Station, robot_from_paper
+from .frames import is_upright
+from .posts import POSTS
 
 
 @dataclass(frozen=True)
@@ -45,8 +48,8 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
     """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
-    already stays as it is. What begins or ends below the paper is set down and lifted there. Error for a part that does
-    not follow the one before it.
+    already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
+    no circles, arcs have poses enough for lines. Error for a part that does not follow the one before it.
     """
     loads, last = list(plan.passes), None
     for a_pass in loads:
@@ -61,7 +64,17 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
         for a_pass in plan.passes:
             whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
             loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+    if not _is_told_circles(cell):
+        loads = map(with_chords, loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)))
+
+
+def _is_told_circles(cell: Cell) -> bool:
+    """On paper that leans a robot's circles would lie in no plane that it knows."""
+    post = POSTS.get(cell.language)
+    if not post or not post.circles_by:
+        return not post
+    return not post.in_robot_frame or is_upright(robot_from_paper(cell))
 
 
 def _from_paper_to_paper(a_pass):
@@ -139,7 +152,8 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
 
 def painted_mm(a_pass) -> float:
     """Length of the TCP's path on the paper [mm]."""
-    return length(np.asarray(a_pass.poses_mm))
+    poses = np.asarray(a_pass.poses_mm)
+    return length(chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
 
 
 def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
