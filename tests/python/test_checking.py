@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, refused
+from diagnostics import agrees, in_json, is_told, refused
 from programs import LANGUAGES, RUNNABLE, call
 
 from brushsvg import _core
@@ -643,6 +643,37 @@ def test_strokes_of_any_name_are_known_again(desk, capsys):
         assert call(capsys, "convert", "some.svg", f"some{suffix}", "--cell", name)[0] == 0
         status, _, err = call(capsys, "check", f"some{suffix}", "some.svg")
         assert (status, err) == (0, [])
+
+
+NAMES = [
+    "a ",
+    "a  b",
+    "a",
+    "\u00a0c\u00a0",
+    "c\t",
+    "d\n\x1f",
+    " ",
+    "e: ",
+    "f: g ",
+    "x" * 120 + " ",
+    "y" + " " * 120,
+]
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
+    """Comments of URScript and JAKA script lost blanks at their ends: check refused what convert had written."""
+    places = [[(20.0, 10.0 + 5 * k, -1.0), (40.0, 10.0 + 5 * k, -1.5)] for k in range(len(NAMES))]
+    passes = [_core.Pass(each, np.array(way), 15.0) for each, way in zip(NAMES, places, strict=True)]
+    (desk / "some.json").write_text(_core.write_plan(_core.Plan("round-6", "", (120.0, 70.0), passes)))
+    program = f"some{LANGUAGES[name]}"
+    assert call(capsys, "convert", "some.json", program, "--cell", name)[0] == 0
+    for words in ((program, "some.json"), (program,)):
+        assert call(capsys, "check", *words)[::2] == (0, [])
+    text = (desk / program).read_text()
+    (desk / program).write_text(text.replace(f"stroke 3 of {len(NAMES)}: a", f"stroke 3 of {len(NAMES)}: b"))
+    status, _, told = in_json(capsys, "check", program, "some.json")
+    assert status == 1 and is_told(told, "stroke-not-painted", "a"), told
 
 
 def test_a_program_of_another_language_is_refused(desk, capsys):

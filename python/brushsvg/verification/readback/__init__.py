@@ -84,7 +84,9 @@ class Readback:
         return self.sections[-1]
 
     def comment(self, number: int, text: str) -> None:
-        """Perhaps the title of a section."""
+        """Perhaps the title of a section. Blanks at its end are not told apart: some languages drop them."""
+        text = text.rstrip(" ")
+        text += " " * text.endswith(":")  # of a name without plain letters
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
         if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks

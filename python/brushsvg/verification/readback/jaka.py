@@ -35,7 +35,7 @@ def read_jaka(text: str, cell: Cell) -> Readback:
     lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     for number, line in lines:
         if line.startswith("# "):
-            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
+            out.comment(number, line[2:])
         elif found := _POSE.fullmatch(line):
             pose = np.array([float(value) for value in found[2].split(", ")])
             _stands(number, line, pose[3:], turned)

@@ -35,7 +35,7 @@ def read_urscript(text: str) -> Readback:
     for number, line in lines:
         if line.startswith("# "):
             before = len(out.acts)
-            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
+            out.comment(number, line[2:])
             if 0 < before < len(out.acts) and out.acts[before - 1].text.startswith("here ="):
                 out.acts.insert(
                     before - 1, out.acts.pop()
