@@ -11,12 +11,13 @@ import numpy as np
 from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
+from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import told_apart
 from .rounding import Written, as_written
-from .workspace_limits import broken_limits, height_astray, touching_mm_s, walked_astray
+from .workspace_limits import broken_limits, rise_astray, touching_mm_s, walked_astray
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
@@ -87,11 +88,21 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
     """The same for a program's ways, its rise before the first move included."""
-    found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
+    ends: list = []
+
+    def sections() -> Iterator[Section]:
+        for section in made.sections():
+            if moves := section.moves:
+                ends[:] = [ends[0] if ends else moves[0].points_mm[0], moves[-1].points_mm[-1]]
+            yield section
+
+    frame, height_mm = made.robot_from_frame, made.rise_mm
+    found = walked_astray(sections(), frame, made.cell, sheet_mm)
     post = POSTS.get(made.cell.language)
     if post and post.in_robot_frame:  # else it rises to the safe height over the paper
-        found += height_astray(made.rise_in_robot_mm, made.cell)
-    return found
+        ends = list(moved(frame, np.reshape(ends, (-1, 3))))
+        frame, height_mm = np.eye(4), made.rise_in_robot_mm
+    return found + rise_astray(height_mm, ends, frame, made.cell)
 
 
 def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:

@@ -21,7 +21,7 @@ from ..machine.workspace_limits import (
     astray,
     astray_between,
     broken_limits,
-    height_astray,
+    rise_astray,
     touching_mm_s,
 )
 from .readback import Readback, ReadSection
@@ -111,12 +111,30 @@ def walked(
     paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
     """
     frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
-    here = None
+    here, ends = None, []
     for section in read.sections:
         track = _track(section, frame, here)
         said = [*_careless(section, track, brush, cell, here, paper_mm)]
+        if len(track.points):
+            ends = [ends[0] if ends else track.points[0], track.points[-1]]
+        if section is read.sections[-1]:
+            said += _rises_astray(read, np.reshape(ends, (-1, 3)), frame, cell, z_offset_mm)
         yield section, track, said + _astray(section, track, here, cell, sheet_mm, z_offset_mm)
         here = track.points[-1] if len(track.points) else here
+
+
+def _rises_astray(
+    read: Readback, ends: np.ndarray, frame: np.ndarray, cell: Cell, z_offset_mm: float
+) -> Problems:
+    """Notices for the limits that the rise before the first move breaks, over the program's ends in the paper's frame;
+    frame: that of the paper in the program's."""
+    robot_from_program = robot_from_paper(cell, z_offset_mm) @ np.linalg.inv(frame)
+    places = moved(frame, ends)
+    return [
+        each
+        for height_mm in dict.fromkeys(read.rises_mm)
+        for each in rise_astray(height_mm, places, robot_from_program, cell, slack_mm(cell))
+    ]
 
 
 def _rounded(cell: Cell) -> Cell:
@@ -130,12 +148,9 @@ def _astray(
 ) -> Problems:
     """Notices for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
     slack, points = slack_mm(cell), track.points
-    said = []
-    for step in section.steps:  # without a place: from wherever the tool is, straight up to here
-        if np.isnan(step.x + step.y) and not np.isnan(step.z):
-            said += height_astray(step.z, cell, slack)
     if not len(points):
-        return said
+        return []
+    said: Problems = []
     frame = robot_from_paper(cell, z_offset_mm)
     if here is not None:
         said += astray_between(here, points[0], frame, cell, slack)

@@ -65,7 +65,7 @@ class ReadSection:
 @dataclass
 class Readback:
     """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
-    it first moves.
+    it first moves; rises_mm: heights to which it goes straight from wherever the tool is.
 
     in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
     """
@@ -76,6 +76,7 @@ class Readback:
     paper: tuple[float, ...] = ()
     acts: list[Act] = field(default_factory=list)
     modes: frozenset[str] | None = None
+    rises_mm: list[float] = field(default_factory=list)
 
     def section(self) -> ReadSection:
         """The one being read."""
