@@ -959,6 +959,30 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
+def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_told(desk, capsys, drawing):
+    """In laser mode grbl switches the output off wherever no G1 holds; lines of modes alone were taken for idle."""
+    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    lines = (desk / "two.nc").read_text().splitlines()
+    ways = [k for k, line in enumerate(lines) if line.startswith("G1 X")]
+    k = ways[len(ways) // 4]
+    lift = next(n for n, line in enumerate(lines) if line.startswith("M3"))
+    for line, code, new in (
+        *((k, "line-unread", [word, lines[k]]) for word in ("G80", "G0", "G21 G90 G94 G17 G40 G80")),
+        *((k, "line-unread", [lines[k], word]) for word in ("G80", "G0")),
+        *((k, "line-unread", [lines[k].replace("G1", word)]) for word in ("G80", "G0", "G80 G1", "G1 G80")),
+        (k, "line-unread", ["G0", lines[k].removeprefix("G1 ")]),
+        (lift, "line-unread", ["G80", lines[lift]]),
+        *((k, "speed-out-of-range", [f"{lines[k]} {feed}"]) for feed in ("F3000", "F1501", "F90000")),
+        *((k, "speed-out-of-range", [feed, lines[k]]) for feed in ("F3000", "G1 F3000", "M3 F3000")),
+    ):
+        (desk / "bad.nc").write_text("\n".join([*lines[:line], *new, *lines[line + 1 :]]) + "\n")
+        status, _, told = in_json(capsys, "check", "bad.nc", *drawing)
+        assert status == 1 and any(each.code == code and "line " in each.sentence for _, each in told), new
+    (desk / "fine.nc").write_text("\n".join([*lines[:k], f"{lines[k]} F1100", *lines[k + 1 :]]) + "\n")
+    assert call(capsys, "check", "fine.nc", *drawing)[0] == 0
+
+
+@pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_a_servos_jump_within_a_lift_is_told(desk, capsys, drawing):
     """Steps that are waited for are slow only as long as they are steps."""
     words = ("two.svg", "two.nc", "--cell", "grbl-servo", "--compensation", "none")

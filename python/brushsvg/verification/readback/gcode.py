@@ -161,6 +161,8 @@ class _Reader:
                 f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write",
                 code="line-unread",
             )
+        if self.servo:
+            self._stays_held(number, line, first, codes)
         if first == "G64" and "G21" not in self.seen:
             raise Error(
                 f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres",
@@ -185,6 +187,15 @@ class _Reader:
             self.motion = ""
         self.seen -= {mode for code in codes for mode in INSTEAD.get(code, ())}
         self.seen |= set(codes)
+
+    def _stays_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
+        """Error for what ends or lacks G1, without which grbl switches a servo's output off: the brush falls."""
+        falls = "G80" in codes and "M3" in self.seen
+        if first == "G0" or falls or (first == "M3" and self.motion != "G1"):
+            raise Error(
+                f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall",
+                code="line-unread",
+            )
 
     def _comment(self, number: int, line: str, said: str) -> None:
         """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
