@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from .. import _core
 from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
@@ -74,7 +75,9 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
     told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
-    problems += broken_limits(left, loads.sheet_mm, brush, cell, told_mm)
+    problems += broken_limits(
+        [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
+    )
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:
@@ -84,6 +87,23 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, list(dict.fromkeys(problems)))
+
+
+def _as_run(a_pass, made: Program):
+    """The pass as limits are asked of it: a servo's with the places at which it stands."""
+    if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
+        return a_pass
+    poses = _run_poses(a_pass, as_written(a_pass, made.cell, made.robot_from_frame), made.cell)
+    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)
+
+
+def _run_poses(a_pass, written: Written, cell: Cell) -> np.ndarray:
+    """(k, 3) the poses that are run, not rounded; a servo's lift names no place: it stays where the last way ended."""
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)[written.kept]
+    if cell.servo and len(poses):
+        goes = np.r_[True, np.diff(written.poses_mm[:, :2], axis=0).any(axis=1)]
+        poses[:, :2] = poses[np.maximum.accumulate(np.where(goes, np.arange(len(goes)), 0)), :2]
+    return poses
 
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
@@ -169,7 +189,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)[written.kept]
+    poses = _run_poses(a_pass, written, cell)
     if len(poses) == 0:
         return ()
     start, end = poses[0], poses[-1]

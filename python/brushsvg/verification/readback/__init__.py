@@ -22,7 +22,8 @@ class Step(NamedTuple):
 
     line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
     blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
-    frame of the program; wait_s: what is waited for behind it. What a servo does alone takes no time but that.
+    frame of the program; wait_s: what is waited for behind it, in so many waits. What a servo does alone takes no time
+    but that.
     """
 
     line: int
@@ -35,6 +36,7 @@ class Step(NamedTuple):
     centre: tuple[float, float, int] | None = None
     via: tuple = ()
     wait_s: float = 0.0
+    waits: int = 0
 
 
 class Act(NamedTuple):

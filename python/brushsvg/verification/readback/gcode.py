@@ -189,9 +189,8 @@ class _Reader:
         self.seen |= set(codes)
 
     def _stays_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
-        """Error for what ends or lacks G1, without which grbl switches a servo's output off: the brush falls."""
-        falls = "G80" in codes and "M3" in self.seen
-        if first == "G0" or falls or (first == "M3" and self.motion != "G1"):
+        """Error for what ends G1, without which grbl switches a servo's output off: the brush falls."""
+        if first == "G0" or ("G80" in codes and "G1" in self.seen):
             raise Error(
                 f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall",
                 code="line-unread",
@@ -213,7 +212,8 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} does not say how long", code="line-incomplete")
         self.out.acts.append(Act(number, "wait", same=(seconds,)))
         if steps := self.out.section().steps:
-            steps[-1] = steps[-1]._replace(wait_s=steps[-1].wait_s + seconds)
+            last = steps[-1]
+            steps[-1] = last._replace(wait_s=last.wait_s + seconds, waits=last.waits + 1)
 
     def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
