@@ -544,6 +544,7 @@ HARMLESS = {
         (r"v=0\.02000", "v=0.018"),
         (r"a=0\.5000", "a=0.4"),
         (r"(?m)^(  set_tcp.*\n)", r"\1\1"),
+        (r"(?m)^(  here = .*\n)", r"\1\1"),
         (r"(?m)^(  movel\(on_paper.*\n)", r"\1\1"),
         (r"(?m)^(  # stroke 2)", r"  # all is well\n\1"),
         (r"(?m)^(  # stroke 2)", r"  # Anna, Monday: slower here\n\1"),

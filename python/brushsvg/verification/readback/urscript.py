@@ -61,6 +61,8 @@ def read_urscript(text: str) -> Readback:
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
         elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
             out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
+            if " = " in line and out.acts and out.acts[-1].text == line:
+                continue  # set twice, it is the same
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
