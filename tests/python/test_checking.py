@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, refused
+from diagnostics import agrees, in_json, is_told, refused
 from programs import LANGUAGES, RUNNABLE, call
 
 from brushsvg import _core
@@ -554,6 +554,7 @@ HARMLESS = {
         (r"v=0\.02000", "v=0.018"),
         (r"a=0\.5000", "a=0.4"),
         (r"(?m)^(  set_tcp.*\n)", r"\1\1"),
+        (r"(?m)^(  here = .*\n)", r"\1\1"),
         (r"(?m)^(  movel\(on_paper.*\n)", r"\1\1"),
         (r"(?m)^(  # stroke 2)", r"  # all is well\n\1"),
         (r"(?m)^(  # stroke 2)", r"  # Anna, Monday: slower here\n\1"),
@@ -653,6 +654,37 @@ def test_strokes_of_any_name_are_known_again(desk, capsys):
         assert call(capsys, "convert", "some.svg", f"some{suffix}", "--cell", name)[0] == 0
         status, _, err = call(capsys, "check", f"some{suffix}", "some.svg")
         assert (status, err) == (0, [])
+
+
+NAMES = [
+    "a ",
+    "a  b",
+    "a",
+    "\u00a0c\u00a0",
+    "c\t",
+    "d\n\x1f",
+    " ",
+    "e: ",
+    "f: g ",
+    "x" * 120 + " ",
+    "y" + " " * 120,
+]
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
+    """Comments of URScript and JAKA script lost blanks at their ends: check refused what convert had written."""
+    places = [[(20.0, 10.0 + 5 * k, -1.0), (40.0, 10.0 + 5 * k, -1.5)] for k in range(len(NAMES))]
+    passes = [_core.Pass(each, np.array(way), 15.0) for each, way in zip(NAMES, places, strict=True)]
+    (desk / "some.json").write_text(_core.write_plan(_core.Plan("round-6", "", (120.0, 70.0), passes)))
+    program = f"some{LANGUAGES[name]}"
+    assert call(capsys, "convert", "some.json", program, "--cell", name)[0] == 0
+    for words in ((program, "some.json"), (program,)):
+        assert call(capsys, "check", *words)[::2] == (0, [])
+    text = (desk / program).read_text()
+    (desk / program).write_text(text.replace(f"stroke 3 of {len(NAMES)}: a", f"stroke 3 of {len(NAMES)}: b"))
+    status, _, told = in_json(capsys, "check", program, "some.json")
+    assert status == 1 and is_told(told, "stroke-not-painted", "a"), told
 
 
 def test_a_program_of_another_language_is_refused(desk, capsys):
@@ -935,6 +967,30 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
     told = [re.search(r"line (\d+): '(.*?)': for .* would write '(.*)'", line) for line in err]
     assert status == 1 and [int(found[1]) for found in told if found] == [first], err
     assert all(found[2] != found[3] for found in told if found)
+
+
+@pytest.mark.parametrize("drawing", [(), ("two.svg",)])
+def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_told(desk, capsys, drawing):
+    """In laser mode grbl switches the output off wherever no G1 holds; lines of modes alone were taken for idle."""
+    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    lines = (desk / "two.nc").read_text().splitlines()
+    ways = [k for k, line in enumerate(lines) if line.startswith("G1 X")]
+    k = ways[len(ways) // 4]
+    lift = next(n for n, line in enumerate(lines) if line.startswith("M3"))
+    for line, code, new in (
+        *((k, "line-unread", [word, lines[k]]) for word in ("G80", "G0", "G21 G90 G94 G17 G40 G80")),
+        *((k, "line-unread", [lines[k], word]) for word in ("G80", "G0")),
+        *((k, "line-unread", [lines[k].replace("G1", word)]) for word in ("G80", "G0", "G80 G1", "G1 G80")),
+        (k, "line-unread", ["G0", lines[k].removeprefix("G1 ")]),
+        (lift, "line-unread", ["G80", lines[lift]]),
+        *((k, "speed-out-of-range", [f"{lines[k]} {feed}"]) for feed in ("F3000", "F1501", "F90000")),
+        *((k, "speed-out-of-range", [feed, lines[k]]) for feed in ("F3000", "G1 F3000", "M3 F3000")),
+    ):
+        (desk / "bad.nc").write_text("\n".join([*lines[:line], *new, *lines[line + 1 :]]) + "\n")
+        status, _, told = in_json(capsys, "check", "bad.nc", *drawing)
+        assert status == 1 and any(each.code == code and "line " in each.sentence for _, each in told), new
+    (desk / "fine.nc").write_text("\n".join([*lines[:k], f"{lines[k]} F1100", *lines[k + 1 :]]) + "\n")
+    assert call(capsys, "check", "fine.nc", *drawing)[0] == 0
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])

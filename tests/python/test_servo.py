@@ -175,10 +175,10 @@ def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
 
 def test_a_way_too_steep_for_values_that_change_along_with_it_is_refused():
     """Its parts were shorter than the last decimal: all its heights came at once, at a feed that grbl does not run."""
-    steep = [(20, 20, 0), (20.0008, 20, -4), (40, 20, -4), (40, 20, 0)]
-    with refused("too-steep 'x 20.0, y 20.0 mm' 4.00 0.0008"):
+    steep = [(20, 20, 0), (20.003, 20, -4), (40, 20, -4), (40, 20, 0)]
+    with refused("too-steep 'x 20.0, y 20.0 mm' 4.00 0.003"):
         text_of(("a", steep, 20.0), cell="grbl-servo")
-    for width in (0.0004, 0.05):  # the lift alone, and what every part of is left
+    for width in (0.0004, 0.002, 0.08):  # the lift alone, and what every part of is left
         steep[1] = (20 + width, 20, -4)
         assert text_of(("a", steep, 20.0), cell="grbl-servo")
 

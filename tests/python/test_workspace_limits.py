@@ -189,6 +189,39 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
     assert agrees(told, "out-of-box first 'z 49.8 mm' '[-99, 40]'", "")
 
 
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "jaka-zu3"])
+@pytest.mark.parametrize(
+    ("limit", "said"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")]
+)
+def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsys, name, limit, said):
+    """Over the stroke all is allowed up to the safe height; on paper that leans, the tool first rises over its highest
+    place, and the box's height alone was asked."""
+    cell = find_cell(name)
+    suffix = ".ngc" if name == "linuxcnc-3axis" else ".jks"
+    lamp = ((-80.0, -160.0, -366.0), (20.0, -100.0, -300.0)), ((900.0, 900.0, 0.0), (901.0, 901.0, 1.0))
+    tight, free = {
+        "reach_mm": ((388.0, 900.0), (330.0, 900.0)),
+        "keep_out_mm": (lamp, tuple(((x, -140.0, -330.0), (x + 40.0, -100.0, -300.0)) for x in (-40.0, 0.0))),
+    }[limit]
+    paper = replace(
+        cell.paper, origin_mm=(-300.0, -150.0, -400.0), rotation_deg=(10.0, 0.0, 0.0), example=False
+    )
+    for file, value in (("mine.toml", tight), ("free.toml", free)):
+        space = replace(cell.workspace, box_mm=(), reach_mm=(), tilt_limit_deg=15.0, margin_mm=0.0)
+        some = replace(cell, name="mine", paper=paper, workspace=replace(space, **{limit: value}))
+        (desk / file).write_text(write_cell(some))
+    (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M250 170 H290").replace('"bar"', '"s"'))
+    for command in ("convert", "border"):
+        program = f"{command}{suffix}"
+        status, _, told = in_json(capsys, command, "s.svg", program, "--cell", "mine.toml")
+        assert status == 1 and is_told(told, f"{said} rise mine", ""), told
+        assert not (desk / program).exists()
+        assert call(capsys, command, "s.svg", program, "--cell", "free.toml")[0] == 0
+        assert call(capsys, "check", program, "--cell", "free.toml")[0] == 0
+        status, _, told = in_json(capsys, "check", program, "--cell", "mine.toml")
+        assert status == 1 and is_told(told, f"{said} rise mine"), told
+
+
 def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
     """The reach had no room for the rounding of a program, which check then refused."""
     cell = replace(robot(), decimals=3)

@@ -2,11 +2,12 @@
 
 import random
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import in_json, is_told, refused
 from programs import LANGUAGES, call, whole
 
 from brushsvg import _core
@@ -93,6 +94,51 @@ def test_a_servo_stays_where_less_than_half_a_unit_is_gone_beside_its_lift(x, si
     """3e-4 mm from 40.0004 to 40.0007 are a unit when rounded: nobody writes it, and nobody took it for a lift."""
     poses = [DOWN, (20, 20, -2), (x, 25, -2), (x + sideways_mm, 25, -1), (60, 50, -1), UP]
     assert found_by_check(poses, [], cell_of("grbl-servo", 3))[1] is None
+
+
+SERVO_ROWS = (
+    ((-10.0, 900.0), (0.0, 600.0), (5.0, 400.0)),
+    ((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0)),
+    ((-10.0, 0.0), (5.0, 60.0)),  # a value is a quarter of a millimetre
+)
+
+
+def to_and_fro(chance: random.Random) -> list:
+    """Poses on one spot at other depths, there and back, or along a line of a few tenths."""
+    x, y = (round(chance.uniform(20, 40), 4) for _ in "xy")
+    angle, length = chance.uniform(0, 2 * np.pi), chance.choice([0.0, 0.2, 0.5, 1.0, 6.0])
+    along = [(0.0, length)[k % 2] if chance.random() < 0.7 else 0.0 for k in range(chance.randint(2, 9))]
+    noise = chance.choice([0.0, 3e-4])
+    return [
+        (x + by * np.cos(angle) + chance.uniform(0, noise), y + by * np.sin(angle), -chance.uniform(0.3, 2.5))
+        for by in along
+    ]
+
+
+@pytest.mark.parametrize("table", SERVO_ROWS)
+@pytest.mark.parametrize("step_mm", [0.05, 0.2, 0.5])
+def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
+    """Half of these were refused by check: a rest amid a lift was read as none, moves of a unit were left out, and a
+    lift that rounding may make none had to be there."""
+    chance = random.Random(f"{table} {step_mm}")
+    cell = cell_of("grbl-servo", chance.choice([3, 4]))
+    servo = replace(cell.servo, table=table, step_mm=step_mm)
+    cell = replace(cell, name="mine", servo=servo, heights=replace(cell.heights, clearance_mm=0.6))
+    toml, source, program = (str(tmp_path / name) for name in ("c.toml", "a.json", "a.nc"))
+    Path(toml).write_text(write_cell(cell), encoding="utf-8")
+    written = 0
+    for _ in range(12):
+        both = [_core.Pass(name, np.array(to_and_fro(chance)), chance.choice([5.0, 20.0])) for name in "ab"]
+        Path(source).write_text(_core.write_plan(_core.Plan(BRUSH.name, "", SHEET_MM, both)))
+        status, _, told = in_json(capsys, "convert", source, program, "--cell", toml)
+        if status:
+            assert is_told(told, "too-steep"), told
+            continue
+        written += 1
+        for words in ((program, source), (program,)):
+            status, _, told = in_json(capsys, "check", *words, "--cell", toml)
+            assert status == 0, ([each.poses_mm for each in both], told)
+    assert written >= 8
 
 
 @pytest.mark.parametrize("turn_deg", np.linspace(99.99, 100.01, 9))

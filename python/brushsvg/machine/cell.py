@@ -212,15 +212,23 @@ def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
 
 def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
     """(n,) how many parts a servo's straight ways (n, 3) have: one for each step of height, as long as rounding leaves
-    something of each."""
+    each a move."""
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
     lengths_mm = np.linalg.norm(ways_mm[:, :2], axis=1)
-    return np.clip(lengths_mm // (PART_UNITS * 10.0**-cell.decimals), 1, np.maximum(1, steps)).astype(int)
+    part_mm = least_move_mm(cell) + 2**0.5 * 10.0**-cell.decimals
+    return np.clip(lengths_mm // part_mm, 1, np.maximum(1, steps)).astype(int)
 
 
-# the least length of a servo's part, in units of the last decimal: one along x or y however it lies, and a bit, since
-# at 1 two ends may yet be rounded alike
-PART_UNITS = 1.01 * 2**0.5
+def least_move_mm(cell: Cell) -> float:
+    """No move is shorter, between places as they are written: of rounded ones the square of a distance is whole, in
+    units, and none is as long as that by a hair."""
+    unit_mm = 10.0**-cell.decimals
+    return unit_mm * (max(2.0, round(LEAST_MM / unit_mm)) ** 2 + 0.5) ** 0.5
+
+
+# no move is shorter, nor than two units of the last decimal: rounded, it would go anywhere or nowhere, and a robot that
+# blends would stop for it; longer ones are seen where a tiny brush turns
+LEAST_MM = 2e-3
 
 
 def entries(table) -> dict[str, Entry]:

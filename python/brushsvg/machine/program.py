@@ -8,15 +8,17 @@ from functools import cache
 
 import numpy as np
 
+from .. import _core
 from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
+from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import told_apart
 from .rounding import Written, as_written
-from .workspace_limits import broken_limits, height_astray, touching_mm_s, walked_astray
+from .workspace_limits import broken_limits, rise_astray, touching_mm_s, walked_astray
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
 
@@ -73,7 +75,9 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
     told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
-    problems += broken_limits(left, loads.sheet_mm, brush, cell, told_mm)
+    problems += broken_limits(
+        [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
+    )
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:
@@ -85,13 +89,40 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     return Walked(loads, job, made, list(dict.fromkeys(problems)))
 
 
+def _as_run(a_pass, made: Program):
+    """The pass as limits are asked of it: a servo's with the places at which it stands."""
+    if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
+        return a_pass
+    poses = _run_poses(a_pass, as_written(a_pass, made.cell, made.robot_from_frame), made.cell)
+    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)
+
+
+def _run_poses(a_pass, written: Written, cell: Cell) -> np.ndarray:
+    """(k, 3) the poses that are run, not rounded; a servo's lift names no place: it stays where the last way ended."""
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)[written.kept]
+    if cell.servo and len(poses):
+        goes = np.r_[True, np.diff(written.poses_mm[:, :2], axis=0).any(axis=1)]
+        poses[:, :2] = poses[np.maximum.accumulate(np.where(goes, np.arange(len(goes)), 0)), :2]
+    return poses
+
+
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
     """The same for a program's ways, its rise before the first move included."""
-    found = walked_astray(made.sections(), made.robot_from_frame, made.cell, sheet_mm)
+    ends: list = []
+
+    def sections() -> Iterator[Section]:
+        for section in made.sections():
+            if moves := section.moves:
+                ends[:] = [ends[0] if ends else moves[0].points_mm[0], moves[-1].points_mm[-1]]
+            yield section
+
+    frame, height_mm = made.robot_from_frame, made.rise_mm
+    found = walked_astray(sections(), frame, made.cell, sheet_mm)
     post = POSTS.get(made.cell.language)
     if post and post.in_robot_frame:  # else it rises to the safe height over the paper
-        found += height_astray(made.rise_in_robot_mm, made.cell)
-    return found
+        ends = list(moved(frame, np.reshape(ends, (-1, 3))))
+        frame, height_mm = np.eye(4), made.rise_in_robot_mm
+    return found + rise_astray(height_mm, ends, frame, made.cell)
 
 
 def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
@@ -158,7 +189,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)[written.kept]
+    poses = _run_poses(a_pass, written, cell)
     if len(poses) == 0:
         return ()
     start, end = poses[0], poses[-1]

@@ -9,7 +9,7 @@ from math import dist
 import numpy as np
 
 from .. import _core
-from .cell import Cell, servo_stands
+from .cell import Cell, least_move_mm
 from .corner_blending import ON_THE_SPOT_MM
 from .frames import is_upright, moved
 from .motion import via
@@ -18,9 +18,6 @@ from .posts import POSTS
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
 # turn the other way, or all round, or lie on one line
 CIRCLE_UNITS = 10
-# no move is shorter, nor than two units of the last decimal: rounded, it would go anywhere or nowhere, and a robot that
-# blends would stop for it; longer ones are seen where a tiny brush turns
-LEAST_MM = 2e-3
 
 
 @dataclass(frozen=True)
@@ -38,7 +35,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's."""
     post = POSTS.get(cell.language)
     unit_mm = 10.0**-cell.decimals
-    meant = poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     circles_by = post.circles_by if post else "centre"
     sideways_mm = ON_THE_SPOT_MM
     if post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)):
@@ -48,8 +45,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
             circles_by = ""  # and circles lie in no plane that the robot knows
     else:
         poses = np.round(poses, cell.decimals)
-    # of rounded places the square of a distance is whole, in units: none is as long as that by a hair
-    least_mm = unit_mm * (max(2.0, round(LEAST_MM / unit_mm)) ** 2 + 0.5) ** 0.5
+    least_mm = least_move_mm(cell)
     arcs = list(_told(a_pass.arcs, poses, circles_by, unit_mm, least_mm)) if circles_by else []
     kept = _kept(poses, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):
@@ -58,10 +54,20 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
             for arc in arcs
         ]
     poses = poses[kept]
-    if cell.servo and len(kept):  # its lift alone names no place: it stays where the last way ended
-        goes = np.r_[True, ~servo_stands(np.diff(meant[kept], axis=0), cell)]
-        poses[:, :2] = poses[np.maximum.accumulate(np.where(goes, np.arange(len(poses)), 0)), :2]
+    if cell.servo:
+        poses[:, :2] = _held(poses[:, :2], least_mm)
     return Written(kept, poses, arcs, sideways_mm)
+
+
+def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
+    """(n, 2) where a servo's poses are, of their rounded places: its lift alone names none, and stays where the last
+    way ended as long as less than a move is gone beside it."""
+    on, at = places.tolist(), 0
+    stays = np.zeros(len(on), dtype=int)
+    for row in range(1, len(on)):
+        at = at if dist(on[at], on[row]) < least_mm else row
+        stays[row] = at
+    return places[stays]
 
 
 def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> Iterator:

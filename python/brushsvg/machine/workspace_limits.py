@@ -149,18 +149,21 @@ def astray(
     return [*found, *_kept_out(some, cell, cut_mm)]
 
 
-def height_astray(height_mm: float, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[Notice]:
-    """The same for a height in the robot's frame to which the tool rises from wherever it is."""
-    if not cell.workspace.box_mm:
-        return []
-    (low, high), away = np.array(cell.workspace.box_mm)[:, 2], float(height_mm)
-    if low - slack_mm <= away <= high + slack_mm:
-        return []
-    sentence = (
-        f"before the first move the tool goes to z {_told(away, low, high)} mm, outside the range "
-        f"[{low:g}, {high:g}] mm of the box of cell {cell.name}"
-    )
-    return [Notice("", sentence, code="out-of-box")]
+def rise_astray(
+    height_mm: float, places, frame: np.ndarray, cell: Cell, slack_mm: float = ROUNDING_MM
+) -> list[Notice]:
+    """The same for the way straight up or down between places (n, 3) and the height to which the tool rises before its
+    first move. frame: (4, 4) that of both, in the robot's.
+
+    Where it stands then nobody knows: asked are the places where a program begins and where it leaves the tool.
+    """
+    places = [place for place in np.asarray(places, dtype=float).reshape(-1, 3) if np.isfinite(place).all()]
+    found: list[Notice] = []
+    for place in places:
+        if not astray(ways([[place]]), frame, cell, None, slack_mm):  # else the place says so itself
+            found += astray(ways([[place, (*place[:2], float(height_mm))]]), frame, cell, None, slack_mm)
+    said = [replace(each, sentence=f"on the rise before the first move {each.sentence}") for each in found]
+    return list(dict.fromkeys(said))
 
 
 def _heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:

@@ -44,13 +44,14 @@ def with_plan(
 
 def _partners(passes, due) -> tuple[list[int | None], Problems]:
     """For each pass the number of the one of due that has its name, in order where there are several."""
-    names, wanted = [spelled(a_pass.stroke) for a_pass in passes], [spelled(each.stroke) for each in due]
+    names = [spelled(a_pass.stroke).rstrip(" ") for a_pass in passes]
+    wanted = [spelled(each.stroke) for each in due]
     if len(names) == len(wanted) and all(map(_same, names, wanted)):
         return list(range(len(due))), []
     left = dict(enumerate(wanted))
     by_name: dict[str, list[int]] = {}
     for number, name in reversed(left.items()):
-        by_name.setdefault(name, []).append(number)
+        by_name.setdefault(name.rstrip(" "), []).append(number)
     partners: list[int | None] = []
     for name in names:
         numbers = by_name.get(name)
@@ -78,8 +79,8 @@ def _partners(passes, due) -> tuple[list[int | None], Problems]:
 
 
 def _same(written: str, name: str) -> bool:
-    """Whether a name that was read is this one; long ones are cut in a program."""
-    return written == name or (written.endswith("...") and name.startswith(written[:-3]))
+    """Whether a name that was read is this one; long ones are cut in a program, blanks at the end are lost."""
+    return written == name.rstrip(" ") or (written.endswith("...") and name.startswith(written[:-3]))
 
 
 def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:

@@ -18,7 +18,7 @@ from ..machine.posts import POSTS
 from ..machine.program import Job, unchecked_program
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
-from .servo_lifts import as_lifts, seen_from_above_mm, without_steps
+from .servo_lifts import as_lifts, as_ways, seen_from_above_mm, without_none, without_steps
 from .simulate_program import Ran
 
 
@@ -39,7 +39,7 @@ def again(
     before = first_stroke - 1
     passes = ran.plan.passes
     if cell.servo:
-        rests = [waits_s >= cell.servo.settle_s for waits_s in ran.waits_s]
+        rests = ran.rests if cell.servo.settle_s else (None,) * len(passes)
         passes = [without_steps(*each) for each in zip(passes, ran.lines, rests, strict=True)]
     if speeds_mm_s:
         passes = [
@@ -79,9 +79,10 @@ def differing_line(
     if lost := sorted((again.modes or set()) - (read.modes or set()) - idle):
         return f"{lost[0]} is missing before the first move"
     ours, theirs = _with_header_sorted(read.acts), _with_header_sorted(again.acts)
-    if cell.servo:
-        ours, theirs = as_lifts(ours), as_lifts(theirs)
     like = _Alike(cell, _header_ranges(program, least_time_s))
+    if cell.servo:
+        both = without_none(as_lifts(ours), as_lifts(theirs), like.is_none, like.is_same)
+        ours, theirs = map(as_ways, both)
     here: tuple = ()
     i, k = 0, 0
     while i < len(ours) or k < len(theirs):
@@ -233,6 +234,7 @@ class _Alike:
             # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
             self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
             rows = np.diff(np.array(cell.servo.table), axis=0)
+            self.rest_s = cell.servo.settle_s + LIFTS_S + self.value_s
             self.step_values = 1 + cell.servo.step_mm * np.abs(rows[:, 1] / rows[:, 0]).max()
 
     def is_same(self, a: Act, b: Act) -> bool:
@@ -259,6 +261,13 @@ class _Alike:
     def is_stopped(self, ours: list[Act], theirs: list[Act]) -> bool:
         """Whether a lift follows where another one does, or none."""
         return bool(ours) and ours[0].kind == "lift" and not (theirs and self.is_same(ours[0], theirs[0]))
+
+    def is_none(self, lift: Act) -> bool:
+        """Whether a servo's lift in paint goes no further than rounding makes of none, and waits no longer than that
+        and its rest take."""
+        _, waited_s, least, most = lift.same
+        going_s = (most - least) * self.value_s
+        return bool(lift.text) and most - least <= self.step_values and waited_s <= self.rest_s + going_s
 
     def is_idle(self, act: Act, here: tuple) -> bool:
         """Goes to where the tool is, or nowhere that a brush shows: the tool counts as where it was."""
@@ -293,6 +302,7 @@ class _Alike:
             return (WAITS_S,)
         if act.kind == "lift":
             waits_s = max(LIFTS_S, LIFTS_S * act.same[1]) + self.value_s
+            waits_s += self.rest_s if act.text else 0.0  # that of a first part which is none
             return (self.step_values, waits_s, self.step_values, self.step_values)
         if act.kind == "way":
             return (self.step_values,)

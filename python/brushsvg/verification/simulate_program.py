@@ -21,10 +21,10 @@ from ..machine.workspace_limits import (
     astray,
     astray_between,
     broken_limits,
-    height_astray,
+    rise_astray,
     touching_mm_s,
 )
-from .readback import Readback, ReadSection
+from .readback import Readback, ReadSection, Step
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
@@ -37,8 +37,8 @@ class Ran:
     """What a program paints: its passes as they are programmed and as they are run, with corners cut.
 
     problems: one for each thing that must not be; visits: for each stroke the stations that are visited
-    before it; lines: for each pass the line of the program that leads to each pose; waits_s: what is waited for behind
-    it.
+    before it; lines: for each pass the line of the program that leads to each pose; rests: whether a servo rests
+    there.
     """
 
     plan: object
@@ -46,7 +46,7 @@ class Ran:
     problems: Problems
     visits: tuple
     lines: tuple
-    waits_s: tuple
+    rests: tuple
 
 
 def slack_mm(cell: Cell) -> float:
@@ -57,7 +57,7 @@ def slack_mm(cell: Cell) -> float:
 def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
     """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
     problems: Problems = []
-    meant, cut, lines, waits_s = [], [], [], []
+    meant, cut, lines, rests = [], [], [], []
     slack = slack_mm(cell)
     leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
@@ -82,11 +82,16 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
             cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
-            waits_s.append(np.array([section.steps[number].wait_s for number in track.step[on]]))
+            rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
     problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
-    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines), tuple(waits_s))
+    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines), tuple(rests))
+
+
+def _rests(step: Step, cell: Cell) -> bool:
+    """Whether a servo rests behind a step: beside what its way takes, another wait follows."""
+    return bool(cell.servo) and step.waits > 1 and step.wait_s >= cell.servo.settle_s
 
 
 def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
@@ -111,18 +116,37 @@ def walked(
     paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
     """
     frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
-    here = None
+    here, ends = None, []
     for section in read.sections:
         track = _track(section, frame, here)
         said = [*_careless(section, track, brush, cell, here, paper_mm)]
+        if len(track.points):
+            ends = [ends[0] if ends else track.points[0], track.points[-1]]
+        if section is read.sections[-1]:
+            said += _rises_astray(read, np.reshape(ends, (-1, 3)), frame, cell, z_offset_mm)
         yield section, track, said + _astray(section, track, here, cell, sheet_mm, z_offset_mm)
         here = track.points[-1] if len(track.points) else here
+
+
+def _rises_astray(
+    read: Readback, ends: np.ndarray, frame: np.ndarray, cell: Cell, z_offset_mm: float
+) -> Problems:
+    """Notices for the limits that the rise before the first move breaks, over the program's ends in the paper's frame;
+    frame: that of the paper in the program's."""
+    robot_from_program = robot_from_paper(cell, z_offset_mm) @ np.linalg.inv(frame)
+    places = moved(frame, ends)
+    return [
+        each
+        for height_mm in dict.fromkeys(read.rises_mm)
+        for each in rise_astray(height_mm, places, robot_from_program, cell, slack_mm(cell))
+    ]
 
 
 def _rounded(cell: Cell) -> Cell:
     """The cell with limits that what was rounded keeps, too."""
     heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack_mm(cell))
-    return replace(cell, heights=heights)
+    servo = cell.servo and replace(cell.servo, step_mm=cell.servo.step_mm + value_mm(cell))
+    return replace(cell, heights=heights, servo=servo)
 
 
 def _astray(
@@ -130,12 +154,9 @@ def _astray(
 ) -> Problems:
     """Notices for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
     slack, points = slack_mm(cell), track.points
-    said = []
-    for step in section.steps:  # without a place: from wherever the tool is, straight up to here
-        if np.isnan(step.x + step.y) and not np.isnan(step.z):
-            said += height_astray(step.z, cell, slack)
     if not len(points):
-        return said
+        return []
+    said: Problems = []
     frame = robot_from_paper(cell, z_offset_mm)
     if here is not None:
         said += astray_between(here, points[0], frame, cell, slack)
@@ -356,9 +377,9 @@ def _ahead(
     steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
 ) -> Iterator[Notice]:
     """A notice where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
-    way beside the lift alone, and its heights go in steps: over any number of moves the tip may be no more than two
-    steps and a value ahead of what the limit allows for their time."""
-    lead_mm = 2 * cell.servo.step_mm + value_mm(cell) + 1e-6
+    way beside the lift alone, and its heights go in steps, of a value at least: over any number of moves the tip may be
+    no more than two steps and a value ahead of what the limit allows for their time."""
+    lead_mm = 2 * max(cell.servo.step_mm, value_mm(cell)) + value_mm(cell) + 1e-6
     ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
     speeds = np.array([step.speed_mm_s for step in steps])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)

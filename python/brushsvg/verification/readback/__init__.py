@@ -22,7 +22,8 @@ class Step(NamedTuple):
 
     line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
     blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
-    frame of the program; wait_s: what is waited for behind it. What a servo does alone takes no time but that.
+    frame of the program; wait_s: what is waited for behind it, in so many waits. What a servo does alone takes no time
+    but that.
     """
 
     line: int
@@ -35,6 +36,7 @@ class Step(NamedTuple):
     centre: tuple[float, float, int] | None = None
     via: tuple = ()
     wait_s: float = 0.0
+    waits: int = 0
 
 
 class Act(NamedTuple):
@@ -65,7 +67,7 @@ class ReadSection:
 @dataclass
 class Readback:
     """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
-    it first moves.
+    it first moves; rises_mm: heights to which it goes straight from wherever the tool is.
 
     in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
     """
@@ -76,6 +78,7 @@ class Readback:
     paper: tuple[float, ...] = ()
     acts: list[Act] = field(default_factory=list)
     modes: frozenset[str] | None = None
+    rises_mm: list[float] = field(default_factory=list)
 
     def section(self) -> ReadSection:
         """The one being read."""
@@ -84,7 +87,9 @@ class Readback:
         return self.sections[-1]
 
     def comment(self, number: int, text: str) -> None:
-        """Perhaps the title of a section."""
+        """Perhaps the title of a section. Blanks at its end are not told apart: some languages drop them."""
+        text = text.rstrip(" ")
+        text += " " * text.endswith(":")  # of a name without plain letters
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
         if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks

@@ -161,6 +161,8 @@ class _Reader:
                 f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write",
                 code="line-unread",
             )
+        if self.servo:
+            self._stays_held(number, line, first, codes)
         if first == "G64" and "G21" not in self.seen:
             raise Error(
                 f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres",
@@ -186,6 +188,14 @@ class _Reader:
         self.seen -= {mode for code in codes for mode in INSTEAD.get(code, ())}
         self.seen |= set(codes)
 
+    def _stays_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
+        """Error for what ends G1, without which grbl switches a servo's output off: the brush falls."""
+        if first == "G0" or ("G80" in codes and "G1" in self.seen):
+            raise Error(
+                f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall",
+                code="line-unread",
+            )
+
     def _comment(self, number: int, line: str, said: str) -> None:
         """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
         if (plain := self.comment(said).rstrip("\n")) != line:
@@ -202,7 +212,8 @@ class _Reader:
             raise Error(f"line {number}: {line[:40]!r} does not say how long", code="line-incomplete")
         self.out.acts.append(Act(number, "wait", same=(seconds,)))
         if steps := self.out.section().steps:
-            steps[-1] = steps[-1]._replace(wait_s=steps[-1].wait_s + seconds)
+            last = steps[-1]
+            steps[-1] = last._replace(wait_s=last.wait_s + seconds, waits=last.waits + 1)
 
     def _move(self, number: int, line: str, code: str, values: dict[str, float]) -> None:
         if "F" in values:
@@ -271,6 +282,8 @@ class _Reader:
     def _go(self, number: int, rapid: bool, places: dict[str, float], centre) -> None:
         self.at |= places
         speed = self.rapid_mm_s if rapid else self.feed_mm_s
+        if "Z" in places and math.isnan(self.at["X"] + self.at["Y"]):
+            self.out.rises_mm.append(places["Z"])
         step = Step(number, rapid, self.at["X"], self.at["Y"], self.at["Z"], speed, 0.0, centre)
         self.out.section().steps.append(step)
 

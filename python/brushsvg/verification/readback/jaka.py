@@ -17,6 +17,7 @@ _N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _POSE = re.compile(rf"(to|via) = \[({_N}(?:, {_N}){{5}})\]")
 _MOVE = re.compile(rf"movl\(to, 0, ({_N}), ({_N}), ({_N})\)")
 _CIRCLE = re.compile(rf"movc\(via, to, 0, ({_N}), ({_N}), (?:0+\.?0*|\.0+)\)")
+_HEIGHT = re.compile(rf"rise = \(({_N}) - here\[2\]\)")
 _RISE = re.compile(rf"movl\(up, 1, ({_N}), ({_N}), 0\)")
 _SLEEP = re.compile(r"sleep\((\d+\.?\d*|\.\d+)\)")
 _OTHER = re.compile(  # the frame around the moves
@@ -35,7 +36,7 @@ def read_jaka(text: str, cell: Cell) -> Readback:
     lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     for number, line in lines:
         if line.startswith("# "):
-            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
+            out.comment(number, line[2:])
         elif found := _POSE.fullmatch(line):
             pose = np.array([float(value) for value in found[2].split(", ")])
             _stands(number, line, pose[3:], turned)
@@ -62,6 +63,7 @@ def read_jaka(text: str, cell: Cell) -> Readback:
             _is_run(number, line, acceleration, speed)
             out.acts.append(Act(number, "text", "movl(up, 1)", (), (speed, acceleration)))
         elif _OTHER.fullmatch(line):
+            out.rises_mm += [float(height) for height in _HEIGHT.findall(line)]
             is_again = bool(out.acts) and out.acts[-1].text == line and _SETS.match(line)
             out.acts += [] if is_again else [Act(number, "text", line)]  # set twice, it is the same
         else:

@@ -16,7 +16,7 @@ _CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=(?:0+\.
 _PAPER = re.compile(rf"paper = p\[({_N}(?:, {_N}){{5}})\]")
 _SLEEP = re.compile(r"sleep\((\d+\.?\d*|\.\d+)\)")
 _RISE = re.compile(
-    rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], {_N}, here\[3\], here\[4\], here\[5\]\]\)), "
+    rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], ({_N}), here\[3\], here\[4\], here\[5\]\]\)), "
     rf"a=({_N}), v=({_N})\)"
 )
 _OTHER = re.compile(  # the frame around the moves
@@ -35,7 +35,7 @@ def read_urscript(text: str) -> Readback:
     for number, line in lines:
         if line.startswith("# "):
             before = len(out.acts)
-            out.comment(number, line[2:] + " " * line.endswith(":"))  # of a name without plain letters
+            out.comment(number, line[2:])
             if 0 < before < len(out.acts) and out.acts[before - 1].text.startswith("here ="):
                 out.acts.insert(
                     before - 1, out.acts.pop()
@@ -55,11 +55,14 @@ def read_urscript(text: str) -> Readback:
         elif found := _SLEEP.fullmatch(line):
             out.acts.append(Act(number, "wait", same=(float(found[1]),)))
         elif found := _RISE.fullmatch(line):
-            a, v = (float(value) * 1e3 for value in found.groups()[1:])
+            height_mm, a, v = (float(value) * 1e3 for value in found.groups()[1:])
             _is_run(number, line, a, v)
+            out.rises_mm.append(height_mm)
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
         elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
             out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
+            if " = " in line and out.acts and out.acts[-1].text == line:
+                continue  # set twice, it is the same
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
