@@ -11,6 +11,7 @@ import numpy as np
 from .. import _core
 from .cell import Cell, servo_stands
 from .corner_blending import ON_THE_SPOT_MM
+from .distortion import told_pass
 from .frames import is_upright, moved
 from .motion import via
 from .posts import POSTS
@@ -25,22 +26,28 @@ LEAST_MM = 2e-3
 
 @dataclass(frozen=True)
 class Written:
-    """kept: (k,) which poses of a pass a program has; poses_mm: (k, 3) as it has them, in the paper's frame; arcs: what
-    of these it tells as circles; sideways_mm: steps of less than that are straight up and down."""
+    """kept: (k,) which poses of a pass a program has; told_mm: (k, 3) what the machine is told for each; poses_mm:
+    (k, 3) the same as the program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm:
+    steps of less than that are straight up and down."""
 
     kept: np.ndarray
+    told_mm: np.ndarray
     poses_mm: np.ndarray
     arcs: list
     sideways_mm: float
 
 
 def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
-    """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's."""
+    """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's. The pass is what shall be run,
+    written is what the cell's machine is told for it."""
+    a_pass = told_pass(a_pass, cell)
     post = POSTS.get(cell.language)
     unit_mm = 10.0**-cell.decimals
     meant = poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     circles_by = post.circles_by if post else "centre"
-    sideways_mm = ON_THE_SPOT_MM
+    sideways_mm = (
+        2 * unit_mm if cell.machine else ON_THE_SPOT_MM
+    )  # what leans goes straight down up to rounding
     if post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)):
         poses = moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
         if not is_upright(frame):
@@ -61,7 +68,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     if cell.servo and len(kept):  # its lift alone names no place: it stays where the last way ended
         goes = np.r_[True, ~servo_stands(np.diff(meant[kept], axis=0), cell)]
         poses[:, :2] = poses[np.maximum.accumulate(np.where(goes, np.arange(len(poses)), 0)), :2]
-    return Written(kept, poses, arcs, sideways_mm)
+    return Written(kept, meant[kept], poses, arcs, sideways_mm)
 
 
 def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> Iterator:
