@@ -23,13 +23,36 @@ from brushsvg.cli.arguments import values
 
 painter = truth_recovery.painter
 
-PARTS = ("lean", "axes", "tilt")
+PARTS = ("lean", "axes", "tilt", "backlash")
 
 
 def random_machine(rng, parts) -> dict[str, np.ndarray]:
     """As large as machines are: lean 0.3 mm per mm, 1 % of scale and skew, 1 mm of tilt over a sheet."""
-    drawn = {"lean": rng.normal(0, 0.3, 2), "axes": rng.normal(0, 0.01, 3), "tilt": rng.normal(0, 0.005, 2)}
+    drawn = {
+        "lean": rng.normal(0, 0.3, 2),
+        "axes": rng.normal(0, 0.01, 3),
+        "tilt": rng.normal(0, 0.005, 2),
+        "backlash": np.abs(rng.normal(0, 0.2, 2)),
+    }
     return {part: drawn[part] * (part in parts) for part in PARTS}
+
+
+def with_play(strokes, backlash: np.ndarray) -> list:
+    """The strokes one after the other, every 0.4 mm, as axes run them that stand still for so long where they turn."""
+    out, behind = [], np.zeros(2)  # of the place told, at most half of the backlash
+    last = strokes[0][1][0]
+    for name, poses in strokes:
+        run_to = []
+        for k, pose in enumerate(poses):
+            steps = max(1, int(np.hypot(*(pose - last)[:2]) / 0.4)) if k else 1
+            for part in np.arange(1, steps + 1) / steps:
+                here = last + part * (pose - last)
+                before = run_to[-1][0] if run_to else last
+                behind = np.clip(behind + here[:2] - before[:2], -backlash / 2, backlash / 2)
+                run_to.append((here, behind))
+            last = pose
+        out.append((name, np.array([[*(here[:2] - off), here[2]] for here, off in run_to])))
+    return out
 
 
 def run(machine, poses: np.ndarray, centre: np.ndarray, height: float) -> np.ndarray:
@@ -51,6 +74,8 @@ def recover(seed: int, parts=("lean", "axes"), sheet_mm: tuple[float, float] | N
     centre = np.concatenate([poses[:, :2] for _, poses in strokes]).mean(axis=0)
 
     def regions(brush, strokes, height):
+        if machine["backlash"].any():
+            strokes = with_play(strokes, machine["backlash"])
         return painter.swept(
             brush, [(name, run(machine, poses, centre, height)) for name, poses in strokes], height
         )
@@ -72,7 +97,7 @@ def recover(seed: int, parts=("lean", "axes"), sheet_mm: tuple[float, float] | N
     truth = [*machine["lean"]] * ("lean" in parts)
     scale_x, scale_y, skew = machine["axes"]
     truth += [1 + scale_x, 1 + scale_y, skew] * ("axes" in parts)
-    truth += [*machine["tilt"]] * ("tilt" in parts)
+    truth += [*machine["tilt"]] * ("tilt" in parts) + [*machine["backlash"]] * ("backlash" in parts)
     out["numbers"] = {one.name: (one.value - true, one.half) for one, true in zip(found, truth, strict=True)}
     return out
 
@@ -104,7 +129,7 @@ def main():
     arguments.add_argument("--brushes", type=int, default=12)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--processes", type=int, default=2)
-    arguments.add_argument("--parts", type=values.machine_parts, default=("lean", "axes"))
+    arguments.add_argument("--parts", type=lambda text: tuple(text.split(",")), default=("lean", "axes"))
     arguments.add_argument("--sheet", type=values.sheet, help="the chart of `brushsvg chart` on such a sheet")
     args = arguments.parse_args()
     one = functools.partial(recover, parts=args.parts, sheet_mm=args.sheet)

@@ -509,10 +509,10 @@ def _paint_per_mm(strokes) -> float:
 
 
 def _parts(text: str) -> tuple[str, ...]:
-    """These sheets tell nothing of a tilt that the height of the paper would not."""
+    """These sheets tell nothing of tilt and backlash that their places would not."""
     parts = values.machine_parts(text)
-    if "tilt" in parts:
-        raise argparse.ArgumentTypeError("tilt is not looked for here")
+    if not {"lean", "axes"}.issuperset(parts):
+        raise argparse.ArgumentTypeError("only lean and axes are looked for here")
     return parts
 
 

@@ -98,6 +98,8 @@ struct MarkFit {
 /// derivatives through the simulator (a point's distance is that from the one footprint that comes nearest: how that
 /// instant shifts does not matter), under Tukey's loss, so that blots and gaps have no say.
 ///
+/// Backlash counts marks as painted one after the other.
+///
 /// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
 /// other and count as fewer, by the integral of their autocorrelation. Points beside ends narrower than three times the
 /// noise have no say. Throws Error: no mark, numbers that are not finite or no millimetres, marks that lie far from

@@ -54,14 +54,16 @@ void to_chords(Poses& poses, std::vector<Arc>& arcs) {
     arcs.clear();
 }
 
-/// For each pose the direction from which x and y came there: as before, where they rest; 0 before the first move.
-Ring travel_of(const Poses& poses) {
+/// For each pose the direction from which x and y came there: as before, where they rest. The first one was reached
+/// from where the mark before was left, in a direction that nobody knows for the first mark.
+Ring travel_of(const Poses& poses, const PaintedMark* before) {
     constexpr double kRestsMm = 1e-6;
     Ring out = Ring::Zero(poses.rows(), 2);
-    for (Index i = 1; i < poses.rows(); ++i)
+    for (Index i = before ? 0 : 1; i < poses.rows(); ++i)
         for (int axis = 0; axis < 2; ++axis) {
-            const double by = poses(i, axis) - poses(i - 1, axis);
-            out(i, axis) = std::abs(by) > kRestsMm ? std::copysign(1.0, by) : out(i - 1, axis);
+            const double from = i ? poses(i - 1, axis) : before->poses_mm(before->poses_mm.rows() - 1, axis);
+            const double by = poses(i, axis) - from;
+            out(i, axis) = std::abs(by) > kRestsMm ? std::copysign(1.0, by) : i ? out(i - 1, axis) : 0.0;
         }
     return out;
 }
@@ -128,7 +130,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
         }
         if (layout_.machine_numbers > 0) {
             to_chords(painted.poses_mm, painted.arcs);
-            painted.travel = travel_of(painted.poses_mm);
+            painted.travel = travel_of(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
         }
         painted.at = close_places(painted.poses_mm);
         std::vector<double> xy;

@@ -11,8 +11,14 @@ from .. import _core
 from ..errors import Notice
 
 # Standard deviation of each number beforehand. A tool on a long thin arm gives way by half as much as it is pressed;
-# a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level.
-PARTS = {"lean": ("lean_mm_per_mm", 0.5), "axes": ("axes", 0.01), "tilt": ("tilt_mm_per_mm", 0.005)}
+# a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level; worn
+# screws and loose belts leave some tenths of a mm where they turn.
+PARTS = {
+    "lean": ("lean_mm_per_mm", 0.5),
+    "axes": ("axes", 0.01),
+    "tilt": ("tilt_mm_per_mm", 0.005),
+    "backlash": ("backlash_mm", 0.2),
+}
 # Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer
 # lag at greater depth would be
 ONE_WAY = 0.8
@@ -54,6 +60,8 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
         ("axes", "skew", machine.skew, "mm in x per mm in y"),
         ("tilt", "tilt in x", machine.tilt_mm_per_mm[0], "mm higher per mm"),
         ("tilt", "tilt in y", machine.tilt_mm_per_mm[1], "mm higher per mm"),
+        ("backlash", "backlash in x", machine.backlash_mm[0], "mm"),
+        ("backlash", "backlash in y", machine.backlash_mm[1], "mm"),
     )
     first = len(covariance) - NUMBERS
     halves = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(covariance)[first:], 0.0))
@@ -73,9 +81,9 @@ def told(found: list[Number]) -> list[str]:
 
 
 def cell_table(fit, options: _core.MarkOptions) -> list[str]:
-    """The lines of a cell's table [machine]."""
+    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo."""
     parts, machine = asked(options), fit.machine
-    lines = ["[machine]"]
+    lines = ["[machine]"] if set(parts) - {"backlash"} else []
     if "lean" in parts:
         lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
     if "axes" in parts:

@@ -37,8 +37,8 @@ def report(made) -> str:
         lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
-    if machine_found.asked(made.expected):
-        lines += ["", "for the cell:", *machine_found.cell_table(fit, made.expected)]
+    if table := machine_found.cell_table(fit, made.expected):
+        lines += ["", "for the cell:", *table]
     remarks = [
         f"note: {sentence}"
         for sentence in [

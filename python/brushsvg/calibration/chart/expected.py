@@ -36,5 +36,5 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
     lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
     told = [f"{one.name} +- {one.half:.2g}" for one in expected_machine(chart.plan, brush, noise_mm)]
-    lines += ["Of the machine, with calibrate --machine lean,axes,tilt:", "  " + ", ".join(told)]
+    lines += ["Of the machine, with calibrate --machine lean,axes,tilt,backlash:", "  " + ", ".join(told)]
     return "\n".join([*lines, ""])

@@ -78,7 +78,7 @@ def add_calibrate(commands) -> None:
         metavar="PARTS",
         type=values.machine_parts,
         default=(),
-        help="from painted marks: also find what the machine does besides what it is told, of lean,axes,tilt",
+        help="from painted marks: also find what the machine does besides what it is told, of lean,axes,tilt,backlash",
     )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)

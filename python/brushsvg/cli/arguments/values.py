@@ -43,7 +43,7 @@ def words(text: str) -> str:
     return text
 
 
-MACHINE_PARTS = ("lean", "axes", "tilt")
+MACHINE_PARTS = ("lean", "axes", "tilt", "backlash")
 
 
 def machine_parts(text: str) -> tuple[str, ...]:
