@@ -1,6 +1,6 @@
 """Brushes fitted to strokes that robots painted, and how well they predict strokes they have not seen.
 
-    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR]
+    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes]
 
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
@@ -10,7 +10,8 @@ that is linear in depth, each fitted to the largest `fixed`.
 Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` goes on from there to the largest `fixed` of the same
 laws, with footprints held round as long as the strokes do not speak against it. Numbers: lag 2, tip gap 1, half width
 2, the footprint's shape 2, height of the paper 1, the set's displacement 2 (at one depth lag 1, half width 1, no
-height); `edges` also has a shift for each fitted stroke.
+height); `edges` also has a shift for each fitted stroke. --machine: ours with the machine's numbers beside, in both:
+lean 2, axes 3.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
 from brushsvg import _core
+from brushsvg.calibration import machine_found
 from brushsvg.calibration.from_marks import brush_of
+from brushsvg.cli.arguments import values
 from brushsvg.scan.mask_contours import mask_outlines
 
 LEVEL = 70
@@ -195,7 +198,7 @@ def fit_disc(strokes, lag_terms) -> np.ndarray:
 # Ours -----------------------------------------------------------------------------------------------
 
 
-def fit_ours(strokes, name):
+def fit_ours(strokes, name, machine=()):
     painted = []
     for k, stroke in enumerate(strokes):
         left, bottom, _, height = stroke.window
@@ -211,6 +214,7 @@ def fit_ours(strokes, name):
     options.placement_mm, options.turn_rad, options.displacement_mm = 5.0, 0.0, 1.5
     options.widest_per_half = _core.Prior(1.0, 0.4)
     options.round_tail, options.spacing_mm = True, 2.0
+    machine_found.ask_for(options, machine)
     return _core.fit_marks(painted, None, options), options
 
 
@@ -281,11 +285,33 @@ def _controls(fit, options) -> dict[str, np.ndarray]:
         "shape": np.array([laws.widest_per_half, laws.front_per_half]),
         "height": np.array([fit.height_mm] if options.height_mm.sigma > 0 else []),
         "shift": np.array(fit.shift_mm),
+        "lean": np.array(fit.machine.lean_mm_per_mm if options.lean_mm_per_mm > 0 else []),
+        "axes": _axes(fit.machine) if options.axes > 0 else np.zeros(0),
     }
 
 
+def machine_of(fit) -> tuple[np.ndarray, np.ndarray]:
+    """Lean x and y; scale x and y less 1, and skew."""
+    if hasattr(fit, "machine"):
+        return np.array(fit.machine.lean_mm_per_mm), _axes(fit.machine)
+    return fit.lean, fit.axes
+
+
+def _axes(machine) -> np.ndarray:
+    return np.array([machine.scale[0] - 1, machine.scale[1] - 1, machine.skew])
+
+
 def _steps(x: dict) -> dict[str, np.ndarray]:
-    size = {"lag": 0.8, "tip_gap": 0.4, "half_width": 0.4, "shape": 0.2, "height": 0.4, "shift": 0.4}
+    size = {
+        "lean": 0.1,
+        "axes": 0.01,
+        "lag": 0.8,
+        "tip_gap": 0.4,
+        "half_width": 0.4,
+        "shape": 0.2,
+        "height": 0.4,
+        "shift": 0.4,
+    }
     return {name: np.full(len(values), size[name]) for name, values in x.items()}
 
 
@@ -309,7 +335,14 @@ def _from_controls(x: dict, fit, options) -> SimpleNamespace:
         fit.laws.round_tail,
     )
     height = float(x["height"][0]) if len(x["height"]) else fit.height_mm
-    return SimpleNamespace(laws=laws, shift_mm=x["shift"], height_mm=height)
+    return SimpleNamespace(
+        laws=laws,
+        shift_mm=x["shift"],
+        height_mm=height,
+        centre_mm=fit.centre_mm,
+        lean=x["lean"] if len(x["lean"]) else np.zeros(2),
+        axes=x["axes"] if len(x["axes"]) else np.zeros(3),
+    )
 
 
 def _impossible(x: dict, options) -> bool:
@@ -317,7 +350,8 @@ def _impossible(x: dict, options) -> bool:
     height = float(x["height"][0]) if len(x["height"]) else 0.0
     if abs(height) > 6.0 or x["shape"].min() < 0.1 or x["half_width"][0] <= 0:
         return True
-    new = _from_controls(x, SimpleNamespace(laws=SimpleNamespace(round_tail=True), height_mm=0.0), options)
+    old = SimpleNamespace(laws=SimpleNamespace(round_tail=True), height_mm=0.0, centre_mm=(0.0, 0.0))
+    new = _from_controls(x, old, options)
     depths = np.linspace(0, options.deepest_mm + max(0.0, height), 12)
     half = np.polyval(new.laws.half_width[::-1], depths)
     return np.polyval(new.laws.lag[::-1], depths).min() < 0.02 or np.diff(half).min() < 0 or half[-1] > 20
@@ -363,10 +397,13 @@ def brush_for(strokes, fit, options) -> _core.Brush:
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
-    """The TCP's way on the paper as the fit found it to lie."""
+    """The TCP's way on the paper as the fit found it to lie, and as the machine ran it."""
+    lean, axes = machine_of(fit)
     poses = np.array(stroke.poses)
-    poses[:, :2] += fit.shift_mm
+    at = poses[:, :2] - fit.centre_mm
     poses[:, 2] = np.minimum(poses[:, 2] - fit.height_mm, 0.0)
+    poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
+    poses[:, :2] += fit.shift_mm - poses[:, 2:] * np.asarray(lean)
     return _core.Pass("stroke", poses)
 
 
@@ -421,11 +458,12 @@ def laws_in_words(fit) -> str:
     def told(law):
         return " ".join(f"{c:+.3f} d^{k}" if k else f"{c:.3f}" for k, c in enumerate(law) if k == 0 or c)
 
-    laws = fit.laws
+    laws, (lean, axes) = fit.laws, machine_of(fit)
     return (
         "; ".join(f"{name} = {told(getattr(laws, name))}" for name in LAWS)
         + f"; widest {laws.widest_per_half:.2f} h from the tip, front {laws.front_per_half:.2f} h; paper "
-        f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm"
+        f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
+        f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
     )
 
 
@@ -443,8 +481,7 @@ def residual_words(strokes, fit, options) -> list[str]:
                 laws.front_per_half,
                 laws.round_tail,
             ),
-            shift_mm=fit.shift_mm,
-            height_mm=fit.height_mm,
+            **{name: getattr(fit, name) for name in ("shift_mm", "height_mm", "centre_mm", "lean", "axes")},
         )
         out = []
         for stroke, picture in zip(strokes, _soft_pictures(strokes, tried, options), strict=True):
@@ -471,12 +508,21 @@ def _paint_per_mm(strokes) -> float:
     return float(np.median([s.mask.sum() * s.px**2 / n for s, n in zip(strokes, lengths, strict=True)]))
 
 
+def _parts(text: str) -> tuple[str, ...]:
+    """These sheets tell nothing of tilt and backlash that their places would not."""
+    parts = values.machine_parts(text)
+    if not {"lean", "axes"}.issuperset(parts):
+        raise argparse.ArgumentTypeError("only lean and axes are looked for here")
+    return parts
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     arguments.add_argument("folder", type=Path)
     arguments.add_argument("--sets", nargs="*", default=SETS)
     arguments.add_argument("--pictures", type=Path)
     arguments.add_argument("--no-peers", action="store_true")
+    arguments.add_argument("--machine", metavar="PARTS", type=_parts, default=(), help="lean,axes")
     args = arguments.parse_args()
     for name in args.sets:
         strokes = load(args.folder, name)
@@ -492,7 +538,7 @@ def main():
                 lag = ", ".join(f"{v:.2f}" for v in x[4:])
                 print(f"  {what:22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  r {lag}", flush=True)
         begin = time.perf_counter()
-        fit, options = fit_ours(seen, name)
+        fit, options = fit_ours(seen, name, args.machine)
         took = time.perf_counter() - begin
         edges = our_marks(unseen, fit, options)
         fixed, moved, _ = scores(unseen, edges)

@@ -76,11 +76,21 @@ the pass, followed on their circles.)")
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
         .def_readonly("front_per_half", &MarkLaws::front_per_half)
         .def_readonly("round_tail", &MarkLaws::round_tail);
+    py::class_<Machine>(m, "Machine", R"(How a machine takes the tool elsewhere than it was told.
+
+Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
+is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash.)")
+        .def_property_readonly("lean_mm_per_mm", frozen_copy(&Machine::lean_mm_per_mm))
+        .def_property_readonly("scale", frozen_copy(&Machine::scale))
+        .def_readonly("skew", &Machine::skew)
+        .def_property_readonly("tilt_mm_per_mm", frozen_copy(&Machine::tilt_mm_per_mm))
+        .def_property_readonly("backlash_mm", frozen_copy(&Machine::backlash_mm));
     py::class_<MarkOptions>(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
 
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
 widest_per_half, front_per_half, height_mm: Prior. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
-and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, say what to expect of such edges.)")
+and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
+machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.)")
         .def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
         .def_readwrite("lag_terms", &MarkOptions::lag_terms)
@@ -93,6 +103,10 @@ and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, s
         .def_readwrite("placement_mm", &MarkOptions::placement_mm)
         .def_readwrite("turn_rad", &MarkOptions::turn_rad)
         .def_readwrite("displacement_mm", &MarkOptions::displacement_mm)
+        .def_readwrite("lean_mm_per_mm", &MarkOptions::lean_mm_per_mm)
+        .def_readwrite("axes", &MarkOptions::axes)
+        .def_readwrite("tilt_mm_per_mm", &MarkOptions::tilt_mm_per_mm)
+        .def_readwrite("backlash_mm", &MarkOptions::backlash_mm)
         .def_readwrite("spacing_mm", &MarkOptions::spacing_mm)
         .def_readwrite("noise_mm", &MarkOptions::noise_mm)
         .def_readwrite("noise_length_mm", &MarkOptions::noise_length_mm)
@@ -101,18 +115,21 @@ and turn, and of each mark's own displacement; 0: none. noise_mm: fit nothing, s
         .def_readonly("point_mm", &MarkMiss::point_mm)
         .def_property_readonly("distance_mm", frozen_copy(&MarkMiss::distance_mm))
         .def_property_readonly("displacement_mm", frozen_copy(&MarkMiss::displacement_mm))
+        .def_readonly("way_mm", &MarkMiss::way_mm)
         .def_readonly("rms_mm", &MarkMiss::rms_mm)
         .def_readonly("outlier", &MarkMiss::outlier);
     py::class_<MarkFit>(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-front_per_half, height, shift x and y, turn.)")
+front_per_half, height, shift x and y, turn; where any of the machine was asked for lean x and y, scale x and y, skew,
+tilt x and y, backlash x and y.)")
         .def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)
         .def_readonly("turn_rad", &MarkFit::turn_rad)
         .def_property_readonly("shift_mm", frozen_copy(&MarkFit::shift_mm))
         .def_property_readonly("centre_mm", frozen_copy(&MarkFit::centre_mm))
+        .def_readonly("machine", &MarkFit::machine)
         .def_property_readonly("marks", parts(&MarkFit::marks))
         .def_readonly("noise_mm", &MarkFit::noise_mm)
         .def_readonly("samples", &MarkFit::samples)

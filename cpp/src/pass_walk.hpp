@@ -16,9 +16,25 @@ struct AboveStretch {
     T depth_from, depth_to;
 };
 
+/// The TCP's way as it stands in a pass. deeper_mm: how much deeper than -z the brush is pressed.
+template <class T>
+struct ToldWay {
+    const Poses& poses;
+    const std::vector<Arc>& arcs;
+    T deeper_mm;
+
+    Eigen::Index count() const { return poses.rows(); }
+    Vec2<T> tcp(Eigen::Index i) const { return poses.row(i).head<2>().transpose().template cast<T>(); }
+    T depth(Eigen::Index i) const { return T(deeper_mm - poses(i, 2)); }
+    /// By how much the tool turns on this arc from pose i to the next.
+    T turn(const Arc& arc, Eigen::Index i) const {
+        return T(turn_between(arc, poses.row(i).head<2>().transpose(), poses.row(i + 1).head<2>().transpose()));
+    }
+};
+
 /// The TCP's way in a pass, stretch by stretch, on any scalar: where it is above the paper, meets it and draws on it.
-/// deeper_mm: how much deeper than -z the brush is pressed. Called, with i the pose before and shares of the move from
-/// there to the next one:
+/// Way: a ToldWay, or what else tells places, depths and arcs. Called, with i the pose before and shares of the move
+/// from there to the next one:
 ///
 ///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move, where it is set down or not
 ///     to.touch(i, at, tcp)                set down
@@ -27,27 +43,24 @@ struct AboveStretch {
 ///
 /// A pass that begins below the paper's surface is set down on the spot, if it is not `down` already, and one that ends
 /// there is lifted on the spot: moves from 0 to 0 of what follows the pose.
-template <class T, class To>
-void walk_pass(const Poses& poses, const std::vector<Arc>& arcs, const T& deeper_mm, bool down, To& to) {
+template <class T, class Way, class To>
+void walk_pass(const Way& way, bool down, To& to) {
     using Index = Eigen::Index;
-    const Index last = poses.rows() - 1;
+    const Index last = way.count() - 1;
     const T none(0.0), whole(1.0);
-    const auto place = [&](Index i) -> Vec2<double> { return poses.row(i).head<2>().transpose(); };
-    const auto tcp = [&](Index i) -> Vec2<T> { return place(i).template cast<T>(); };
-    const auto depth = [&](Index i) { return T(deeper_mm - poses(i, 2)); };
-    if (!down && value_of(depth(0)) >= 0.0) {
-        to.touch(0, none, tcp(0));
-        if (value_of(depth(0)) > 0.0) to.move(Move<T>(tcp(0), tcp(0), none, depth(0)), 0, none, none);
+    if (const T depth = way.depth(0); !down && value_of(depth) >= 0.0) {
+        to.touch(0, none, way.tcp(0));
+        if (value_of(depth) > 0.0) to.move(Move<T>(way.tcp(0), way.tcp(0), none, depth), 0, none, none);
     }
-    auto arc = arcs.begin();
+    auto arc = way.arcs.begin();
     for (Index i = 0; i < last && !to.is_done(); ++i) {
-        while (arc != arcs.end() && arc->last <= i) ++arc;
-        const Vec2<T> a = tcp(i), b = tcp(i + 1);
-        const T da = depth(i), db = depth(i + 1);
+        while (arc != way.arcs.end() && arc->last <= i) ++arc;
+        const Vec2<T> a = way.tcp(i), b = way.tcp(i + 1);
+        const T da = way.depth(i), db = way.depth(i + 1);
         const bool on_paper = value_of(da) >= 0.0, stays = value_of(db) >= 0.0;
         if (on_paper && stays) {
-            if (arc != arcs.end() && arc->first <= i)
-                to.move(arc_between<T>(a, b, T(turn_between(*arc, place(i), place(i + 1))), da), i, none, whole);
+            if (arc != way.arcs.end() && arc->first <= i)
+                to.move(arc_between<T>(a, b, way.turn(*arc, i), da), i, none, whole);
             else
                 to.move(Move<T>(a, b, da, db), i, none, whole);
         } else if (!on_paper && !stays) {
@@ -65,8 +78,8 @@ void walk_pass(const Poses& poses, const std::vector<Arc>& arcs, const T& deeper
             }
         }
     }
-    if (!to.is_done() && value_of(depth(last)) > 0.0)
-        to.move(Move<T>(tcp(last), tcp(last), depth(last), none), last, none, none);
+    if (const T depth = way.depth(last); !to.is_done() && value_of(depth) > 0.0)
+        to.move(Move<T>(way.tcp(last), way.tcp(last), depth, none), last, none, none);
 }
 
 }  // namespace brushsvg

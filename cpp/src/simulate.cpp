@@ -311,7 +311,7 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bo
     if (pass.poses_mm.rows() > 0) {
         if (pass.poses_mm(0, 2) > 0.0)
             tracer.begin_above(pass.poses_mm.row(0).head<2>().transpose(), pass.poses_mm(0, 2));
-        walk_pass(pass.poses_mm, pass.arcs, 0.0, false, tracer);
+        walk_pass<double>(ToldWay<double>{pass.poses_mm, pass.arcs, 0.0}, false, tracer);
     }
     tracer.finish();
     return marks;

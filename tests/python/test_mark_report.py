@@ -27,7 +27,10 @@ def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():
         centre_mm=[0.0, 0.0],
         shift_mm=[3.0, -2.0],
         height_mm=0.0,
-        marks=[SimpleNamespace(displacement_mm=d) for d in ([0.0, 0.0], [0.0, 1.5])],
+        marks=[
+            SimpleNamespace(displacement_mm=d, way_mm=way)
+            for d, way in zip(([0.0, 0.0], [0.0, 1.5]), ways, strict=True)
+        ],
     )
     lying, without = overlaps(SimpleNamespace(brush=brush, fit=fit, painted=Painted(painted, 4.0, 2)))
     assert without == pytest.approx(1.0, abs=1e-3)

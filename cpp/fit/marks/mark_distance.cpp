@@ -113,9 +113,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
     thread_local Footprints footprints;
     const Spent spent{footprints, looks_[std::size_t(mark)]};
-    if (!footprints.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_shared ? &lag_powers_ : nullptr,
-                           shared[layout_.height()], deepest_))
-        return false;
+    if (!follow(painted, shared, by_shared != nullptr, footprints)) return false;
     const Ring points = placed(mark, shared_data, displacement);
     const double turn = shared[layout_.turn()], ct = std::cos(turn), st = std::sin(turn);
     Eigen::Matrix2d back, back_by_turn;
@@ -148,9 +146,7 @@ VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* 
     VectorXd out = VectorXd::Zero(painted.point_mm.rows());
     thread_local Footprints footprints;
     const Spent spent{footprints, looks_[std::size_t(mark)]};
-    if (!footprints.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), nullptr, shared[layout_.height()],
-                           deepest_))
-        return out;
+    if (!follow(painted, shared, false, footprints)) return out;
     const Ring points = placed(mark, shared_data, displacement);
     const Eigen::Rotation2Dd back(-shared[layout_.turn()]);
     std::size_t row = 0;
@@ -173,7 +169,7 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
     ByLag left_by;
     left_by << -now.heading_by.row(1), now.heading_by.row(0);
     // the edge moves outwards by normal dy: the distance falls by it
-    const Eigen::Matrix<double, 1, kMostTerms + 1> moved =
+    const Eigen::Matrix<double, 1, kWays> moved =
         normal.transpose() * (now.contact_by + (edge.x - now.gap) * now.heading_by + edge.y * left_by);
     out.head(layout_.lag) = -moved.head(layout_.lag);
     // x and y of the edge per half width
@@ -191,7 +187,10 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
     }
     out[layout_.widest()] = -edge.by_widest * now.drop.half * nu;
     out[layout_.front()] = -edge.by_front * now.drop.half * nu;
-    out[layout_.height()] = -moved[kMostTerms] - now.depth_by * (now.half_slope * per_half - now.gap_slope * nu);
+    const double deeper = now.half_slope * per_half - now.gap_slope * nu;
+    out[layout_.height()] = -moved[kMostTerms] - now.depth_by[0] * deeper;
+    for (int i = 0; i < layout_.machine_numbers; ++i)
+        out[layout_.machine() + i] = -moved[kMostTerms + 1 + i] - now.depth_by[1 + i] * deeper;
 }
 
 Ring MarkModel::placed(Index mark, const double* shared, const double* displacement) const {

@@ -39,6 +39,10 @@ void refuse_options(const MarkOptions& options) {
     require_sigma(options.placement_mm, "placement_mm");
     require_sigma(options.turn_rad, "turn_rad");
     require_sigma(options.displacement_mm, "displacement_mm");
+    for (const auto& [sigma, name] :
+         {std::pair{options.lean_mm_per_mm, "lean_mm_per_mm"}, std::pair{options.axes, "axes"},
+          std::pair{options.tilt_mm_per_mm, "tilt_mm_per_mm"}, std::pair{options.backlash_mm, "backlash_mm"}})
+        require_sigma(sigma, name);
     if (options.noise_mm) {
         require_within(*options.noise_mm, {0.0, kLargestMm}, "the noise", "noise_mm");
         require_within(options.noise_length_mm, {0.0, kLargestMm}, "the length", "noise_length_mm");
@@ -175,6 +179,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     out.turn_rad = fit.shared[at.turn()];
     out.shift_mm = {fit.shared[at.shift()], fit.shared[at.shift() + 1]};
     out.centre_mm = fit.model.centre_mm();
+    out.machine = fit.model.machine(fit.shared);
     out.noise_mm = fit.weighing.noise_mm;
     out.iterations = fit.iterations;
     double aside = 0.0, slim = 0.0;
@@ -187,6 +192,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         miss.point_mm = fit.model.placed(i, fit.shared.data(), own.data());
         miss.distance_mm.assign(distance.data(), distance.data() + distance.size());
         miss.displacement_mm = {own.x(), own.y()};
+        miss.way_mm = fit.model.run(i, fit.shared);
         miss.rms_mm = std::sqrt(distance.squaredNorm() / double(std::max<Index>(1, distance.size())));
         const Eigen::ArrayXd wild = (distance.array().abs() > kTukey * out.noise_mm).cast<double>();
         const Eigen::ArrayXd says = fit.says[std::size_t(i)].array();

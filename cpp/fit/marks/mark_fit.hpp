@@ -34,6 +34,15 @@ struct MarkLaws {
     bool round_tail = false;
 };
 
+/// How a machine takes the tool elsewhere than it was told. Told (x, y) from MarkFit::centre_mm and a depth d it goes
+/// to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d, and is tilt_x x + tilt_y y deeper; on each axis it
+/// stays behind by half its backlash.
+struct Machine {
+    std::array<double, 2> lean_mm_per_mm{0.0, 0.0}, scale{1.0, 1.0};
+    double skew = 0.0;
+    std::array<double, 2> tilt_mm_per_mm{0.0, 0.0}, backlash_mm{0.0, 0.0};
+};
+
 struct MarkOptions {
     double deepest_mm = 10.0;  ///< the laws are to hold on [0, deepest]
     /// Numbers per law, at most four: r = c0 + ..., b and h through 0; h never falls.
@@ -45,7 +54,9 @@ struct MarkOptions {
     double placement_mm = 2.0;     ///< sigma of the sheet's shift in x and in y: laid against a stop by hand
     double turn_rad = 0.02;        ///< sigma of the sheet's turn: 1 mm on 50 mm
     double displacement_mm = 1.0;  ///< sigma of each mark's own displacement in x and in y
-    double spacing_mm = 0.5;       ///< between the points of an outline that are compared
+    /// Sigmas of the machine's numbers, of scale and skew together; 0: it has none of it.
+    double lean_mm_per_mm = 0.0, axes = 0.0, tilt_mm_per_mm = 0.0, backlash_mm = 0.0;
+    double spacing_mm = 0.5;  ///< between the points of an outline that are compared
     /// If given nothing is fitted: the covariance is that to expect at the start from edges this uncertain.
     std::optional<double> noise_mm;
     double noise_length_mm = 1.0;  ///< over which the noise of an edge forgets itself; with noise_mm only
@@ -57,6 +68,7 @@ struct MarkMiss {
     Ring point_mm;                    ///< of the painted outline, in the frame of the plan, displacement taken away
     std::vector<double> distance_mm;  ///< from the predicted mark's edge, negative inside
     std::array<double, 2> displacement_mm{0.0, 0.0};
+    Poses way_mm;  ///< as the machine ran it; height and displacement left out
     double rms_mm = 0.0;
     bool outlier = false;  ///< more than half of it was left aside
 };
@@ -64,11 +76,13 @@ struct MarkMiss {
 struct MarkFit {
     MarkLaws laws;
     /// Over lag, tip_gap and half_width (their constant, 0, left out), widest_per_half, front_per_half, height, shift x
-    /// and y, turn: in this order, in the laws' own coefficients.
+    /// and y, turn: in this order, in the laws' own coefficients. Where any of the machine was asked for, lean x and y,
+    /// scale x and y, skew, tilt x and y, backlash x and y follow.
     std::vector<std::vector<double>> covariance;
     double height_mm = 0.0, turn_rad = 0.0;
     std::array<double, 2> shift_mm{0.0, 0.0};
     std::array<double, 2> centre_mm{0.0, 0.0};  ///< about which the sheet is turned
+    Machine machine;
     std::vector<MarkMiss> marks;
     double noise_mm = 0.0;             ///< robust standard deviation of the distances
     double samples = 0.0;              ///< points compared
@@ -83,6 +97,8 @@ struct MarkFit {
 /// Least squares over the distances of painted edges from the union of footprints that the laws predict, with
 /// derivatives through the simulator (a point's distance is that from the one footprint that comes nearest: how that
 /// instant shifts does not matter), under Tukey's loss, so that blots and gaps have no say.
+///
+/// Backlash counts marks as painted one after the other.
 ///
 /// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
 /// other and count as fewer, by the integral of their autocorrelation. Points beside ends narrower than three times the

@@ -1,5 +1,6 @@
 #include "mark_model.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "bernstein.hpp"
@@ -27,6 +28,49 @@ Poses from_above(const Poses& poses, double above_mm) {
     out.row(out.rows() - 1) = poses.row(poses.rows() - 1);
     out(0, 2) = out(out.rows() - 1, 2) = above_mm;
     return out;
+}
+
+/// The pass without arcs: what else makes of a circle is none.
+void to_chords(Poses& poses, std::vector<Arc>& arcs) {
+    constexpr double kChordRad = 0.02;
+    std::vector<double> xyz;
+    const auto put = [&](const Eigen::RowVector3d& p) { xyz.insert(xyz.end(), {p.x(), p.y(), p.z()}); };
+    auto arc = arcs.begin();
+    for (Index i = 0; i < poses.rows(); ++i) {
+        put(poses.row(i));
+        while (arc != arcs.end() && arc->last <= i) ++arc;
+        if (arc == arcs.end() || arc->first > i) continue;
+        const Eigen::Vector2d a = poses.row(i).head<2>().transpose(), b = poses.row(i + 1).head<2>().transpose();
+        const Eigen::Vector2d centre(arc->centre_mm[0], arc->centre_mm[1]);
+        const double turn = turn_between(*arc, a, b);
+        const int parts = int(std::ceil(std::abs(turn) / kChordRad));
+        for (int k = 1; k < parts; ++k) {
+            const double share = double(k) / parts;
+            const Eigen::Vector2d on = centre + Eigen::Rotation2Dd(turn * share) * (a - centre);
+            put({on.x(), on.y(), poses(i, 2) + share * (poses(i + 1, 2) - poses(i, 2))});
+        }
+    }
+    poses = Eigen::Map<const Poses>(xyz.data(), Index(xyz.size() / 3), 3);
+    arcs.clear();
+}
+
+/// For each pose the direction from which x and y came there: as before, where they rest. The first one was reached
+/// from where the mark before was left, in a direction that nobody knows for the first mark.
+Ring travel_of(const Poses& poses, const PaintedMark* before) {
+    constexpr double kRestsMm = 1e-6;
+    Ring out = Ring::Zero(poses.rows(), 2);
+    for (Index i = before ? 0 : 1; i < poses.rows(); ++i)
+        for (int axis = 0; axis < 2; ++axis) {
+            const double from = i ? poses(i - 1, axis) : before->poses_mm(before->poses_mm.rows() - 1, axis);
+            const double by = poses(i, axis) - from;
+            out(i, axis) = std::abs(by) > kRestsMm ? std::copysign(1.0, by) : i ? out(i - 1, axis) : 0.0;
+        }
+    return out;
+}
+
+bool has_machine(const MarkOptions& options) {
+    return options.lean_mm_per_mm > 0.0 || options.axes > 0.0 || options.tilt_mm_per_mm > 0.0 ||
+           options.backlash_mm > 0.0;
 }
 
 std::vector<double> close_places(const Poses& poses) {
@@ -69,7 +113,7 @@ void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
 }  // namespace
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options)
-    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms},
+    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms, has_machine(options) ? kMachine : 0},
       deepest_(options.deepest_mm),
       round_tail_(options.round_tail) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
@@ -79,10 +123,14 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     centre_.setZero();
     Index poses = 0;
     for (const PaintedMark& mark : marks) {
-        Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {}, {}, {}, {0}};
+        Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {}, {}, {}, {}, {0}};
         for (Arc& arc : painted.arcs) {  // counted from the first pose, which comes second here
             ++arc.first;
             ++arc.last;
+        }
+        if (layout_.machine_numbers > 0) {
+            to_chords(painted.poses_mm, painted.arcs);
+            painted.travel = travel_of(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
         }
         painted.at = close_places(painted.poses_mm);
         std::vector<double> xy;
@@ -175,6 +223,38 @@ MarkLaws MarkModel::laws(const VectorXd& shared) const {
     out.front_per_half = shared[layout_.front()];
     out.round_tail = round_tail_;
     return out;
+}
+
+std::array<double, kMachine> MarkModel::machine_numbers(const VectorXd& shared) const {
+    std::array<double, kMachine> out{};
+    for (int i = 0; i < layout_.machine_numbers; ++i) out[std::size_t(i)] = shared[layout_.machine() + i];
+    return out;
+}
+
+Machine MarkModel::machine(const VectorXd& shared) const {
+    const std::array<double, kMachine> by = machine_numbers(shared);
+    const auto two = [&](int first, double more) {
+        return std::array<double, 2>{by[std::size_t(first)] + more, by[std::size_t(first + 1)] + more};
+    };
+    return {two(MachineAt::lean, 0.0), two(MachineAt::scale, 1.0), by[MachineAt::skew], two(MachineAt::tilt, 0.0),
+            two(MachineAt::backlash, 0.0)};
+}
+
+bool MarkModel::follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const {
+    const MachineHere machine{machine_numbers(shared), centre_, painted.travel};
+    return out.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_laws ? &lag_powers_ : nullptr,
+                      shared[layout_.height()], deepest_, layout_.machine_numbers > 0 ? &machine : nullptr);
+}
+
+Poses MarkModel::run(Index mark, const VectorXd& shared) const {
+    const Painted& painted = painted_[std::size_t(mark)];
+    Poses out = painted.poses_mm;
+    if (layout_.machine_numbers > 0) {
+        const MachineHere machine{machine_numbers(shared), centre_, painted.travel};
+        const RunWay<double> way{painted.poses_mm, painted.arcs, machine, 0.0, machine.by};
+        for (Index i = 0; i < out.rows(); ++i) out.row(i) << way.tcp(i).transpose(), -way.depth(i);
+    }
+    return out.middleRows(1, out.rows() - 2);
 }
 
 }  // namespace brushsvg::fit

@@ -21,6 +21,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm].
 struct Layout {
     int lag, gap, half;
+    int machine_numbers;  ///< kMachine or none
     int gap_at() const { return lag; }
     int half_at() const { return lag + gap; }
     int widest() const { return half_at() + half; }
@@ -28,7 +29,8 @@ struct Layout {
     int height() const { return widest() + 2; }
     int shift() const { return widest() + 3; }
     int turn() const { return widest() + 5; }
-    int size() const { return widest() + 6; }
+    int machine() const { return widest() + 6; }
+    int size() const { return machine() + machine_numbers; }
 };
 
 class MarkModel {
@@ -49,6 +51,10 @@ class MarkModel {
     MatrixXd to_coefficients() const;
     /// Least value of each shared unknown; the lag stays above 0, the half width rises.
     VectorXd least() const;
+    /// What the machine is at these unknowns.
+    Machine machine(const VectorXd& shared) const;
+    /// A mark's poses as they were told, as the machine ran them.
+    Poses run(Index mark, const VectorXd& shared) const;
 
     /// work(mark) for every mark, on all processors. Throws Error where these marks have taken so many looks that no
     /// brush paints them: it names the one that took most.
@@ -75,11 +81,15 @@ class MarkModel {
         std::string stroke;
         Poses poses_mm;  ///< from above the paper and back there
         std::vector<Arc> arcs;
+        Ring travel;  ///< as in MachineHere
         std::vector<double> at;
         Ring point_mm, outward;    ///< of the paint, unit vectors
         std::vector<Index> rings;  ///< where each begins, and the end
     };
     void refuse_endless() const;
+    /// The footprints of a mark's pass; by_laws: with derivatives.
+    bool follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const;
+    std::array<double, kMachine> machine_numbers(const VectorXd& shared) const;
     /// Derivatives of a distance by the laws' unknowns and the height.
     void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal, const VectorXd& shared,
                  Eigen::Ref<Eigen::RowVectorXd> out) const;

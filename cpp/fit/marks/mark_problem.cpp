@@ -100,6 +100,12 @@ std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd
     return std::make_unique<ceres::NormalPrior>(weight, value);
 }
 
+double machine_sigma(const MarkOptions& options, int number) {
+    if (number < MachineAt::scale) return options.lean_mm_per_mm;
+    if (number < MachineAt::tilt) return options.axes;
+    return number < MachineAt::backlash ? options.tilt_mm_per_mm : options.backlash_mm;
+}
+
 }  // namespace
 
 MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options)
@@ -111,6 +117,8 @@ MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOption
     priors_[std::size_t(at.height())] = options.height_mm;
     for (int i = 0; i < 2; ++i) priors_[std::size_t(at.shift() + i)] = {0.0, options.placement_mm};
     priors_[std::size_t(at.turn())] = {0.0, options.turn_rad};
+    for (int i = 0; i < at.machine_numbers; ++i)
+        priors_[std::size_t(at.machine() + i)] = {0.0, machine_sigma(options, i)};
     hold_shape(false);
     shared = VectorXd::Zero(at.size());
     own.assign(std::size_t(model.marks()), Eigen::Vector2d::Zero());
@@ -127,7 +135,10 @@ void MarkProblem::begin(const MarkLaws& laws) {
 void MarkProblem::hold_shape(bool hold) {
     held_.resize(priors_.size());
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = priors_[i].sigma == 0.0;
-    if (hold) held_[std::size_t(model.layout().widest())] = held_[std::size_t(model.layout().front())] = true;
+    if (!hold) return;
+    const Layout& at = model.layout();
+    held_[std::size_t(at.widest())] = held_[std::size_t(at.front())] = true;
+    std::fill(held_.begin() + at.machine(), held_.end(), true);
 }
 
 double MarkProblem::loss() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "trace.hpp"
 
@@ -21,6 +22,7 @@ constexpr std::uint64_t kLooksPerStep = 20;  // what it costs to follow a pass t
 constexpr double kLeastCosine = 0.05;        // between a footprint's own normal and that of a line that touches it
 
 using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
+using MachineJet = ceres::Jet<double, kWays>;    // and the machine
 
 double at_depth(const std::vector<double>& c, double d) {
     double y = 0.0;
@@ -33,18 +35,37 @@ double slope_at_depth(const std::vector<double>& c, double d) {
     return y;
 }
 
-void put(const Vec2<Jet>& from, Eigen::Vector2d& value, ByLag& by) {
+template <int N>
+void put(const Vec2<ceres::Jet<double, N>>& from, Eigen::Vector2d& value, ByLag& by) {
+    by.setZero();
     for (int i = 0; i < 2; ++i) {
         value[i] = from[i].a;
-        by.row(i) = from[i].v.transpose();
+        by.row(i).head<N>() = from[i].v.transpose();
     }
 }
 void put(const Vec2<double>& from, Eigen::Vector2d& value, ByLag& by) {
     value = from;
     by.setZero();
 }
-double by_height(const Jet& depth) { return depth.v[kMostTerms]; }
-double by_height(double) { return 0.0; }
+template <int N, class Row>
+void put_by(const ceres::Jet<double, N>& depth, Row& by) {
+    by.setZero();
+    by.template head<N - kMostTerms>() = depth.v.template tail<N - kMostTerms>().transpose();
+}
+template <class Row>
+void put_by(double, Row& by) {
+    by.setZero();
+}
+
+template <class T>
+std::vector<T> law_by(const std::vector<double>& lag, const Eigen::MatrixXd& by) {
+    std::vector<T> out;
+    for (std::size_t i = 0; i < lag.size(); ++i) {
+        out.emplace_back(lag[i]);
+        out[i].v.head(by.cols()) = by.row(Eigen::Index(i)).transpose();
+    }
+    return out;
+}
 
 /// First from i on of numbers that never fall that is no less than this one. In strides that double: most are short.
 std::size_t first_from(const std::vector<double>& rising, std::size_t i, double least) {
@@ -72,21 +93,35 @@ std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double
 }  // namespace
 
 bool Footprints::follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at,
-                        const MarkLaws& laws, const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm) {
-    const double reach = deepest_mm + std::max(0.0, height_mm);
-    if (height_mm > poses(0, 2) || !(laws.lag[0] > 0.0) || !real_roots(laws.lag, 0.0, reach).empty()) return false;
-    std::vector<Jet> lag;
-    for (std::size_t i = 0; lag_by && i < laws.lag.size(); ++i) {
-        lag.emplace_back(laws.lag[i]);
-        lag[i].v.head(lag_by->cols()) = lag_by->row(Eigen::Index(i)).transpose();
-    }
+                        const MarkLaws& laws, const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm,
+                        const MachineHere* machine) {
+    if (!machine && lag_by)
+        return follow_on<Jet>(ToldWay<Jet>{poses, arcs, Jet(height_mm, kMostTerms)}, at, laws, lag_by, deepest_mm);
+    if (!machine) return follow_on<double>(ToldWay<double>{poses, arcs, height_mm}, at, laws, lag_by, deepest_mm);
+    if (!lag_by)
+        return follow_on<double>(RunWay<double>{poses, arcs, *machine, height_mm, machine->by}, at, laws, lag_by,
+                                 deepest_mm);
+    RunWay<MachineJet> way{poses, arcs, *machine, MachineJet(height_mm, kMostTerms), {}};
+    for (int i = 0; i < kMachine; ++i)
+        way.by[std::size_t(i)] = MachineJet(machine->by[std::size_t(i)], kMostTerms + 1 + i);
+    return follow_on<MachineJet>(way, at, laws, lag_by, deepest_mm);
+}
+
+template <class T, class Way>
+bool Footprints::follow_on(const Way& way, const std::vector<double>& at, const MarkLaws& laws,
+                           const Eigen::MatrixXd* lag_by, double deepest_mm) {
+    double reach = deepest_mm + std::max(0.0, value_of(way.deeper_mm));
+    for (Eigen::Index i = 0; i < way.count(); ++i) reach = std::max(reach, value_of(way.depth(i)));
+    if (value_of(way.depth(0)) > 0.0 || !(laws.lag[0] > 0.0) || !real_roots(laws.lag, 0.0, reach).empty()) return false;
+    std::vector<T> lag;
+    if constexpr (std::is_same_v<T, double>)
+        lag = laws.lag;
+    else
+        lag = law_by<T>(laws.lag, *lag_by);
     std::vector<double> close = at;
     looks_ = 0;
     for (int round = 0; round < kRounds; ++round) {
-        if (lag_by)
-            walk(lag, Jet(height_mm, kMostTerms), poses, arcs, close, laws, reach);
-        else
-            walk(laws.lag, height_mm, poses, arcs, close, laws, reach);
+        walk(lag, way, close, laws, reach);
         looks_ += kLooksPerStep * close.size();
         enclose();
         const std::vector<double> closer = this->closer(close);
@@ -112,12 +147,12 @@ std::vector<double> Footprints::closer(const std::vector<double>& at) const {
     return out;
 }
 
-template <class T>
-void Footprints::walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<Arc>& arcs,
-                      const std::vector<double>& at, const MarkLaws& laws, double reach) {
+template <class T, class Way>
+void Footprints::walk(const std::vector<T>& lag, const Way& way, const std::vector<double>& at, const MarkLaws& laws,
+                      double reach) {
     const LagLaw<T> law = law_of(lag, 0.0, reach);
     rows_.clear();
-    trace<T>(law, poses, arcs, height, at, nullptr, [&](std::size_t k, const Trace<T>& row) {
+    trace<T>(law, way, at, nullptr, [&](std::size_t k, const Trace<T>& row) {
         if (!row.down) return;
         Instant& now = rows_.emplace_back();
         const double d = std::max(0.0, value_of(row.depth));
@@ -126,7 +161,7 @@ void Footprints::walk(const std::vector<T>& lag, const T& height, const Poses& p
         now.heading_known = row.state.heading_known || row.state.taut;
         now.place = at[k];
         now.depth = d;
-        now.depth_by = by_height(row.depth);
+        put_by(row.depth, now.depth_by);
         now.gap = at_depth(laws.tip_gap, d);
         now.gap_slope = slope_at_depth(laws.tip_gap, d);
         const double half = at_depth(laws.half_width, d) + kLeastHalfMm;

@@ -6,6 +6,7 @@
 
 #include "drop.hpp"
 #include "mark_fit.hpp"
+#include "run_way.hpp"
 
 // The footprints of one pass at close instants, and what of their union is near. Inside fit_marks.
 namespace brushsvg::fit {
@@ -14,8 +15,10 @@ constexpr int kMostTerms = 4;          // numbers of a law
 constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its derivatives
 constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
 
-/// Derivatives of a place by the lag's unknowns and the height of the paper.
-using ByLag = Eigen::Matrix<double, 2, kMostTerms + 1>;
+constexpr int kWays = kMostTerms + 1 + kMachine;  // the lag's unknowns, the height of the paper, the machine
+
+/// Derivatives of a place by the lag's unknowns, the height of the paper and the machine.
+using ByLag = Eigen::Matrix<double, 2, kWays>;
 
 /// The footprint at one instant. Lengths in mm, slopes by depth.
 struct Instant {
@@ -23,7 +26,7 @@ struct Instant {
     Drop drop;
     double place;  ///< poses, fractional in between
     double gap, depth, half_slope, gap_slope;
-    double depth_by;  ///< by the height
+    Eigen::Matrix<double, 1, 1 + kMachine> depth_by;  ///< by the height and the machine
     ByLag contact_by, heading_by;
     bool heading_known;
 
@@ -57,9 +60,10 @@ class Footprints {
  public:
     /// Follows a pass, which begins and ends in the air; `at`: poses, fractional in between, and more are put in where
     /// the footprint turns quickly. lag_by: derivatives of the lag's coefficients by its unknowns, or nullptr for
-    /// places alone. False where these laws paint nothing, and where it takes more instants than any brush does.
+    /// places alone. machine: that runs the pass, or nullptr for one that does as it is told. False where these laws
+    /// paint nothing, and where it takes more instants than any brush does.
     bool follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at, const MarkLaws& laws,
-                const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm);
+                const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm, const MachineHere* machine);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
     /// What looking for a point's nearest instant costs at most, for a checkpoint.
     int effort() const { return 5 + int(rows_.size() / 100); }
@@ -78,9 +82,12 @@ class Footprints {
     Eigen::Vector2d passing(std::size_t row, const NearestEdge& edge) const;
 
  private:
-    template <class T>
-    void walk(const std::vector<T>& lag, const T& height, const Poses& poses, const std::vector<Arc>& arcs,
-              const std::vector<double>& at, const MarkLaws& laws, double reach);
+    template <class T, class Way>
+    void walk(const std::vector<T>& lag, const Way& way, const std::vector<double>& at, const MarkLaws& laws,
+              double reach);
+    template <class T, class Way>
+    bool follow_on(const Way& way, const std::vector<double>& at, const MarkLaws& laws, const Eigen::MatrixXd* lag_by,
+                   double deepest_mm);
     void enclose();
     /// Those places, and more between instants whose footprints lie too far apart; as many where there are none.
     std::vector<double> closer(const std::vector<double>& at) const;

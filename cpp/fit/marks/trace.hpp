@@ -88,17 +88,16 @@ class TraceAt {
 
 /// Calls out(k, Trace) for every k of `at`: poses, fractional in between, ascending.
 ///
-/// deeper_mm: how much deeper than -z the brush is pressed, paper that lies higher than was thought. begun: the state
-/// at the first pose; without it the brush is set down there, if it is not in the air.
+/// way: a ToldWay, or what tells the same. begun: the state at the first pose; without it the brush is set down there,
+/// if it is not in the air.
 ///
 /// Derivatives pass through events: where bristles tighten and where they touch by the moment's own derivative; where
 /// they loosen the patch stands still, so that the moment does not matter.
-template <class T, class Out>
-void trace(const LagLaw<T>& law, const Poses& poses, const std::vector<Arc>& arcs, const T& deeper_mm,
-           const std::vector<double>& at, const LagState<T>* begun, Out&& out) {
+template <class T, class Way, class Out>
+void trace(const LagLaw<T>& law, const Way& way, const std::vector<double>& at, const LagState<T>* begun, Out&& out) {
     TraceAt<T, Out> to(law, at, out);
-    if (begun) to.begin(*begun, poses.row(0).head<2>().transpose().template cast<T>(), T(deeper_mm - poses(0, 2)));
-    walk_pass(poses, arcs, deeper_mm, begun != nullptr, to);
+    if (begun) to.begin(*begun, way.tcp(0), way.depth(0));
+    walk_pass<T>(way, begun != nullptr, to);
 }
 
 }  // namespace brushsvg::fit

@@ -108,7 +108,9 @@ class Stroke : public ceres::CostFunction {
                             law_.jets.at(Jet(-track_.poses_mm(0, 2))) * begun.heading;
             begun.taut = begun.heading_known = true;
         }
-        trace(law_.jets, track_.poses_mm, {}, Jet(0.0), track_.pose, is_set_down(track_) ? nullptr : &begun,
+        const std::vector<Arc> arcs;
+        const ToldWay<Jet> way{track_.poses_mm, arcs, Jet(0.0)};
+        trace(law_.jets, way, track_.pose, is_set_down(track_) ? nullptr : &begun,
               [&](std::size_t k, const Trace<Jet>& at) {
                   checkpoint();
                   Vec2<Jet> seen = at.state.contact;

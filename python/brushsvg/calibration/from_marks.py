@@ -12,6 +12,7 @@ from ..brush import footprint_shapes
 from ..brush.confidence import half_interval_mm, places
 from ..errors import Error
 from .from_widths import need_fits, outlines_assumed
+from .machine_found import PARTS, Number, ask_for, numbers
 from .mark_input import Painted, depths_painted, middle
 from .plausibility import BEYOND
 from .sheet_scale import SheetScale, refuse_scale, sheet_scale
@@ -154,7 +155,19 @@ def _all_fitted(fit) -> np.ndarray:
     laws = fit.laws
     shape = [laws.widest_per_half, laws.front_per_half]
     sheet = [fit.height_mm, *fit.shift_mm, fit.turn_rad]
-    return np.concatenate([laws.lag, laws.tip_gap[1:], laws.half_width[1:], shape, sheet])
+    all_fitted = np.concatenate([laws.lag, laws.tip_gap[1:], laws.half_width[1:], shape, sheet])
+    if len(fit.covariance) == len(all_fitted):
+        return all_fitted
+    one = fit.machine
+    return np.concatenate(
+        [all_fitted, one.lean_mm_per_mm, one.scale, [one.skew], one.tilt_mm_per_mm, one.backlash_mm]
+    )
+
+
+def height_at(fit) -> int:
+    """Where in a fit's covariance the height of the paper stands; shift x and y and turn follow."""
+    laws = fit.laws
+    return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + 2
 
 
 def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
@@ -210,6 +223,21 @@ def expected_brush(
     noise_mm: standard deviation of a painted edge, which forgets itself over noise_length_mm along the outline.
     options: sigmas of sheet, displacement and height, as for calibrate_marks.
     """
+    fit = _expected_fit(plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
+    return brush_of(fit.laws, brush.name, brush.depth_range_mm, np.array(fit.covariance)), fit.remarks
+
+
+def expected_machine(
+    plan: _core.Plan, brush: _core.Brush, noise_mm: float = 0.1, parts: tuple[str, ...] = tuple(PARTS)
+) -> list[Number]:
+    """What such marks will say of a machine that does as it is told: each number with half its 95 % interval."""
+    options = _core.MarkOptions()
+    ask_for(options, parts)
+    fit = _expected_fit(plan, brush, noise_mm, 1.0, options)
+    return numbers(fit, np.array(fit.covariance), options)
+
+
+def _expected_fit(plan, brush, noise_mm: float, noise_length_mm: float, options):
     need_fits()
     least, deepest = brush.depth_range_mm
     laws = laws_of(brush)
@@ -223,14 +251,12 @@ def expected_brush(
     ]
     if not painted:
         raise Error("the plan paints nothing", "plan", code="nothing-painted")
-    options = options or _core.MarkOptions()
     options.deepest_mm = deepest
     depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
     options.lag_terms = min(LAG_TERMS, depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)
     options.noise_mm, options.noise_length_mm = noise_mm, noise_length_mm
-    fit = _core.fit_marks(painted, laws_of(brush, options.lag_terms, options.half_width_terms), options)
-    return brush_of(fit.laws, brush.name, (least, deepest), np.array(fit.covariance)), fit.remarks
+    return _core.fit_marks(painted, laws_of(brush, options.lag_terms, options.half_width_terms), options)
 
 
 def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HALF_TERMS) -> _core.MarkLaws:

@@ -75,10 +75,11 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
         raise Error("there is no mark in it", "marks", code="measurement-missing")
     _refuse_other_frames(found)
     _refuse_what_is_no_paint(found)
+    painted_as = {stroke: number for number, stroke in enumerate(passes)}
     return painted_of(
         [
             _core.PaintedMark(stroke, poses, _oriented(rings), passes[stroke].arcs)
-            for stroke, poses, rings in found
+            for stroke, poses, rings in sorted(found, key=lambda one: painted_as[one[0]])
         ]
     )
 

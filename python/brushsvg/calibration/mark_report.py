@@ -11,7 +11,8 @@ from ..brush.confidence import law_band
 from ..brush.describe import LAWS, polynomial
 from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from ..errors import Notice
-from .from_marks import LAG_TERMS, TELLS
+from . import machine_found
+from .from_marks import LAG_TERMS, TELLS, height_at
 from .stray_marks import OUTLYING
 
 TABLE_ROWS = 6
@@ -36,6 +37,8 @@ def report(made) -> str:
         lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
+    if table := machine_found.cell_table(fit, made.expected):
+        lines += ["", "for the cell:", *table]
     remarks = [
         f"note: {sentence}"
         for sentence in [
@@ -186,7 +189,12 @@ def _moved(made) -> list[str]:
     """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
     fit = made.fit
     half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
-    height, shift, turn = half_intervals[-4], half_intervals[-3:-1], half_intervals[-1]
+    first = height_at(fit)
+    height, shift, turn = (
+        half_intervals[first],
+        half_intervals[first + 1 : first + 3],
+        half_intervals[first + 3],
+    )
     way = "higher" if fit.height_mm >= 0 else "lower"
     sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
     far = int(np.argmax(sizes))
@@ -197,6 +205,7 @@ def _moved(made) -> list[str]:
         f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
         f"most, by {sizes[far]:.2f} mm",
     ]
+    lines += machine_found.told(machine_found.numbers(fit, made.covariance, made.expected))
     if made.scale:
         lines.append(f"by where its marks lie the sheet is {made.scale.told(made.scale.both)} than the plan")
     return lines
@@ -292,12 +301,13 @@ def deepest_mm(mark) -> float:
 def predicted_marks(made, marks: list) -> list:
     """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
     brush = made.brush
-    reach = max(brush.depth_range_mm[1], max(map(deepest_mm, marks)) + made.fit.height_mm)
+    run = {mark.stroke: miss.way_mm for mark, miss in zip(made.painted.marks, made.fit.marks, strict=True)}
+    ways = [np.array(run.get(mark.stroke, mark.poses_mm)) for mark in marks]
+    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + made.fit.height_mm)
     brush = _core.read_brush(_core.write_brush(brush))
     brush.depth_range_mm = (brush.depth_range_mm[0], reach)
     passes = []
-    for mark in marks:
-        poses = np.array(mark.poses_mm)
+    for mark, poses in zip(marks, ways, strict=True):
         poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
         passes.append(_core.Pass(mark.stroke, poses))
     painted = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)

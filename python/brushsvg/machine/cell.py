@@ -122,6 +122,22 @@ class Servo:
 
 
 @dataclass(frozen=True)
+class Machine:
+    """Where the machine takes the tool that is told to go elsewhere, as `brushsvg calibrate --machine` finds it: it is
+    told otherwise, so that the tool goes where it should. x and y from the sheet's lower left corner."""
+
+    lean_mm_per_mm: tuple = _key(
+        "x and y by which the tool gives way for each mm that it is pressed", (2,), -1.5, 1.5, (0.0, 0.0)
+    )
+    scale: tuple = _key("how far x and y go for each mm they are told", (2,), 0.9, 1.1, (1.0, 1.0))
+    skew: float = _number("how far x goes for each mm that y is told", -0.1, 0.1, default=0.0)
+    height_mm: float = _number(
+        "how much higher the paper lies at its corner than it was taught", -5, 5, default=0.0
+    )
+    tilt_mm_per_mm: tuple = _key("by how much it rises along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
+
+
+@dataclass(frozen=True)
 class Station:
     """A vessel, or a place to wait for a person with one. In the paper's frame, as all heights."""
 
@@ -167,6 +183,7 @@ class Cell:
     tool: Tool | None = None
     servo: Servo | None = None
     reload: Reload | None = None
+    machine: Machine | None = None
     stations: tuple[Station, ...] = ()
 
 
@@ -179,8 +196,9 @@ TABLES = {
     "tool": Tool,
     "servo": Servo,
     "reload": Reload,
+    "machine": Machine,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload")
+OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
 NEEDED_BY = {"grbl-servo": "servo", "urscript": "tool", "jaka": "tool"}
 RELOADS = ("length", "stroke", "layer")
 

@@ -31,6 +31,7 @@ def check(cell: Cell) -> None:
     _check_workspace(cell)
     if cell.servo:
         _check_servo(cell)
+        _check_machine_of_servo(cell)
     _check_paint(cell)
 
 
@@ -188,6 +189,18 @@ def _check_servo(cell: Cell) -> None:
             where="heights.clearance_mm",
             code="cell-heights",
         )
+
+
+def _check_machine_of_servo(cell: Cell) -> None:
+    """Its height goes in steps, at which a way would have to jump aside."""
+    for key in ("lean_mm_per_mm", "tilt_mm_per_mm"):
+        values = getattr(cell.machine, key, ())
+        if any(values):
+            raise Error(
+                f"{key} {list(values)} is outside the range [0, 0] of a servo, whose depth goes in steps",
+                where=f"machine.{key}",
+                code="cell-machine",
+            )
 
 
 def _check_paint(cell: Cell) -> None:

@@ -11,6 +11,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .cell import Cell, robot_from_paper
 from .corner_blending import blend_radii, blended
+from .distortion import true_pass
 from .paint_reload import PlanInLoads
 from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, walked
 from .rounding import as_written
@@ -121,8 +122,8 @@ ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no 
 def _as_told(a_pass, cell: Cell):
     """With the poses and circles that a program has, not rounded."""
     written = as_written(a_pass, cell, robot_from_paper(cell))
-    poses = np.asarray(a_pass.poses_mm)[written.kept]
-    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s, arcs=written.arcs)
+    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs)
+    return true_pass(told, cell)
 
 
 def _groups(passes) -> Iterator[tuple[int, int]]:

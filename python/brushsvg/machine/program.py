@@ -12,6 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
+from .distortion import told_mm, true_mm
 from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .paint_reload import PlanInLoads, visits
@@ -93,17 +94,9 @@ def _as_run(a_pass, made: Program):
     """The pass as limits are asked of it: a servo's with the places at which it stands."""
     if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
         return a_pass
-    poses = _run_poses(a_pass, as_written(a_pass, made.cell, made.robot_from_frame), made.cell)
+    written = as_written(a_pass, made.cell, made.robot_from_frame)
+    poses = true_mm(written.told_mm, made.cell.machine)
     return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)
-
-
-def _run_poses(a_pass, written: Written, cell: Cell) -> np.ndarray:
-    """(k, 3) the poses that are run, not rounded; a servo's lift names no place: it stays where the last way ended."""
-    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)[written.kept]
-    if cell.servo and len(poses):
-        goes = np.r_[True, np.diff(written.poses_mm[:, :2], axis=0).any(axis=1)]
-        poses[:, :2] = poses[np.maximum.accumulate(np.where(goes, np.arange(len(goes)), 0)), :2]
-    return poses
 
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
@@ -189,20 +182,24 @@ def visit(station: Station, brush, cell: Cell) -> Section:
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = _run_poses(a_pass, written, cell)
+    poses = written.told_mm
     if len(poses) == 0:
         return ()
-    start, end = poses[0], poses[-1]
     heights, speeds = cell.heights, cell.speeds
+    start, end = true_mm(poses[[0, -1]], cell.machine)
+
+    def above(place, height_mm: float) -> np.ndarray:
+        return told_mm(over(place, height_mm), cell.machine)
+
     # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
     press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
     return (
-        Move("travel", over(start, heights.safe_mm), speeds.travel_mm_s),
-        Move("approach", over(start, heights.clearance_mm), approach_mm_s(brush, cell)),
+        Move("travel", above(start, heights.safe_mm), speeds.travel_mm_s),
+        Move("approach", above(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
         *_painting(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
-        Move("lift", over(end, heights.clearance_mm), press_mm_s),
-        Move("retract", over(end, heights.safe_mm), speeds.travel_mm_s),
+        Move("lift", above(end, heights.clearance_mm), press_mm_s),
+        Move("retract", above(end, heights.safe_mm), speeds.travel_mm_s),
     )
 
 
@@ -210,7 +207,7 @@ def _painting(
     poses: np.ndarray, written: Written, paint_mm_s: float, press_mm_s: float, cell: Cell
 ) -> Iterator[Move]:
     """From the first pose on, straight up and down as slowly as a landing, along arcs where the plan has them."""
-    arcs, steps = written.arcs, np.diff(written.poses_mm, axis=0)
+    arcs, steps = written.arcs, np.diff(true_mm(written.poses_mm, cell.machine), axis=0)
     kinds = np.full(len(steps), PLAIN)
     kinds[on_the_spot(steps, written.sideways_mm)] = ON_THE_SPOT
     for number, arc in enumerate(arcs):

@@ -11,6 +11,7 @@ import numpy as np
 from .. import _core
 from .cell import Cell, least_move_mm
 from .corner_blending import ON_THE_SPOT_MM
+from .distortion import told_pass
 from .frames import is_upright, moved
 from .motion import via
 from .posts import POSTS
@@ -22,22 +23,27 @@ CIRCLE_UNITS = 10
 
 @dataclass(frozen=True)
 class Written:
-    """kept: (k,) which poses of a pass a program has; poses_mm: (k, 3) as it has them, in the paper's frame; arcs: what
-    of these it tells as circles; sideways_mm: steps of less than that are straight up and down."""
+    """kept: (k,) which poses of a pass a program has; told_mm: (k, 3) what the machine is told for each; poses_mm:
+    (k, 3) the same as the program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm:
+    steps of less than that are straight up and down."""
 
     kept: np.ndarray
+    told_mm: np.ndarray
     poses_mm: np.ndarray
     arcs: list
     sideways_mm: float
 
 
 def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
-    """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's."""
+    """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's. The pass is what shall be run,
+    written is what the cell's machine is told for it."""
+    a_pass = told_pass(a_pass, cell)
     post = POSTS.get(cell.language)
     unit_mm = 10.0**-cell.decimals
-    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    meant = poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     circles_by = post.circles_by if post else "centre"
-    sideways_mm = ON_THE_SPOT_MM
+    # what leans goes straight down up to rounding
+    sideways_mm = 2 * unit_mm if cell.machine else ON_THE_SPOT_MM
     if post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)):
         poses = moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
         if not is_upright(frame):
@@ -54,20 +60,22 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
             for arc in arcs
         ]
     poses = poses[kept]
+    told_mm = meant[kept]
     if cell.servo:
-        poses[:, :2] = _held(poses[:, :2], least_mm)
-    return Written(kept, poses, arcs, sideways_mm)
+        held = _held(poses[:, :2], least_mm)
+        poses[:, :2], told_mm[:, :2] = poses[held, :2], told_mm[held, :2]
+    return Written(kept, told_mm, poses, arcs, sideways_mm)
 
 
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
-    """(n, 2) where a servo's poses are, of their rounded places: its lift alone names none, and stays where the last
+    """(n,) at which of its rounded places (n, 2) a servo stands: its lift alone names none, and stays where the last
     way ended as long as less than a move is gone beside it."""
     on, at = places.tolist(), 0
     stays = np.zeros(len(on), dtype=int)
     for row in range(1, len(on)):
         at = at if dist(on[at], on[row]) < least_mm else row
         stays[row] = at
-    return places[stays]
+    return stays
 
 
 def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> Iterator:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from .. import _core
@@ -83,7 +85,8 @@ def overlap_picture(suffix: str, work: Work, marks) -> bytes:
 def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:
     """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
     loads, with outlines."""
-    moves = timeline(whole_program(loads, work.brush, cell), marks)
+    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
+    moves = timeline(whole_program(loads, work.brush, runs), marks)
     wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
     return animation(moves, loads, work.brush, marks, wanted, cell.stations, work.title, speed)
 

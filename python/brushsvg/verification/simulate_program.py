@@ -12,6 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cell import Blending, Cell, robot_from_paper, value_mm
 from ..machine.corner_blending import blend_radii
+from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
 from ..machine.frames import is_upright, moved
 from ..machine.move_extents import ways
 from ..machine.posts.text import NAMED, spelled
@@ -64,6 +65,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
         name = _name(section)
         problems += [replace(each, where=name) for each in said]
         stroke = _stroke(section)
+        track = _as_true(track, cell) if stroke else track
         track = track if cell.servo else _with_ends_on_paper(track, slack)
         found = list(_touches(track, slack))
         if stroke and len(found) != 1:
@@ -80,7 +82,8 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             poses[just_over, 2] = -deepest_mm
             joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
-            cut.append(as_run(meant[-1:], lambda *_, joint=joint: joint)[0][0])
+            told = [told_pass(meant[-1], cell)]
+            cut.append(true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell))
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
@@ -119,7 +122,8 @@ def walked(
     here, ends = None, []
     for section in read.sections:
         track = _track(section, frame, here)
-        said = [*_careless(section, track, brush, cell, here, paper_mm)]
+        low = _as_true(track, cell) if _stroke(section) else track
+        said = [*_careless(section, low, brush, cell, here, paper_mm)]
         if len(track.points):
             ends = [ends[0] if ends else track.points[0], track.points[-1]]
         if section is read.sections[-1]:
@@ -199,6 +203,19 @@ class Track:
     points: np.ndarray
     step: np.ndarray
     centres: list
+
+
+def _as_true(track: Track, cell: Cell) -> Track:
+    """Where the machine takes the tool that is told to go along a track."""
+    if cell.machine is None:
+        return track
+    centres = [None] * len(track.centres)
+    for number, centre in enumerate(track.centres if is_similar(cell.machine) else ()):
+        if centre is not None:
+            height_mm = track.points[np.flatnonzero(track.step == number)[-1], 2]
+            x, y, _ = true_mm(np.array([[*centre[:2], height_mm]]), cell.machine)[0].tolist()
+            centres[number] = (x, y, centre[2])
+    return Track(true_mm(track.points, cell.machine), track.step, centres)
 
 
 def _stroke(section: ReadSection) -> re.Match | None:

@@ -7,7 +7,7 @@ import numpy as np
 from ... import _core
 from ...brush.confidence import law_band
 from ...brush.describe import LAWS
-from ..from_marks import expected_brush
+from ..from_marks import expected_brush, expected_machine
 
 ROWS = 4
 
@@ -34,4 +34,7 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     for i, depth in enumerate(at):
         cells = [f"{getattr(expected, name)(depth):.2f} +- {bands[name][i]:.2f}" for name, _ in LAWS]
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
-    return "\n".join([*lines, "  +-: half the 95 % confidence interval of the law", *remarks, ""])
+    lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
+    told = [f"{one.name} +- {one.half:.2g}" for one in expected_machine(chart.plan, brush, noise_mm)]
+    lines += ["Of the machine, with calibrate --machine lean,axes,tilt,backlash:", "  " + ", ".join(told)]
+    return "\n".join([*lines, ""])

@@ -73,6 +73,13 @@ def add_calibrate(commands) -> None:
     fit.add_argument(
         "--total", action="store_true", help="total least squares for series of angles; default: ordinary"
     )
+    fit.add_argument(
+        "--machine",
+        metavar="PARTS",
+        type=values.machine_parts,
+        default=(),
+        help="from painted marks: also find what the machine does besides what it is told, of lean,axes,tilt,backlash",
+    )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)

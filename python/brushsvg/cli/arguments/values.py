@@ -43,6 +43,16 @@ def words(text: str) -> str:
     return text
 
 
+MACHINE_PARTS = ("lean", "axes", "tilt", "backlash")
+
+
+def machine_parts(text: str) -> tuple[str, ...]:
+    parts = [part.strip() for part in text.split(",")]
+    if not set(parts) <= set(MACHINE_PARTS):
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not some of {','.join(MACHINE_PARTS)}")
+    return tuple(part for part in MACHINE_PARTS if part in parts)
+
+
 def height(text: str) -> float:
     return _length(text, -20.0, 20.0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from ..._core import remarks, write_brush
+from ...errors import Error
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
 from .outputs import check_places, suffix_of, write
@@ -14,6 +15,7 @@ from .scan import read_photographs
 def calibrate_file(args) -> None:
     from ...calibration.from_measurements import calibrate
     from ...calibration.law_report import report, report_picture
+    from ...calibration.machine_found import doubts
     from ...calibration.measurements import read_measurements
 
     check_places(args.output, args.plot, args.picture)
@@ -21,12 +23,18 @@ def calibrate_file(args) -> None:
     read = read_photographs(args, args.photos) if args.photos else None
     with about(args.input):
         if read:
-            made, report, report_picture = _from_photo(read, name)
+            made, report, report_picture = _from_photo(read, name, args.machine)
         else:
             measured = read_measurements(read_bytes(args.input), suffix_of(args.input))
             name = measured.name or name
             if measured.marks is not None:
                 made, report, report_picture = _from_marks(args, measured, name)
+                warn(args.input, doubts(made.painted, made.expected))
+            elif args.machine:
+                raise Error(
+                    "--machine needs painted marks: measured numbers say nothing of the machine",
+                    code="options-contradict",
+                )
             else:
                 made = calibrate(measured, name, args.norm == "absolute", args.total)
         files = {args.output: write_brush(made.brush)}
@@ -38,7 +46,7 @@ def calibrate_file(args) -> None:
             from ...calibration.mark_report import strays_told
             from ...calibration.photo_report import read_picture
 
-            warn(args.photos[0], strays_told(made))
+            warn(args.photos[0], strays_told(made) + doubts(made.painted, made.expected))
             more = told(read)
             if args.picture:
                 files[args.picture] = read_picture(read, made)
@@ -50,28 +58,32 @@ def calibrate_file(args) -> None:
 def _from_marks(args, measured, name: str):
     """A brush from painted marks, and what tells of it in words and as a picture."""
     from ...calibration.from_marks import calibrate_marks, options_for
+    from ...calibration.machine_found import ask_for
     from ...calibration.mark_input import read_painted
     from ...calibration.mark_report import report, report_picture
 
     folder = os.path.dirname(args.input)
     painted = read_painted(measured.plan, measured.marks, lambda path: read_bytes(os.path.join(folder, path)))
     options = options_for(measured.expected)
+    ask_for(options, args.machine)
     made = calibrate_marks(painted, name, measured.depth_range_mm, measured.max_speed_mm_s, options)
     return made, report, report_picture
 
 
-def _from_photo(read, name: str):
+def _from_photo(read, name: str, machine: tuple[str, ...]):
     """The same from a photograph of a chart."""
     import json
 
     from ..._core import write_plan
     from ...calibration.chart.photograph import edge_mm, expected, marks_of
     from ...calibration.from_marks import calibrate_marks, options_for
+    from ...calibration.machine_found import ask_for
     from ...calibration.mark_input import read_painted
     from ...calibration.mark_report import report, report_picture
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
     options = options_for(expected(read))
+    ask_for(options, machine)
     made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture

@@ -1,0 +1,119 @@
+"""What a machine does besides what it is told, found from painted marks; in words and as a cell's table."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from ..errors import Notice
+
+# Standard deviation of each number beforehand. A tool on a long thin arm gives way by half as much as it is pressed;
+# a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level; worn
+# screws and loose belts leave some tenths of a mm where they turn.
+PARTS = {
+    "lean": ("lean_mm_per_mm", 0.5),
+    "axes": ("axes", 0.01),
+    "tilt": ("tilt_mm_per_mm", 0.005),
+    "backlash": ("backlash_mm", 0.2),
+}
+# Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer
+# lag at greater depth would be
+ONE_WAY = 0.8
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of a machine with half its 95 % interval. part: by which it was asked for; unit: what it counts in."""
+
+    part: str
+    name: str
+    value: float
+    half: float
+    unit: str
+
+
+def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:
+    """The fit shall find these, too."""
+    for part in parts:
+        key, sigma = PARTS[part]
+        setattr(options, key, sigma)
+
+
+def asked(options: _core.MarkOptions) -> tuple[str, ...]:
+    return tuple(part for part, (key, _) in PARTS.items() if getattr(options, key) > 0)
+
+
+def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Number]:
+    """All that was asked for, in the order of the fit."""
+    parts = asked(options)
+    if not parts:
+        return []
+    machine = fit.machine
+    rows = (
+        ("lean", "lean in x", machine.lean_mm_per_mm[0], "mm per mm of depth"),
+        ("lean", "lean in y", machine.lean_mm_per_mm[1], "mm per mm of depth"),
+        ("axes", "scale in x", machine.scale[0], ""),
+        ("axes", "scale in y", machine.scale[1], ""),
+        ("axes", "skew", machine.skew, "mm in x per mm in y"),
+        ("tilt", "tilt in x", machine.tilt_mm_per_mm[0], "mm higher per mm"),
+        ("tilt", "tilt in y", machine.tilt_mm_per_mm[1], "mm higher per mm"),
+        ("backlash", "backlash in x", machine.backlash_mm[0], "mm"),
+        ("backlash", "backlash in y", machine.backlash_mm[1], "mm"),
+    )
+    first = len(covariance) - NUMBERS
+    halves = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(covariance)[first:], 0.0))
+    return [
+        Number(part, name, value, float(half), unit)
+        for (part, name, value, unit), half in zip(rows, halves, strict=False)
+        if part in parts
+    ]
+
+
+NUMBERS = 9  # of a machine in a fit, backlash in x and y the last
+
+
+def told(found: list[Number]) -> list[str]:
+    """A line for each number."""
+    return [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
+
+
+def cell_table(fit, options: _core.MarkOptions) -> list[str]:
+    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo."""
+    parts, machine = asked(options), fit.machine
+    lines = ["[machine]"] if set(parts) - {"backlash"} else []
+    if "lean" in parts:
+        lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
+    if "axes" in parts:
+        lines += [f"scale = {_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
+    if "tilt" in parts:
+        height = fit.height_mm - float(np.dot(machine.tilt_mm_per_mm, fit.centre_mm))
+        lines += [f"height_mm = {height:.3f}", f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}"]
+    return lines
+
+
+def _pair(values) -> str:
+    return "[{:.5f}, {:.5f}]".format(*values)
+
+
+def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
+    """A notice where lean cannot be told from lag."""
+    if "lean" not in asked(options):
+        return []
+    way, total = np.zeros(2), 0.0
+    for mark in painted.marks:
+        poses = np.array(mark.poses_mm)
+        steps = np.diff(poses[:, :2], axis=0)[(poses[1:, 2] < 0) & (poses[:-1, 2] < 0)]
+        way += steps.sum(axis=0)
+        total += float(np.hypot(*steps.T).sum())
+    share = float(np.hypot(*way)) / max(total, 1e-9)
+    if share <= ONE_WAY:
+        return []
+    sentence = (
+        f"the strokes go one way, by {share:.2f} of their length at {math.degrees(math.atan2(way[1], way[0])):.0f} "
+        f"degrees, outside the range [0, {ONE_WAY:g}]: lean that way and a lag that grows with depth look alike, and "
+        "neither is as sure as its interval says; add strokes the other way"
+    )
+    return [Notice("lean", sentence, code="lean-like-lag", about="lean")]

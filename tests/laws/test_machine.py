@@ -1,0 +1,138 @@
+"""Machines come back from the marks that they painted; the slow stepping simulator paints along the ways they run."""
+
+import re
+import tomllib
+
+import numpy as np
+import painter
+import pytest
+from diagnostics import are_told
+
+core = pytest.importorskip("brushsvg._core")
+if not hasattr(core, "fit_marks"):
+    pytest.skip("built without Ceres", allow_module_level=True)
+
+from brushsvg.brush.confidence import law_band  # noqa: E402
+from brushsvg.calibration import machine_found  # noqa: E402
+from brushsvg.calibration.from_marks import calibrate_marks  # noqa: E402
+from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.mark_report import report  # noqa: E402
+
+LEAN, SCALE, SKEW, TILT = (0.3, -0.2), (1.012, 0.993), 0.01, (0.006, -0.004)
+
+
+def run(poses, centre, height, lean, axes, tilt):
+    at = poses[:, :2] - centre
+    z = poses[:, 2] - at @ tilt
+    off = np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
+    return np.column_stack([poses[:, :2] + off + np.outer(height - z, lean), z])
+
+
+def painted_by(seed, parts, one_way=False):
+    """Brush, and what was read of its sheet."""
+    rng = np.random.default_rng(seed)
+    brush = painter.random_brush(rng)
+    strokes = painter.chart_strokes(brush.deepest, 3)
+    if one_way:
+        strokes = [
+            (name, poses)
+            for name, poses in strokes
+            if name in ("straight-1", "straight-3", "ramp-up", "angular-1")
+        ]
+        strokes = [(name, poses[poses[:, 1] < poses[0, 1] + 3]) for name, poses in strokes]
+    centre = np.concatenate([poses[:, :2] for _, poses in strokes]).mean(axis=0)
+    lean = np.array(LEAN) * ("lean" in parts)
+    axes = np.array([SCALE[0] - 1, SCALE[1] - 1, SKEW]) * ("axes" in parts)
+    tilt = np.array(TILT) * ("tilt" in parts)
+
+    def regions(brush, strokes, height):
+        ways = [(name, run(poses, centre, height, lean, axes, tilt)) for name, poses in strokes]
+        return painter.swept(brush, ways, height)
+
+    sheet = painter.paint(rng, brush, strokes, painter.Faults(displacement=0.3), regions)
+    plan = {
+        "passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
+    }
+    marks = [
+        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in sheet.marks
+    ]
+    return brush, read_painted(plan, marks, None)
+
+
+def options_for(parts):
+    options = core.MarkOptions()
+    options.displacement_mm = 0.3
+    machine_found.ask_for(options, parts)
+    return options
+
+
+def lag_off(made, brush):
+    depths = np.linspace(0.2, 1, 9) * brush.deepest
+    return max(abs(made.brush.lag(depth) / brush.law("lag")(depth) - 1) for depth in depths)
+
+
+@pytest.mark.parametrize("parts", [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",)])
+def test_brush_and_machine_come_back(parts):
+    brush, painted = painted_by(5, parts)
+    made = calibrate_marks(painted, "b", options=options_for(parts))
+    truth = {
+        "lean in x": LEAN[0],
+        "lean in y": LEAN[1],
+        "scale in x": SCALE[0],
+        "scale in y": SCALE[1],
+        "skew": SKEW,
+        "tilt in x": TILT[0],
+        "tilt in y": TILT[1],
+    }
+    found = machine_found.numbers(made.fit, made.covariance, made.expected)
+    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts)
+    for one in found:
+        assert abs(one.value - truth[one.name]) < 2 * one.half, one
+        assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"
+    assert lag_off(made, brush) < 0.03
+    text = report(made)
+    table = tomllib.loads(text[text.index("[machine]") :].partition("\n\n")[0])["machine"]
+    if "lean" in parts:
+        assert table["lean_mm_per_mm"] == pytest.approx(made.fit.machine.lean_mm_per_mm, abs=1e-4)
+        assert re.search(r"lean in x: 0\.\d+ \+- 0\.\d+ mm per mm", text)
+
+
+def test_without_the_machine_the_lag_is_off():
+    brush, painted = painted_by(5, ("lean",))
+    assert lag_off(calibrate_marks(painted, "b", options=options_for(())), brush) > 0.03
+    assert lag_off(calibrate_marks(painted, "b", options=options_for(("lean",))), brush) < 0.03
+
+
+def test_strokes_of_one_direction_are_said_to_tell_lean_from_lag_badly():
+    _, painted = painted_by(5, ("lean",), one_way=True)
+    assert are_told(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 0 0.8")
+    assert machine_found.doubts(painted, options_for(())) == []
+    _, both = painted_by(5, ("lean",))
+    assert machine_found.doubts(both, options_for(("lean",))) == []
+
+
+def test_an_exact_machine_is_found_to_be_exact():
+    brush, painted = painted_by(5, ())
+    made = calibrate_marks(painted, "b", options=options_for(("lean", "axes")))
+    found = machine_found.numbers(made.fit, made.covariance, made.expected)
+    assert [one.value for one in found[2:]] == pytest.approx([1.0, 1.0, 0.0], abs=0.006)
+    assert all(abs(one.value) < 2 * one.half for one in found[:2])
+    depths = np.linspace(0.2, 1, 9) * brush.deepest
+    error = [made.brush.lag(depth) - brush.law("lag")(depth) for depth in depths]
+    assert np.all(np.abs(error) < 1.5 * law_band(made.brush, "lag", depths)[0]), (
+        "more is open, and the band says so"
+    )
+
+
+def test_a_machine_runs_circles_by_their_chords():
+    """Half a circle through three poses: its chords alone would be another stroke."""
+    poses = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, -2.0], [20.0, -10.0, -2.0], [30.0, 0.0, -2.0]])
+    arc = core.Arc(1, 3, (20.0, 0.0), 1)
+    ring = np.array([[0.0, -1.0], [30.0, -1.0], [30.0, 1.0], [0.0, 1.0]])
+    options = options_for(("axes",))
+    options.deepest_mm, options.noise_mm = 2.0, 0.1
+    laws = core.MarkLaws([2.0], [0.0, 0.5], [0.0, 1.0])
+    way = core.fit_marks([core.PaintedMark("a", poses, [ring], [arc])], laws, options).marks[0].way_mm
+    assert len(way) > 100
+    assert np.hypot(*(way[1:, :2] - [20.0, 0.0]).T) == pytest.approx(10.0, abs=1e-9)
+    assert way[:, 1].min() == pytest.approx(-10.0, abs=0.01)

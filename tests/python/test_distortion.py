@@ -1,0 +1,169 @@
+"""Machines that take the tool elsewhere than it was told: programs make up for it, check knows where it goes."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnostics import refused
+from programs import LANGUAGES, RUNNABLE, call
+
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.machine import preflight, writer
+from brushsvg.machine.cell import Machine
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.pipeline import preparation
+from brushsvg.verification import simulate_program
+from brushsvg.verification.readback import read_program
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
+<title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>
+<path id="hook" d="M20 60 h30 v-20 h-12"/></g></svg>"""
+LEANS = Machine((0.3, -0.2), (1.01, 0.99), 0.012)
+TILTED = Machine((0.3, 0.0), (1.0, 1.0), 0.0, 0.4, (0.004, -0.003))
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    (tmp_path / "two.svg").write_text(DRAWING)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def cell_with(machine, name="linuxcnc-3axis"):
+    return preflight.as_exact_as(replace(find_cell(name), machine=machine), 0.05)
+
+
+def text_of(work, cell):
+    return "".join(writer.encode(LANGUAGES[cell.name], work.plan, work.brush, "two", (), cell))
+
+
+def told_places(text):
+    """(n, 3) where a G-code program tells the tool to go, read by nothing of the package; circles as their ends."""
+    at, out = [np.nan] * 3, []
+    for line in text.splitlines():
+        if re.match(r"G[0123] ", line):
+            for letter, value in re.findall(r"([XYZ])(-?\d+(?:\.\d+)?)", line):
+                at["XYZ".index(letter)] = float(value)
+            out.append(list(at))
+    out = np.array(out)
+    return out[~np.isnan(out).any(axis=1)]
+
+
+@pytest.mark.parametrize("machine", [LEANS, TILTED])
+def test_the_machine_goes_where_the_plan_asks_it_to(desk, machine):
+    work = preparation.prepare("two.svg")
+    told = told_places(text_of(work, cell_with(machine)))
+    z = told[:, 2] - machine.height_mm - told[:, :2] @ np.array(machine.tilt_mm_per_mm)
+    depth = np.maximum(0.0, -z)
+    x = machine.scale[0] * told[:, 0] + machine.skew * told[:, 1] + machine.lean_mm_per_mm[0] * depth
+    y = machine.scale[1] * told[:, 1] + machine.lean_mm_per_mm[1] * depth
+    goes = np.column_stack([x, y, z])
+    for a_pass in work.plan.passes:
+        poses = np.asarray(a_pass.poses_mm)
+        away = np.linalg.norm(goes[None] - poses[:, None], axis=2).min(axis=1)
+        assert away.max() < 2e-3
+        beside = np.linalg.norm(told[None] - poses[:, None], axis=2).min(axis=1)
+        assert beside.max() > 0.5, "and it is told otherwise"
+    assert np.isclose(z, 10.0, atol=2e-3).sum() >= 4, "travel is at the safe height over the paper"
+
+
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
+@pytest.mark.parametrize("machine", [LEANS, TILTED])
+def test_what_was_planned_comes_back(desk, name, machine):
+    work, cell = preparation.prepare("two.svg"), cell_with(machine, name)
+    read = read_program(text_of(work, cell), LANGUAGES[name], cell)
+    back = simulate_program.run(read, work.brush, cell, work.plan.sheet_mm)
+    assert back.problems == []
+    for meant, found in zip(work.plan.passes, back.plan.passes, strict=True):
+        away = np.linalg.norm(found.poses_mm[None] - meant.poses_mm[:, None], axis=2).min(axis=1)
+        assert away.max() < 2.5e-3
+        assert found.speed_mm_s == pytest.approx(meant.speed_mm_s, rel=1e-3)
+    planned = _core.simulate(work.plan, work.brush)
+    for marks in (planned, back.marks):
+        _core.trace_outlines(marks, work.brush)
+    assert _core.overlap(planned.outline_mm, back.marks.outline_mm) > 0.997
+
+
+@pytest.mark.parametrize("machine", [LEANS, TILTED])
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
+def test_check_allows_it_and_refuses_the_same_program_on_another_machine(desk, capsys, name, machine):
+    suffix = LANGUAGES[name]
+    (desk / "mine.toml").write_text(write_cell(replace(find_cell(name), name="mine", machine=machine)))
+    other = replace(machine, lean_mm_per_mm=(0.1, 0.0))
+    (desk / "other.toml").write_text(write_cell(replace(find_cell(name), name="mine", machine=other)))
+    assert call(capsys, "convert", "two.svg", "two" + suffix, "--cell", "mine.toml")[0] == 0
+    status, out, _ = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "mine.toml")
+    assert status == 0 and RUNNABLE in out
+    status, _, err = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "other.toml")
+    assert status == 1 and any("curve" in line for line in err)
+
+
+@pytest.mark.parametrize(
+    ("machine", "are_told"), [(Machine((0.3, 0.1), (1.01, 1.01)), True), (LEANS, False), (TILTED, False)]
+)
+def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, are_told):
+    angle = np.linspace(0.0, 2.0, 30)
+    on = np.column_stack([60 + 20 * np.cos(angle), 40 + 20 * np.sin(angle), np.full(30, -3.0)])
+    poses = np.vstack([[70, 40, 0], on, [50, 70, 0]])
+    brush, cell = find_brush("round-6"), cell_with(machine)
+    plan = _core.Plan(
+        brush.name, "", (120.0, 90.0), [_core.Pass("c", poses, 20.0, arcs=[_core.Arc(1, 30, (60, 40), 1)])]
+    )
+    text = "".join(writer.encode(".ngc", plan, brush, "c", (), cell))
+    assert bool(re.search(r"(?m)^G[23] ", text)) == are_told
+    back = simulate_program.run(read_program(text, ".ngc", cell), brush, cell, plan.sheet_mm)
+    assert back.problems == [] and bool(back.plan.passes[0].arcs) == are_told
+    found = np.asarray(back.plan.passes[0].poses_mm)
+    deep = found[found[:, 2] < -2.9]
+    assert np.hypot(*(deep[:, :2] - [60, 40]).T) == pytest.approx(20.0, abs=2e-3)
+    assert np.linalg.norm(found[None] - poses[[0, 1, 30, 31], None], axis=2).min(axis=1).max() < 2e-3
+
+
+def test_limits_are_asked_of_what_is_told(desk):
+    work = preparation.prepare("two.svg")
+    cell = cell_with(Machine(scale=(0.92, 1.0)))
+    tight = replace(
+        cell, workspace=replace(cell.workspace, box_mm=((-30.0, -30.0, -30.0), (100.0, 100.0, 50.0)))
+    )
+    straight = replace(tight, machine=None)
+    marks = _core.simulate(work.plan, work.brush)
+    assert preflight.look(_loads(work), work.brush, marks, straight, 0.05).problems == []
+    assert preflight.look(_loads(work), work.brush, marks, tight, 0.05).problems != []
+
+
+def _loads(work):
+    from brushsvg.machine.paint_reload import PlanInLoads
+
+    return PlanInLoads(tuple(work.plan.sheet_mm), tuple(work.plan.passes))
+
+
+@pytest.mark.parametrize(
+    ("line", "where", "said"),
+    [
+        ("lean_mm_per_mm = [2.0, 0.0]", "machine.lean_mm_per_mm", "out-of-range 2 -1.5 1.5"),
+        ("scale = [1.0, 1.2]", "machine.scale", "out-of-range 1.2 0.9 1.1"),
+        ("skew = 0.2", "machine.skew", "out-of-range 0.2 -0.1 0.1"),
+        ("tilt_mm_per_mm = [0.2, 0.0]", "machine.tilt_mm_per_mm", "out-of-range 0.2 -0.05 0.05"),
+        ("height_mm = 9", "machine.height_mm", "out-of-range 9 -5 5"),
+        ("scale = 1.0", "machine.scale", "wrong-type 2"),
+        ("leans = 1.0", "machine.leans", "key-unknown lean_mm_per_mm"),
+    ],
+)
+def test_a_table_that_is_no_machine_is_refused(line, where, said):
+    text = write_cell(find_cell("linuxcnc-3axis"))
+    with refused(said, where):
+        parse_cell(f"{text}\n[machine]\n{line}\n")
+
+
+def test_a_servo_that_leans_is_refused():
+    text = write_cell(find_cell("grbl-servo"))
+    with refused("cell-machine 0.3", "machine.lean_mm_per_mm"):
+        parse_cell(f"{text}\n[machine]\nlean_mm_per_mm = [0.3, 0.0]\n")
+    assert parse_cell(f"{text}\n[machine]\nscale = [1.01, 1.0]\n").machine.scale == (1.01, 1.0)
+
+
+def test_the_table_is_written_as_it_is_read():
+    cell = replace(find_cell("linuxcnc-3axis"), machine=LEANS)
+    assert parse_cell(write_cell(cell)) == cell
