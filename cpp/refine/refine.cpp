@@ -8,6 +8,7 @@
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/target_mark.hpp"
+#include "dot.hpp"
 #include "outline_fit.hpp"
 #include "patch_path.hpp"
 #include "thin_out_after_turn.hpp"
@@ -110,6 +111,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
     const Tried before(closed.plan.pass, stroke, wanted, brush);
     closed.overlap = closed.overlap_closed = before.overlap;
+    if (is_dot(simulate(dense, brush))) return closed;  // round already
     double best_aim = before.aim;
     RefinedPass best = closed;
     for (double turn : kFirstTurns) {

@@ -125,3 +125,15 @@ def test_the_command_line_refines_within_its_cell(tmp_path, monkeypatch):
     words = ["two.svg", "two.ngc", "--cell", "low.toml", "--compensation", "refined"]
     assert cli.main(["convert", *words]) == 0
     assert cli.main(["check", "two.ngc", "two.svg", "--cell", "low.toml"]) == 0
+
+
+def test_a_dot_stays_round(tmp_path):
+    """Its footprint goes round on the spot: moved, it had bulges."""
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'
+        '<circle cx="30" cy="30" r="3"/><rect x="50" y="27" width="5.8" height="5"/></svg>'
+    )
+    closed, refined = (prepare(drawing, Options(compensation=each)).plan for each in ("closed", "refined"))
+    for before, after in zip(closed.passes, refined.passes, strict=True):
+        np.testing.assert_array_equal(after.poses_mm, before.poses_mm)

@@ -12,6 +12,7 @@ from ..errors import Error, Notice
 from ..geometry.polylines import length
 from .arc_chords import chords, with_chords
 from .cell import Cell, Station, robot_from_paper
+from .distortion import is_similar
 from .frames import is_upright
 from .posts import POSTS
 
@@ -70,8 +71,11 @@ def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
 
 
 def _is_told_circles(cell: Cell) -> bool:
-    """On paper that leans a robot's circles would lie in no plane that it knows."""
+    """On paper that leans a robot's circles would lie in no plane that it knows, and a machine that is told other
+    places than the true ones may need ellipses."""
     post = POSTS.get(cell.language)
+    if not is_similar(cell.machine):
+        return False
     if not post or not post.circles_by:
         return not post
     return not post.in_robot_frame or is_upright(robot_from_paper(cell))
