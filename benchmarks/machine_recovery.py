@@ -56,7 +56,10 @@ def with_play(strokes, backlash: np.ndarray) -> list:
 
 
 def run(machine, poses: np.ndarray, centre: np.ndarray, height: float) -> np.ndarray:
-    """The way that the machine runs when it is told these poses, on paper that lies so much higher."""
+    """The way that the machine runs when it is told to come down on the first of these poses, to follow them and to go
+    up again, on paper that lies so much higher."""
+    up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
+    poses = np.vstack([up[:1], poses, up[1:]])
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ machine["tilt"]
     scale_x, scale_y, skew = machine["axes"]

@@ -22,6 +22,9 @@ LEAN, SCALE, SKEW, TILT = (0.3, -0.2), (1.012, 0.993), 0.01, (0.006, -0.004)
 
 
 def run(poses, centre, height, lean, axes, tilt):
+    """Come down on the first pose and gone up from the last one, too."""
+    up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
+    poses = np.vstack([up[:1], poses, up[1:]])
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ tilt
     off = np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])

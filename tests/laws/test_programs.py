@@ -12,10 +12,13 @@ from hypothesis import strategies as st
 from brushsvg import _core
 from brushsvg.errors import Error
 from brushsvg.machine import writer
-from brushsvg.machine.cell import Heights, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell import Heights, Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
+from brushsvg.verification import against_plan, simulate_program
+from brushsvg.verification.readback import read_program
 
 LANGUAGES = {
     "linuxcnc-3axis": ".ngc",
@@ -168,3 +171,20 @@ def test_whatever_is_written_is_safe(name, seed):
 
 def test_every_language_is_tried():
     assert {find_cell(name).language for name in LANGUAGES} == set(POSTS)
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_programs_for_machines_that_go_elsewhere_are_allowed_and_come_back(seed):
+    rng = np.random.default_rng(seed + 71)
+    name = list(LANGUAGES)[seed % len(LANGUAGES)]
+    cell, brush = random_cell(rng, name), make_brush(name="made")
+    axes = {"scale": tuple(rng.uniform(0.97, 1.03, 2)), "skew": rng.uniform(-0.02, 0.02)}
+    if name != "grbl-servo":
+        axes["lean_mm_per_mm"] = tuple(rng.uniform(-0.5, 0.5, 2))
+        axes |= {"height_mm": rng.uniform(-0.5, 0.5), "tilt_mm_per_mm": tuple(rng.uniform(-0.004, 0.004, 2))}
+    cell = replace(cell, machine=Machine(**axes))
+    plan = random_plan(rng, brush, cell.heights.lowest_mm)
+    text = "".join(writer.encode(LANGUAGES[name], plan, brush, "random", (), cell))
+    ran = simulate_program.run(read_program(text, LANGUAGES[name], cell), brush, cell, plan.sheet_mm)
+    assert ran.problems == []
+    assert against_plan.with_plan(ran, in_loads(plan, brush, cell), cell)[1] == []

@@ -526,3 +526,11 @@ def test_quantiles_are_scipys(freedom):
     np.testing.assert_allclose(
         _core.as_normal(t, freedom), -special.ndtri(special.stdtr(freedom, -np.abs(t))), rtol=1e-7, atol=1e-12
     )
+
+
+def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
+    (tmp_path / "m.csv").write_text(TABLE)
+    out = tmp_path / "own.json"
+    status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean")
+    assert status == 1 and agrees(told, "options-contradict --machine")
+    assert not out.exists()

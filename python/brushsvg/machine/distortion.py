@@ -15,6 +15,10 @@ def is_similar(machine: Machine | None) -> bool:
     )
 
 
+def leans(machine: Machine | None) -> bool:
+    return machine is not None and any(machine.lean_mm_per_mm)
+
+
 def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     """(n, 3): where the tool goes that is told to go there. It leans as deep as it is pressed: not in the air."""
     if machine is None:

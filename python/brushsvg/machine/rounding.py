@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from .cell import Cell, least_move_mm
 from .corner_blending import ON_THE_SPOT_MM
-from .distortion import told_pass
+from .distortion import leans, told_pass
 from .frames import is_upright, moved
 from .motion import via
 from .posts import POSTS
@@ -42,8 +42,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     unit_mm = 10.0**-cell.decimals
     meant = poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     circles_by = post.circles_by if post else "centre"
-    # what leans goes straight down up to rounding
-    sideways_mm = 2 * unit_mm if cell.machine else ON_THE_SPOT_MM
+    # what leans is told to go aside for it to go straight down, which it does up to rounding
+    sideways_mm = 2 * unit_mm if leans(cell.machine) else ON_THE_SPOT_MM
     if post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)):
         poses = moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
         if not is_upright(frame):

@@ -119,17 +119,18 @@ def walked(
     paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
     """
     frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
-    here, ends = None, []
+    here, here_low, ends = None, None, []  # as told, and as it is over the paper
     for section in read.sections:
         track = _track(section, frame, here)
         low = _as_true(track, cell) if _stroke(section) else track
-        said = [*_careless(section, low, brush, cell, here, paper_mm)]
+        said = [*_careless(section, low, brush, cell, here_low, paper_mm)]
         if len(track.points):
             ends = [ends[0] if ends else track.points[0], track.points[-1]]
         if section is read.sections[-1]:
             said += _rises_astray(read, np.reshape(ends, (-1, 3)), frame, cell, z_offset_mm)
         yield section, track, said + _astray(section, track, here, cell, sheet_mm, z_offset_mm)
-        here = track.points[-1] if len(track.points) else here
+        if len(track.points):
+            here, here_low = track.points[-1], low.points[-1]
 
 
 def _rises_astray(
