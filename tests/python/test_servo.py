@@ -12,13 +12,15 @@ from diagnostics import refused
 from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
+from brushsvg.brush.library import find_brush
 from brushsvg.machine.cell import Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
+from brushsvg.verification import simulate_program
 from brushsvg.verification.against_regenerated import _Alike
-from brushsvg.verification.readback import Act
+from brushsvg.verification.readback import Act, read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")
@@ -181,6 +183,16 @@ def test_a_way_too_steep_for_values_that_change_along_with_it_is_refused():
     for width in (0.0004, 0.002, 0.08):  # the lift alone, and what every part of is left
         steep[1] = (20 + width, 20, -4)
         assert text_of(("a", steep, 20.0), cell="grbl-servo")
+
+
+@pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])
+def test_a_steep_way_of_rounded_parts_is_no_jump(width_mm):
+    """Places rounded by half a unit of 3e-3 mm took that much less time, and check called its own program fast."""
+    cell = find_cell("grbl-servo")
+    steep = [(21.522, 28.978, 0), (21.522, 28.978, -2.785), (21.522 + width_mm, 28.978, -0.105)]
+    text = text_of(("a", [*steep, (21.522 + width_mm, 28.978, 0)], 15.0), cell="grbl-servo")
+    read = read_program(text, ".nc", cell)
+    assert simulate_program.run(read, find_brush("round-6"), cell, (100.0, 60.0)).problems == []
 
 
 def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():

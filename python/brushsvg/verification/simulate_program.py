@@ -403,6 +403,9 @@ def _ahead(
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)
     ends_s = np.cumsum(took_s + np.r_[0.0, [step.wait_s for step in steps[:-1]]])
     begins_s, ends_mm = ends_s - took_s, np.cumsum(ways_mm)
+    # a steep way is slow: what rounding makes of its ends takes its time
+    rounded_s = np.divide(0.71 * 10.0**-cell.decimals, speeds, out=np.zeros(len(steps)), where=took_s > 0)
+    rounded_s = np.max([rounded_s, np.r_[rounded_s[1:], 0.0], np.r_[0.0, rounded_s[:-1]]], axis=0)
     begins_mm = ends_mm - ways_mm
     starts, ends = np.minimum(before[:, 2], top_mm), np.minimum(after[:, 2], top_mm)
     for count in _counts(len(steps)):
@@ -410,7 +413,9 @@ def _ahead(
         on_mm = ends_mm[count - 1 :] - begins_mm[: len(steps) - count + 1]
         path_mm = np.hypot(on_mm, np.maximum(rise_mm - lead_mm, 0.0))
         seconds = ends_s[count - 1 :] - begins_s[: len(steps) - count + 1]
-        ahead = np.flatnonzero((rise_mm > lead_mm) & (path_mm > (limit + 1e-6) * seconds + ROUNDED_MM))
+        ends_rounded_s = np.minimum(rounded_s[: len(seconds)] + rounded_s[count - 1 :], seconds)
+        most_mm = (limit + 1e-6) * (seconds + ends_rounded_s) + ROUNDED_MM
+        ahead = np.flatnonzero((rise_mm > lead_mm) & (path_mm > most_mm))
         if len(ahead):
             k = int(ahead[0])
             line = f"line {steps[k + count - 1].line}"
