@@ -181,7 +181,7 @@ def test_plans_of_ours_paint_the_same_with_arcs_and_chords(degrees, half_width):
     )
     stroke = core.Stroke(id="s", middle_mm=cubics, half_width=[(0.0, half_width)])
     brush = find_brush("round-6")
-    plan = core.compensate([stroke], brush, (100.0, 100.0), few_poses=False).plan  # with few, bends are arcs too
+    plan = core.compensate([stroke], brush, (100.0, 100.0), few_poses=False).plan
     assert len(plan.passes[0].arcs) == 1
     exact = contacts(core.simulate(plan, brush, 1e-3).passes[0])
     again = core.read_plan(core.write_plan(plan))

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
+from ..machine.arc_chords import with_chords
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
@@ -115,9 +116,10 @@ def _astray(away_mm: float, limit_mm: float) -> str:
 
 
 def _with_circles_of(a_pass, meant):
-    """A plan's pass with only those circles that the pass has, too: others are run straight from pose to pose, as on
-    paper that leans."""
+    """A plan's pass with only those circles that the pass has, too: others are run as lines, as on paper that leans.
+    What was told by a pose on a flat one's way has its centre elsewhere, and runs beside these lines."""
     known = [(*arc.centre_mm, arc.direction) for arc in a_pass.arcs]
+    meant = with_chords(meant)
     arcs = [
         arc
         for arc in meant.arcs

@@ -77,11 +77,9 @@ class Job:
 
     @cached_property
     def passes(self) -> list[np.ndarray]:
-        """The plan's passes from the first stroke on, sampled; circles with their points where the machine can run
-        them: on paper that leans, and by a servo, their poses are joined by lines."""
-        has_circles = self.language != "grbl-servo" and np.allclose(self.paper[:3, 2], (0, 0, 1), atol=1e-9)
-        passes = self.plan["passes"][self.first_stroke - 1 :]
-        return [_sampled(_round(each) if has_circles else np.array(each["poses_mm"])) for each in passes]
+        """The plan's passes from the first stroke on, sampled, round where it has circles: lines that a machine runs in
+        their place, on paper that leans and by a servo, lie as near."""
+        return [_sampled(_round(each)) for each in self.plan["passes"][self.first_stroke - 1 :]]
 
     @cached_property
     def stations(self) -> list[np.ndarray]:
