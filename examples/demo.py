@@ -14,7 +14,7 @@ from brushsvg.machine import preflight, writer
 from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
-from brushsvg.pictures.marks_png import MIDDLE_LINE, Panel, panels_png
+from brushsvg.pictures.panels_png import MIDDLE_LINE, Panel, panels_png
 from brushsvg.pipeline import outputs, prediction, preparation, trials
 
 

@@ -7,16 +7,12 @@
 #include <optional>
 
 #include "brushsvg/checkpoint.hpp"
-#include "brushsvg/coverage.hpp"
 #include "brushsvg/error.hpp"
-#include "brushsvg/excess_turning.hpp"
 #include "brushsvg/lag_arc.hpp"
-#include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
+#include "choose_beginning.hpp"
+#include "closed_form.hpp"
 #include "dot.hpp"
-#include "hidden_beginning.hpp"
-#include "inverse.hpp"
-#include "landing.hpp"
 #include "middle_line.hpp"
 #include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
@@ -28,98 +24,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
-
-/// Chords of the circle about the contact from one heading to the other. Inscribed chords leave the lever loose, so the
-/// patch rests; tangent ones would drag it. Noted as an arc too, of radius r and not a hair less: a radius too large by
-/// some rounding lets the patch creep by (1 + turn^2 / 2) times that, 0.6 um for 1e-4 mm and half a turn.
-void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, PoseList& out) {
-    const double angle = angle_between(from.heading, to.heading);
-    const int n = int(std::ceil(std::abs(angle) / kTurnChordRad));
-    for (int k = 1; k < n; ++k) {
-        const double c = double(k) / n, depth = from.depth + c * (to.depth - from.depth);
-        out.add(from.contact + brush.lag(depth) * turned_by<double>(from.heading, c * angle), depth);
-    }
-}
-
-/// Arc lengths where the depth passes a given one: samples must stand there.
-std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
-                                     const std::vector<double>& depths) {
-    std::vector<double> out;
-    for (std::size_t k = 0; k < stroke.half_width.size(); ++k) {
-        const WidthKnot& knot = stroke.half_width[k];
-        if (knot.at > 0.0 && knot.at < 1.0) out.push_back(knot.at * length);
-        if (k == 0) continue;
-        const WidthKnot& before = stroke.half_width[k - 1];
-        for (double depth : depths) {
-            const double h = brush.half_width(depth), rise = knot.half_width_mm - before.half_width_mm;
-            if ((before.half_width_mm - h) * (knot.half_width_mm - h) < 0.0)
-                out.push_back((before.at + (knot.at - before.at) * (h - before.half_width_mm) / rise) * length);
-        }
-    }
-    return out;
-}
-
-/// A mark no longer than a footprint: one landing that leaves the widest section at the path's end.
-Samples dab(const Stroke& stroke, const Line& line) {
-    Sample sample = line.at(line.length());
-    const Vector2d across =
-        point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0}) - point_at(stroke.middle_mm, {0, 0.0});
-    // a point has no direction: left to right, as one writes
-    sample.heading = line.length() > 0.0 ? line.tangent(sample) : Vector2d(1.0, 0.0);
-    if (across.norm() > 0.5 * line.length() && line.length() > 0.0) sample.heading = across.normalized();
-    return {sample};
-}
-
-Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }
-
-PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
-                     bool& turns) {
-    auto [s0, s1] = painted_stretch(stroke, brush, line.length());
-    const Inverse inverse(line, brush);
-    std::optional<HiddenBeginning> hidden;
-    if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
-    std::optional<Vector2d> first;
-    if (hidden) {
-        s0 = hidden->on_from_mm;
-        first = hidden->on_along;
-    }
-    const Stroke& painted = hidden ? hidden->onward : stroke;
-    const Line onward(painted, brush);
-    Samples samples;
-    if (line.length() > 0.0 && s1 - s0 > 1e-6)
-        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, line.length(), inverse.crossings()));
-    if (samples.size() < 2) {
-        hidden.reset();
-        samples = dab(stroke, line);
-        inverse(samples);
-    } else {
-        refine_steps(onward, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
-    }
-    PoseList out;
-    if (hidden) {
-        land(stance_of(hidden->back.front()), brush, out);
-        for (const Sample& sample : hidden->back) out.add(sample.tcp, sample.depth);
-        turn_over(stance_of(hidden->back.back()), stance_of(samples.front()), brush, out);
-    } else {
-        land(stance_of(samples.front()), brush, out);
-    }
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        turns = turns || !samples[i].taut;
-        if (i > 0 && !brush.is_rigid()) {
-            const double moved = (samples[i].contact - samples[i - 1].contact).norm();
-            const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
-            const std::int64_t before = out.last();
-            if (std::abs(angle) > kTurnStepRad && moved < 0.1 * brush.lag(samples[i].depth))
-                turn_in_place(samples[i - 1], samples[i], brush, out);
-            out.add(samples[i].tcp, samples[i].depth);
-            if (moved < kSameCircleMm) out.arc(before, samples[i].contact, angle);
-        } else {
-            out.add(samples[i].tcp, samples[i].depth);
-        }
-    }
-    lift(stance_of(samples.back()), brush, out);
-    return out;
-}
 
 /// TCP at m + r0 T: r0 = 0 is no compensation.
 PoseList offset(const Stroke& stroke, const Brush& brush, const Line& line, double r0, double step_tolerance) {
@@ -203,61 +107,6 @@ constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
 constexpr double kThinShare = 0.9, kSurely = 0.9;
 /// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm.
 constexpr double kHairShare = 0.1;
-
-/// Half a side of the square about the beginning that is looked at, and how far the mark is made for it, in half
-/// widths; pixels on one half width. A pointed footprint reaches back by two half widths from its widest section.
-constexpr double kLookedAt = 3.0, kMade = 6.0, kPixels = 8.0;
-/// What hiding must win, in squares of the half width: of the 1.5 that a pointed beginning lacks, what one has to look
-/// for.
-constexpr double kWorthHiding = 0.2;
-/// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
-/// the thin ends of drops.
-constexpr double kCalm = 0.3;
-
-/// The pass up to where its path is so long, the brush left on the paper.
-Pass beginning_of(const Pass& pass, double length_mm) {
-    Pass out;
-    out.stroke = pass.stroke;
-    Index n = std::min<Index>(2, pass.poses_mm.rows());
-    for (double way = 0.0; n < pass.poses_mm.rows() && way < length_mm; ++n)
-        way += (pass.poses_mm.row(n) - pass.poses_mm.row(n - 1)).norm();
-    out.poses_mm = pass.poses_mm.topRows(n);
-    return out;
-}
-
-/// The beginning that differs less from the wanted mark, near it.
-Beginning best_beginning(const Stroke& wanted_stroke, const Stroke& stroke, const Brush& brush, const Line& line,
-                         double step_tolerance) {
-    const double last_mm = painted_stretch(stroke, brush, line.length())[1];
-    const std::optional<Dot> dot = dot_of(wanted_stroke, brush);
-    if (!dot && !hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
-        return Beginning::exposed;
-    bool turns = false;
-    Pass exposed, hidden;
-    closed_form(stroke, brush, line, Beginning::exposed, step_tolerance, turns).into(exposed);
-    (dot ? poses_of(*dot, brush) : closed_form(stroke, brush, line, Beginning::hidden, step_tolerance, turns))
-        .into(hidden);
-    const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth);
-    const Vector2d at = line.at(0.0).middle;
-    const double side = 2.0 * kLookedAt * half, made = kMade * half + 4.0 * brush.lag(depth);
-    const Window window{at.x() - 0.5 * side, at.y() - 0.5 * side, side, side};
-    const Coverage wanted = wanted_coverage({wanted_stroke}, window, kPixels / half);
-    const auto mark = [&](const Pass& pass) {
-        Marks marks;
-        marks.passes = {simulate(dot ? pass : beginning_of(pass, made), brush, 0.05 * half)};
-        return marks;
-    };
-    const auto differs = [&](const Marks& marks) {
-        return (coverage(marks, brush, window, kPixels / half) - wanted).cwiseAbs().sum() / (kPixels * kPixels);
-    };
-    const Marks pointed = mark(exposed), round = mark(hidden);
-    const double won = differs(pointed) - differs(round) - kWorthHiding;
-    if (!(won > 0.0)) return Beginning::exposed;
-    const double turned = excess_turning(outline(round.passes[0], brush), outline(pointed.passes[0], brush));
-    double greatest = half;
-    for (const auto& knot : stroke.half_width) greatest = std::max(greatest, knot.half_width_mm);
-    return won * half * half > kCalm * turned * greatest * greatest ? Beginning::hidden : Beginning::exposed;
-}
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,

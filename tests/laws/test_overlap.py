@@ -82,7 +82,10 @@ def check_figures(strokes, compensation, brush_name="round-6"):
     rows, total = report.measure(done.plan, marks, brush, strokes)
     groups = report.groups(marks, brush, strokes)
 
-    painted = stepped(json.loads(_core.write_plan(done.plan)), json.loads(_core.write_brush(brush)))
+    plan = json.loads(_core.write_plan(done.plan))
+    for each, a_pass in zip(plan["passes"], done.plan.passes, strict=True):
+        each["poses_mm"] = oracle.chords(a_pass.poses_mm, a_pass.arcs, 0.1)
+    painted = stepped(plan, json.loads(_core.write_brush(brush)))
     wanted = [wanted_region(stroke) for stroke in strokes]
     for row, mark, meant in zip(rows, painted, wanted, strict=True):
         assert row.overlap == pytest.approx(overlap(mark, meant), abs=0.005), row.stroke

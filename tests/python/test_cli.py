@@ -275,9 +275,12 @@ def edited_plan(desk, **changes):
     ("changes", "said"),
     [
         ({"speed_mm_s": 30}, "speed-out-of-range 30 [0.000001, 25.0] round-6"),
-        ({"poses_mm": [[30, 30, 0], [200, 30, 0]]}, "tool-off-sheet 50.00 right"),
+        ({"poses_mm": [[30, 30, 0], [200, 30, 0]], "arcs": []}, "tool-off-sheet 50.00 right"),
         ({"sheet_mm": [120, 20]}, "mark-off-sheet upper"),
-        ({"poses_mm": [[30, 30, 0], [50, 30, -12], [60, 30, 0]]}, "depth-out-of-range 12.000 10.0]"),
+        (
+            {"poses_mm": [[30, 30, 0], [50, 30, -12], [60, 30, 0]], "arcs": []},
+            "depth-out-of-range 12.000 10.0]",
+        ),
     ],
 )
 def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):

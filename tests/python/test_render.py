@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from brushsvg import Stroke, area, compensate, find_brush, marks_png, marks_svg, simulate, trace_outlines
-from brushsvg.pictures.marks_png import Panel, panels_png
+from brushsvg.pictures.panels_png import Panel, panels_png
 
 SHEET = (60.0, 30.0)
 RED, BLUE = "#c01020", "#1020c0"

@@ -15,7 +15,8 @@ from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads
 from ..machine.writer import time_s, whole_program
 from ..pictures.animation import animation
-from ..pictures.marks_svg import marks_svg, overlap_svg
+from ..pictures.marks_svg import marks_svg
+from ..pictures.overlap_svg import overlap_svg
 from ..pictures.timeline import timeline
 from .preparation import Options, Work
 
@@ -74,12 +75,13 @@ def overlap_picture(suffix: str, work: Work, marks) -> bytes:
     if suffix == ".svg":
         wanted = report.wanted_rings(work.strokes)
         return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
-    from ..pictures import marks_png
+    from ..pictures.overlap_png import overlap_png
+    from ..pictures.png_canvas import PNG_LONG_SIDE_PX
 
-    px_per_mm = min(20.0, marks_png.PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
+    px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
     wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
-    return marks_png.overlap_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
+    return overlap_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
 
 
 def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:

@@ -30,7 +30,7 @@ def import_file(args) -> None:
 
             picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
         else:
-            from ...pictures.overview import overview
+            from ...pictures.import_picture import overview
 
             picture = overview(suffix_of(args.output), design, strokes, notices)
     write(args, {args.output: picture}, len(strokes))

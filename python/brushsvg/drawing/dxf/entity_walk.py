@@ -13,8 +13,8 @@ import numpy as np
 from ...errors import Error
 from ..design import Notice
 from ..svg.path_to_cubics import LARGEST_MM
-from . import curves as dxf_curves
-from .curves import Curve
+from . import entity_curves as dxf_curves
+from .entity_curves import Curve
 from .file import not_read, reason, shown
 from .fonts import NoFontError
 from .library import ezdxf

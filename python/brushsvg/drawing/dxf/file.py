@@ -6,8 +6,8 @@ import io
 
 from ...errors import Error
 from ..design import Notice
-from .entities import Entities
 from .library import ezdxf
+from .tag_filter import Entities
 
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 _MOST_NOTICES = 5

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geometry.arc_length import knots
 from ..design import Element, SubPath
-from .curves import Curve, reversed_cubics, straight
+from .entity_curves import Curve, reversed_cubics, straight
 from .entity_walk import Piece
 from .splines import joined
 

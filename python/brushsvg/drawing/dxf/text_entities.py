@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import Error
 from ..design import Notice
-from .curves import Curve
+from .entity_curves import Curve
 from .file import shown
 from .fonts import Font, Fonts
 from .library import ezdxf

@@ -13,7 +13,7 @@ from ...errors import Error, Notice
 from ...units import FONT_PX, NUMBER, length_px
 from .colour import parse_colour
 from .css_selectors import Declaration, declarations
-from .paint import URL
+from .paint_servers import URL
 
 INHERITED = {
     "font-size": f"{FONT_PX:g}",  # in px

@@ -16,7 +16,7 @@ from ..design import Element, SubPath
 from . import shapes
 from .context import Context, Notes, local
 from .css_cascade import MARKERS
-from .paint import Paints
+from .paint_servers import Paints
 from .path_to_cubics import LARGEST_MM, trace
 from .power_stroke import PowerStroke, drawn_line, with_widths
 from .transform import IDENTITY, scales

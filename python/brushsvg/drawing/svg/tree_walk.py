@@ -16,7 +16,7 @@ from .css_selectors import Rules
 from .css_transform import ReferenceBox, about, css_transform, individual_transform, origin
 from .element import Painted
 from .layers import layer_names
-from .paint import UNSEEN, Paints
+from .paint_servers import UNSEEN, Paints
 from .power_stroke import in_effects_of_groups
 from .settings import own_settings
 from .transform import IDENTITY, Matrix, multiply, parse_transform

@@ -1,4 +1,4 @@
-"""The entities of a text DXF, before ezdxf builds anything of them.
+"""Which entities of a text DXF are let through, before ezdxf builds anything of them; entity_curves draws them.
 
 ezdxf refuses a whole file over one entity that it cannot build, and drops others without a word. So what nobody here
 reads is taken out beforehand and counted, and, where the file cannot be loaded without, what is broken.

@@ -5,7 +5,7 @@ import numpy as np
 from svg_text import read
 
 from brushsvg.drawing.design import Notice
-from brushsvg.pictures.overview import overview
+from brushsvg.pictures.import_picture import overview
 from brushsvg.strokes.extraction import strokes
 
 BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 30h30"/>

@@ -1,0 +1,33 @@
+"""A picture of pixels: paper, paint laid over it, words, the bytes of a PNG."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+TEXT = "#22252b"
+PNG_LONG_SIDE_PX = 2400
+SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
+
+
+def canvas(shape: tuple[int, int], colour: str) -> np.ndarray:
+    return np.full((*shape, 3), bgr(colour), np.uint8)
+
+
+def lay(image: np.ndarray, coverage: np.ndarray, colour: str) -> None:
+    share = coverage[..., None]
+    image[:] = np.round(image * (1 - share) + np.array(bgr(colour)) * share).astype(np.uint8)
+
+
+def bgr(colour: str) -> tuple[int, int, int]:
+    return int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)
+
+
+def write(image, text: str, baseline: tuple[int, int], size: int, weight: int, colour: str) -> int:
+    """Text in OpenCV's own font; the x where it ends."""
+    end, _ = cv2.putText(image, text, baseline, bgr(colour), cv2.FontFace("sans"), size, weight)
+    return int(end[0])
+
+
+def encoded(image: np.ndarray) -> bytes:
+    return cv2.imencode(".png", image)[1].tobytes()
