@@ -36,7 +36,9 @@ Track wander(int seed, bool set_down) {
         begun.contact = track.poses_mm.row(0).head<2>().transpose() - law.at(-track.poses_mm(0, 2)) * begun.heading;
         begun.taut = begun.heading_known = true;
     }
-    trace(law, track.poses_mm, {}, 0.0, track.pose, set_down ? nullptr : &begun,
+    const std::vector<Arc> arcs;
+    const ToldWay<double> way{track.poses_mm, arcs, 0.0};
+    trace(law, way, track.pose, set_down ? nullptr : &begun,
           [&](std::size_t k, const Trace<double>& at) { track.seen_mm.row(k) = at.state.contact.transpose(); });
     return track;
 }
