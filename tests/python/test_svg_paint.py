@@ -4,7 +4,7 @@ import pytest
 from diagnostics import are_told, refused
 from svg_text import read
 
-from brushsvg.drawing.svg import element, paint
+from brushsvg.drawing.svg import element, paint_servers
 
 STOPS = '<stop stop-color="red"/><stop offset="1" stop-color="blue"/>'
 TILE = '<path d="M0 1H2"/>'
@@ -102,7 +102,7 @@ def test_a_visibility_that_is_none_counts_as_not_given():
 def test_a_paint_is_looked_up_once(monkeypatch):
     """3,000 shapes with a gradient of 3,000 stops took twenty seconds."""
     asked = []
-    monkeypatch.setattr(paint.Paints, "_stop", lambda _self, stop: asked.append(stop) or "#00ff00")
+    monkeypatch.setattr(paint_servers.Paints, "_stop", lambda _self, stop: asked.append(stop) or "#00ff00")
     gradient = '<linearGradient id="s">' + "<stop/>" * 50 + "</linearGradient>"
     assert len(read(gradient + BOTH.format("url(#s)", "none", "") * 50).elements) == 50
     assert len(asked) == 50
