@@ -8,6 +8,7 @@ from math import acos, atan2, ceil, hypot
 import numpy as np
 
 from .. import _core
+from .pass_way import on_way
 
 # a chord turns by no more, and lies no farther from its circle: what the mark's edge shows of a polygon is less
 TURN_RAD = 0.12
@@ -26,17 +27,7 @@ def with_chords(a_pass):
     rows = _rows(np.asarray(a_pass.poses_mm), a_pass.arcs)
     at = np.concatenate([[0], np.cumsum([len(each) for each in rows])]).tolist()
     arcs = [_core.Arc(at[arc.first], at[arc.last], arc.centre_mm, arc.direction) for arc in a_pass.arcs]
-    return _core.Pass(
-        a_pass.origin,
-        np.vstack(rows),
-        a_pass.speed_mm_s,
-        a_pass.layer,
-        a_pass.colour,
-        a_pass.settings,
-        a_pass.extra,
-        arcs,
-        a_pass.load,
-    )
+    return on_way(a_pass, np.vstack(rows), arcs)
 
 
 def _rows(poses: np.ndarray, arcs) -> list[np.ndarray]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import _core
 from .cell import Cell, Machine
+from .pass_way import on_way
 
 
 def is_similar(machine: Machine | None) -> bool:
@@ -62,14 +63,4 @@ def _mapped(a_pass, machine: Machine | None, to):
     for arc in a_pass.arcs if is_similar(machine) else ():
         centre = to(np.array([[*arc.centre_mm, poses[arc.first, 2]]]), machine)[0, :2]
         arcs.append(_core.Arc(arc.first, arc.last, tuple(centre.tolist()), arc.direction))
-    return _core.Pass(
-        a_pass.origin,
-        to(poses, machine),
-        a_pass.speed_mm_s,
-        a_pass.layer,
-        a_pass.colour,
-        a_pass.settings,
-        a_pass.extra,
-        arcs,
-        a_pass.load,
-    )
+    return on_way(a_pass, to(poses, machine), arcs)

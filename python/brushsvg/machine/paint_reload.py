@@ -14,6 +14,7 @@ from .arc_chords import chords, with_chords
 from .cell import Cell, Station, robot_from_paper
 from .distortion import is_similar
 from .frames import is_upright
+from .pass_way import on_way
 from .posts import POSTS
 
 
@@ -93,17 +94,7 @@ def _from_paper_to_paper(a_pass):
         _core.Arc(arc.first + len(before), arc.last + len(before), arc.centre_mm, arc.direction)
         for arc in a_pass.arcs
     ]
-    return _core.Pass(
-        a_pass.origin,
-        np.vstack([before, poses, after]),
-        a_pass.speed_mm_s,
-        a_pass.layer,
-        a_pass.colour,
-        a_pass.settings,
-        a_pass.extra,
-        arcs,
-        a_pass.load,
-    )
+    return on_way(a_pass, np.vstack([before, poses, after]), arcs)
 
 
 def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
