@@ -18,7 +18,15 @@ from xml.parsers import expat
 import numpy as np
 
 from brushsvg import units
-from brushsvg.drawing.svg import colour, css_cascade, css_selectors, read_svg, transform, viewport
+from brushsvg.drawing.svg import (
+    colour,
+    css_cascade,
+    css_declarations,
+    read_svg,
+    style_sheets,
+    transform,
+    viewport,
+)
 from brushsvg.drawing.svg import shapes as svg_shapes
 from brushsvg.drawing.svg.path_to_cubics import trace
 from brushsvg.drawing.svg.xml import parse_xml
@@ -86,7 +94,7 @@ def _style(random) -> str:
 def cold_ms(work, rounds: int) -> float:
     times = []
     for _ in range(rounds):
-        for remembering in (css_selectors.declarations, colour.parse_colour, units._parts):
+        for remembering in (css_declarations.declarations, colour.parse_colour, units._parts):
             remembering.cache_clear()
         begin = time.perf_counter()
         work()
@@ -96,7 +104,7 @@ def cold_ms(work, rounds: int) -> float:
 
 def styles(root) -> None:
     """The rules, and the style of every element from its parent's."""
-    rules = css_selectors.Rules(root)
+    rules = style_sheets.Rules(root)
     waiting = [(root, css_cascade.INITIAL)]
     while waiting:
         node, parent = waiting.pop()

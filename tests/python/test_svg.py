@@ -14,7 +14,7 @@ from diagnostics import agrees, refused
 from brushsvg.drawing import ReadOptions, read_drawing
 from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.svg.colour import parse_colour
-from brushsvg.drawing.svg.css_selectors import declarations
+from brushsvg.drawing.svg.css_declarations import declarations
 from brushsvg.drawing.svg.path_data import parse_path
 from brushsvg.drawing.svg.path_to_cubics import trace
 from brushsvg.drawing.svg.transform import IDENTITY, multiply, parse_transform

@@ -5,7 +5,7 @@ from diagnostics import agrees, are_told, is_told, refused
 from svg_text import read
 
 from brushsvg import Error
-from brushsvg.drawing.svg import css_selectors
+from brushsvg.drawing.svg import css_selectors, style_sheets
 
 P = '<path id="p" class="a b" d="M0 0H5"/>'
 
@@ -169,6 +169,6 @@ def test_css_nested_too_deeply(body):
 
 
 def test_style_sheets_without_end_are_refused(monkeypatch):
-    monkeypatch.setattr(css_selectors, "TEXT_LIMIT", 1000)
+    monkeypatch.setattr(style_sheets, "TEXT_LIMIT", 1000)
     with refused("css-too-complex 1300 1000"):
         read(f"<style>{'.a{top:1;red}' * 50}</style><style>{'.a{top:1;red}' * 50}</style>{P}")

@@ -7,9 +7,9 @@ from ..design import Design, Notice
 from ..empty_drawing import nothing_to_paint
 from .entity_walk import Walk
 from .file import open_dxf
+from .joining import anew, chained, element_of
 from .linetypes import Dashes
 from .placement import anchored, in_range, with_margin
-from .polylines import anew, chained, element_of
 from .units import unit_of
 
 _FLAT_MM = 1e-3

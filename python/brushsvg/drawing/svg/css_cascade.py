@@ -12,7 +12,7 @@ import tinycss2
 from ...errors import Error, Notice
 from ...units import FONT_PX, NUMBER, length_px
 from .colour import parse_colour
-from .css_selectors import Declaration, declarations
+from .css_declarations import Declaration, declarations
 from .paint_servers import URL
 
 INHERITED = {

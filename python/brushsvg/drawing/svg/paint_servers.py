@@ -9,7 +9,7 @@ from collections.abc import Callable
 from ...errors import Error, Notice
 from ...units import length_px
 from .colour import parse_colour
-from .css_selectors import Declaration, declarations
+from .css_declarations import Declaration, declarations
 
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)

@@ -12,13 +12,13 @@ from ..design import Element, Notice
 from . import shapes
 from .context import Context, Notes, local
 from .css_cascade import INITIAL, Style, cascade, unread_own
-from .css_selectors import Rules
 from .css_transform import ReferenceBox, about, css_transform, individual_transform, origin
 from .element import Painted
 from .layers import layer_names
 from .paint_servers import UNSEEN, Paints
 from .power_stroke import in_effects_of_groups
 from .settings import own_settings
+from .style_sheets import Rules
 from .transform import IDENTITY, Matrix, multiply, parse_transform
 from .viewport import Page, box_of, nested_viewport, overlap
 
