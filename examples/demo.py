@@ -15,7 +15,7 @@ from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.pictures.panels_png import MIDDLE_LINE, Panel, panels_png
-from brushsvg.pipeline import outputs, prediction, preparation, trials
+from brushsvg.pipeline import constant_lag, outputs, prediction, preparation
 
 
 def main(drawing: Path, directory: Path) -> None:
@@ -23,7 +23,7 @@ def main(drawing: Path, directory: Path) -> None:
     ways = ("none", "constant", "closed", "refined")
     works = {how: preparation.prepare(drawing, preparation.Options(compensation=how)) for how in ways}
     work = works["closed"]
-    works["best"] = trials.best_constant(work)
+    works["best"] = constant_lag.best_constant(work)
     marks = {how: prediction.predict(works[how]) for how in works}
     loads = in_loads(work.plan, work.brush, cell)
     walk = preflight.look(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)

@@ -9,7 +9,7 @@ import shapely
 from brushsvg import Error
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.dxf import read_dxf
-from brushsvg.drawing.dxf.library import ezdxf
+from brushsvg.drawing.dxf.ezdxf_import import ezdxf
 
 from ezdxf.addons.drawing import Frontend, RenderContext, config, recorder  # isort: skip  after the library
 

@@ -12,7 +12,7 @@ import dxf_shown
 import pytest
 from dxf_text import drawing, encoded, save_font
 
-from brushsvg.drawing.dxf.library import ezdxf
+from brushsvg.drawing.dxf.ezdxf_import import ezdxf
 
 import ezdxf.addons.drawing.frontend  # isort: skip  after the library
 

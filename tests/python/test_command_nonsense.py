@@ -157,7 +157,7 @@ def test_whatever_is_written_may_have_no_place(desk, capsys, command):
 
 
 def test_no_command_is_forgotten():
-    from brushsvg.cli.arguments import _parser
+    from brushsvg.cli.arguments.parser import _parser
 
     def names(parser) -> set[str]:
         found = set()

@@ -13,7 +13,7 @@ from brushsvg.cli import main
 from brushsvg.evaluation import report
 from brushsvg.machine import writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
-from brushsvg.pipeline import prediction, preparation, trials
+from brushsvg.pipeline import constant_lag, prediction, preparation
 from brushsvg.planning import travel_order
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -33,7 +33,7 @@ def total(work):
 
 
 def test_the_best_constant_lag_is_the_best_of_all(drawing):
-    best = trials.best_constant(preparation.prepare(drawing))
+    best = constant_lag.best_constant(preparation.prepare(drawing))
     assert best.options.compensation == "constant"
     assert 3 < best.options.lag_mm < 12
     assert best.options.lag_mm % 0.25 == 0
@@ -48,7 +48,7 @@ def test_the_best_constant_lag_is_the_best_of_all(drawing):
 
 def test_the_best_constant_lag_of_a_pen_is_none(drawing):
     work = preparation.prepare(drawing, preparation.Options(brush=find_brush("rigid")))
-    assert trials.best_constant(work).options.lag_mm == 0
+    assert constant_lag.best_constant(work).options.lag_mm == 0
 
 
 def test_the_comparison_is_a_table(drawing):

@@ -7,7 +7,7 @@ from diagnostics import agrees, in_json, is_told
 
 from brushsvg import Settings, read_plan
 from brushsvg.cli import commands, main
-from brushsvg.cli.arguments import parse
+from brushsvg.cli.arguments.parser import parse
 from brushsvg.machine.cell_file import cell_names
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"

@@ -9,7 +9,7 @@ from scipy.interpolate import BSpline, CubicSpline
 
 from brushsvg.drawing import READERS, ReadOptions, read_drawing
 from brushsvg.drawing.dxf import read_dxf
-from brushsvg.drawing.dxf.library import ezdxf
+from brushsvg.drawing.dxf.ezdxf_import import ezdxf
 from brushsvg.strokes.extraction import strokes
 
 CONTROL = np.array(

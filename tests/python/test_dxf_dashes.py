@@ -7,7 +7,7 @@ from dxf_text import circle, drawing, encoded, only, read
 
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.dxf import linetypes, read_dxf
-from brushsvg.drawing.dxf.library import ezdxf
+from brushsvg.drawing.dxf.ezdxf_import import ezdxf
 
 PATTERNS = {
     "DASHED": [15.0, 10.0, -5.0],

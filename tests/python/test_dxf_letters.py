@@ -11,7 +11,7 @@ from dxf_text import drawing, encoded, only, read, save_font, text_dxf
 
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.dxf import read_dxf, text_entities
-from brushsvg.drawing.dxf.library import ezdxf
+from brushsvg.drawing.dxf.ezdxf_import import ezdxf
 
 ALIGN = ezdxf.enums.TextEntityAlignment
 FOLDERS = ezdxf.fonts.font_manager.FONT_DIRECTORIES

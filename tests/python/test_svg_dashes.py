@@ -4,9 +4,9 @@ from diagnostics import agrees, are_told, refused
 from scipy.integrate import quad
 from svg_text import lines, read
 
+from brushsvg.drawing.dashes import dashed
 from brushsvg.drawing.design import SubPath
 from brushsvg.drawing.svg import element
-from brushsvg.drawing.svg.dashes import dashed
 from brushsvg.geometry.arc_length import knots, parameters_at
 
 

@@ -76,7 +76,7 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
 
 
 def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
-    from .arguments import parse
+    from .arguments.parser import parse
     from .console import RefusedError, say, say_notice, tell_in_json
 
     file = ""

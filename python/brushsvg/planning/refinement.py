@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
-from .letters import worse
+from .touching_strokes import worse
 
 # Of the brush's greatest half width, missing on the mean of a stroke. At 0.1 of it a bar's middle waves by 0.2 mm to
 # cover more of a shape that is too wide anyway, at 0.2 by 0.5 mm, at 2 it becomes a C. Letters that are too wide at

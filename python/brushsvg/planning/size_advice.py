@@ -1,4 +1,4 @@
-"""Does this brush suit this drawing: other sizes tried on a few strokes, other brushes on all of them."""
+"""Would the drawing be painted better at another size? Some are tried on a few strokes."""
 
 from __future__ import annotations
 
@@ -32,20 +32,6 @@ class Size:
     strokes: int
     what: str = "single strokes"
     reach: tuple[float, float] = (SCALES[0], SCALES[-1])
-
-
-@dataclass(frozen=True)
-class Suit:
-    """One brush and a drawing. overlap: of all that was drawn, strokes that it cannot paint included; worst: the
-    stroke it paints worst, with its overlap; None where it paints none."""
-
-    brush: str
-    overlap: float | None
-    worst: str | None
-    worst_overlap: float | None
-    refused: int
-    strokes: int
-    why: str = ""  # the first stroke that is refused, and why
 
 
 def best_size(strokes, brush, made, quick=None) -> Size:
@@ -136,22 +122,3 @@ def scaled(stroke, factor: float):
     half_width = [(at, half * factor) for at, half in stroke.half_width]
     rings = [ring * factor for ring in stroke.wanted_mm]
     return stroke.replaced(middle_mm=stroke.middle_mm * factor, half_width=half_width, wanted_mm=rings)
-
-
-def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
-    """From the figures of a report; refused: notices of strokes."""
-    known = [row for row in rows if row.overlap is not None]
-    worst = min(known, key=lambda row: row.overlap, default=None)
-    return Suit(
-        brush,
-        overlap,
-        worst and worst.stroke,
-        worst and worst.overlap,
-        len(refused),
-        len(rows) + len(refused),
-        f"{refused[0].where}: {refused[0].told}" if refused else "",
-    )
-
-
-def best_first(suits: list[Suit]) -> list[Suit]:
-    return sorted(suits, key=lambda each: (-(each.overlap or 0.0), each.brush))

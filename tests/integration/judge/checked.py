@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from brushsvg import _core
-from brushsvg.cli.arguments import parse
+from brushsvg.cli.arguments.parser import parse
 from brushsvg.cli.commands import check as command
 from brushsvg.cli.commands import convert_file
 from brushsvg.cli.console import RefusedError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...drawing import READERS
 from . import values
 from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
-from .operands import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, suffix_of
+from .usage_checks import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:

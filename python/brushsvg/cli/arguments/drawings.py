@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...drawing import READERS
 from . import values
 from .flags import add_choices, add_input, add_job, add_layout, add_quiet, plans_and_programs
-from .operands import (
+from .usage_checks import (
     DRAWINGS,
     PHOTOS,
     PICTURES,

@@ -15,7 +15,7 @@ from .flags import (
     add_z_offset,
     programs,
 )
-from .operands import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
+from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
 def add_border(commands) -> None:

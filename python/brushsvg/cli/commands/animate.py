@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ...pipeline import outputs
 from ..console import about
-from .options import settled, typed
-from .outputs import check_places, write
-from .prepare import look, seconds_of
+from ..steps.options import settled, typed
+from ..steps.output_places import check_places, write
+from ..steps.prepared import look, seconds_of
 
 
 def animate_file(args) -> None:

@@ -9,9 +9,9 @@ from ...machine.motion import duration_s
 from ...machine.program import Job
 from ...pipeline import outputs
 from ..console import about
-from .options import settled, typed, warn_of_example
-from .outputs import check_places, suffix_of, write
-from .prepare import look
+from ..steps.options import settled, typed, warn_of_example
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import look
 
 
 def border_file(args) -> None:

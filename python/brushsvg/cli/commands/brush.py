@@ -10,7 +10,7 @@ from ...brush.library import brush_names, find_brush
 from ...errors import Error, Notice
 from ...files import read_bytes
 from ..console import RefusedError, about, tell, warn
-from .outputs import check_places, suffix_of, tell_list, write
+from ..steps.output_places import check_places, suffix_of, tell_list, write
 
 
 def brush_list(_args) -> None:

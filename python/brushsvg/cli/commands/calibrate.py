@@ -8,7 +8,7 @@ from ..._core import remarks, write_brush
 from ...errors import Error
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
-from .outputs import check_places, suffix_of, write
+from ..steps.output_places import check_places, suffix_of, write
 from .scan import read_photographs
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from ...brush.describe import cell_page
 from ...errors import Notice
 from ...machine import cell_check as cell_checks
 from ...machine.cell_file import DEFAULT_CELL, cell_names, find_cell, parse_cell, write_cell
+from ...machine.describe_cell import cell_page
 from ...machine.posts import POSTS
 from ..console import RefusedError, about, tell, warn
-from .outputs import check_places, tell_list, write
+from ..steps.output_places import check_places, tell_list, write
 
 
 def cell_list(_args) -> None:

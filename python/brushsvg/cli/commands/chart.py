@@ -10,9 +10,9 @@ from ...machine.program import Job
 from ...pipeline import preparation
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, tell
-from .options import brush_of, exact_cell, settled, typed, warn_of_example
-from .outputs import check_places, suffix_of, write
-from .prepare import seconds_written
+from ..steps.options import brush_of, exact_cell, settled, typed, warn_of_example
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import seconds_written
 
 
 def chart_file(args) -> None:

@@ -18,9 +18,9 @@ from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
-from .options import brush_of, exact_cell, typed
-from .outputs import check_places, suffix_of, write
-from .prepare import prepare
+from ..steps.options import brush_of, exact_cell, typed
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import prepare
 
 
 def check_file(args) -> None:

@@ -7,9 +7,9 @@ from ...evaluation import report as figures
 from ...files import read_bytes
 from ...pipeline import prediction
 from ..console import RefusedError, about, stage, tell, warn
-from .options import settled, typed
-from .outputs import check_places, suffix_of, write
-from .prepare import prepare
+from ..steps.options import settled, typed
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import prepare
 
 
 def compare_files(args) -> None:

@@ -11,9 +11,9 @@ from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, warn
-from .options import settled, typed, warn_of_example
-from .outputs import check_places, suffix_of, write
-from .prepare import prepare, seconds_written
+from ..steps.options import settled, typed, warn_of_example
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import prepare, seconds_written
 
 
 def convert_file(args) -> None:

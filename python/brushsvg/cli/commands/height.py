@@ -9,8 +9,8 @@ from ...machine import header_lines, writer
 from ...machine.motion import duration_s
 from ...pipeline import preparation
 from ..console import about
-from .options import brush_of, exact_cell, warn_of_example
-from .outputs import check_places, suffix_of, write
+from ..steps.options import brush_of, exact_cell, warn_of_example
+from ..steps.output_places import check_places, suffix_of, write
 
 
 def height_file(args) -> None:

@@ -7,8 +7,8 @@ from ...drawing.layout import arrange
 from ...errors import Error
 from ...strokes.extraction import strokes as strokes_of
 from ..console import about, stage, warn
-from .options import layout_of, reading_of, typed
-from .outputs import check_places, suffix_of, write
+from ..steps.options import layout_of, reading_of, typed
+from ..steps.output_places import check_places, suffix_of, write
 
 
 def import_file(args) -> None:

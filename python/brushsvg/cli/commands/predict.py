@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ...pipeline import outputs
 from ..console import about, say, stage
-from .options import settled, typed
-from .outputs import check_places, suffix_of, write
-from .prepare import look, seconds_of
+from ..steps.options import settled, typed
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import look, seconds_of
 
 
 def predict_file(args) -> None:

@@ -6,12 +6,12 @@ from ...brush.library import brush_names, find_brush
 from ...drawing import read_drawing
 from ...drawing.layout import arrange
 from ...evaluation import report
-from ...pipeline import outputs, preparation, trials
+from ...pipeline import other_brushes, other_sizes, outputs, preparation
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, tell
-from .options import layout_of, options_of, reading_of, settled, typed
-from .outputs import check_places, suffix_of, write
-from .prepare import look
+from ..steps.options import layout_of, options_of, reading_of, settled, typed
+from ..steps.output_places import check_places, suffix_of, write
+from ..steps.prepared import look
 
 
 def report_file(args) -> None:
@@ -23,7 +23,7 @@ def report_file(args) -> None:
     work, marks = looked.work, looked.marks
     with about(args.input):
         stage("trying other sizes")
-        advice = trials.advice(work)
+        advice = other_sizes.advice(work)
         figures = outputs.reported(
             work, marks, work.options.cell, looked.warnings, advice=advice, forbidden=looked.forbidden
         )
@@ -49,6 +49,6 @@ def _all_brushes(args) -> None:
             brushes.append(find_brush(name))
     options = options_of(chosen)
     with about(args.input):
-        suits = trials.suits(args.input, options, brushes, stage)
+        suits = other_brushes.suits(args.input, options, brushes, stage)
         title = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen)).title
         tell(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...files import read_bytes
 from ..console import about, stage, warn
-from .outputs import check_places, write
+from ..steps.output_places import check_places, write
 
 
 def scan_file(args) -> None:

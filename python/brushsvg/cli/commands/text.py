@@ -7,7 +7,7 @@ from pathlib import Path
 from ...errors import Error
 from ...files import read_bytes
 from ..console import about, stage, warn
-from .outputs import check_places, write
+from ..steps.output_places import check_places, write
 
 _INKSCAPES = Path("/usr/share/inkscape/extensions/svg_fonts")
 

@@ -7,8 +7,8 @@ from ..design import Design, Notice
 from ..empty_drawing import nothing_to_paint
 from .entity_walk import Walk
 from .file import open_dxf
-from .joining import anew, chained, element_of
 from .linetypes import Dashes
+from .pieces_to_elements import anew, chained, element_of
 from .placement import anchored, in_range, with_margin
 from .units import unit_of
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geometry.arc_to_cubics import arc_count
-from .library import ezdxf
+from .ezdxf_import import ezdxf
 from .splines import b_spline, interpolated, joined
 
 FILLED = frozenset(("HATCH", "MPOLYGON", "SOLID", "TRACE"))

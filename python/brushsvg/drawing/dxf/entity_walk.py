@@ -15,10 +15,10 @@ from ..design import Notice
 from ..svg.path_to_cubics import LARGEST_MM
 from . import entity_curves as dxf_curves
 from .entity_curves import Curve
+from .ezdxf_import import ezdxf
 from .file import not_read, reason, shown
 from .fonts import NoFontError
-from .library import ezdxf
-from .lineweights import Pen, Pens
+from .pens import Pen, Pens
 from .text_entities import Letters
 
 _TOLERANCE_MM = 1e-4

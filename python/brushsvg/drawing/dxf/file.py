@@ -6,7 +6,7 @@ import io
 
 from ...errors import Error
 from ..design import Notice
-from .library import ezdxf
+from .ezdxf_import import ezdxf
 from .tag_filter import Entities
 
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"

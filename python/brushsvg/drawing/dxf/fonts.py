@@ -9,8 +9,8 @@ from functools import cached_property
 from itertools import islice
 from pathlib import Path, PureWindowsPath
 
+from .ezdxf_import import ezdxf
 from .file import shown
-from .library import ezdxf
 
 _fonts = ezdxf.fonts.fonts
 _found = ezdxf.fonts.font_manager

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...errors import Error
 from ...geometry.arc_length import knots
+from ..dashes import dashed
 from ..design import Element, Notice, SubPath
-from ..svg.dashes import dashed
-from .lineweights import Pen
+from .pens import Pen
 
 _MOST_DASHES = 100_000
 _MEETS_MM = 1e-6  # what rounding leaves between the end of a line and that of its last dash

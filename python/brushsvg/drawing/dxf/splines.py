@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .library import ezdxf
+from .ezdxf_import import ezdxf
 
 _LARGEST_DEGREE = 32  # CAD programs stop at 25; the work grows with its square
 _MOST_FIT_POINTS = 2000  # ezdxf solves a full system of equations for them

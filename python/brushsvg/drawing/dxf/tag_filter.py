@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import BinaryIO
 
-from .library import ezdxf
-from .markers import MARKED, SUBCLASS, Tag, is_marked, with_markers
+from .ezdxf_import import ezdxf
+from .subclass_markers import MARKED, SUBCLASS, Tag, is_marked, with_markers
 
 _R12 = "ARC ATTDEF ATTRIB BLOCK CIRCLE DIMENSION ENDBLK INSERT LINE POINT POLYLINE SEQEND SOLID TEXT TRACE VERTEX"
 _OLD = frozenset([*_R12.encode().split(), b"3DFACE"])

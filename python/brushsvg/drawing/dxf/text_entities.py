@@ -11,9 +11,9 @@ import numpy as np
 from ...errors import Error
 from ..design import Notice
 from .entity_curves import Curve
+from .ezdxf_import import ezdxf
 from .file import shown
 from .fonts import Font, Fonts
-from .library import ezdxf
 
 _tools, _boxes = ezdxf.tools.text, ezdxf.tools.text_layout
 

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from functools import cache
 from operator import itemgetter
 
-import tinycss2
-
-from ...errors import Error, Notice
-from ...units import FONT_PX, NUMBER, length_px
-from .colour import parse_colour
+from ...errors import Notice
+from ...units import FONT_PX
 from .css_declarations import Declaration, declarations
-from .paint_servers import URL
+from .css_values import computed, path_text, problem_of, substituted
 
 INHERITED = {
     "font-size": f"{FONT_PX:g}",  # in px
@@ -63,21 +58,7 @@ _PREFIXED = frozenset(
 )
 _PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)  # as attributes
 _READ = frozenset((*INHERITED, *OWN)) | _GEOMETRY
-_LENGTHS = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
-_OPACITIES = frozenset(("opacity", "stroke-opacity", "fill-opacity"))
-_SHARE = re.compile(rf"{NUMBER}%?")
 MARKERS = ("marker-start", "marker-mid", "marker-end")
-_OF_FONT = re.compile(rf"({NUMBER})(r?em|ex)\b", re.IGNORECASE)
-_FONT_SIZES = {
-    "xx-small": 9.0,
-    "x-small": 10.0,
-    "small": 13.0,
-    "medium": 16.0,
-    "large": 18.0,
-    "x-large": 24.0,
-    "xx-large": 32.0,
-}
-_LONGEST_VALUE = 10_000  # of custom properties put into each other
 
 
 @dataclass(frozen=True)
@@ -124,7 +105,7 @@ def cascade(
         for text in reversed(values):  # the strongest that is valid
             value = text.strip()
             if "var(" in value.lower():
-                value, problem = _substituted(value, inherited)
+                value, problem = substituted(value, inherited)
                 if problem:  # CSS does not fall back to a weaker declaration here
                     sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
                     if name != "font-size":
@@ -132,7 +113,7 @@ def cascade(
                         problems.append(Notice("", sentence, is_damage, code="css-invalid", about=name))
                     break
             if name == "d":
-                if (text := _path_text(value)) is not None:
+                if (text := path_text(value)) is not None:
                     geometry[name] = text
                     break
                 continue
@@ -150,110 +131,12 @@ def cascade(
                 elif keyword == "inherit":
                     target[name] = (parent.inherited if target is inherited else parent.own)[name]
                 break
-            problem = _problem(name, value, diagonal)
+            problem = problem_of(name, value, diagonal)
             if problem is None:
-                target[name] = _computed(name, value, inherited)
+                target[name] = computed(name, value, inherited)
                 break
             problems.append(problem)
     return Style(inherited, own, geometry), problems
-
-
-def _problem(name: str, value: str, diagonal: float) -> Notice | None:
-    """Why a value is not one of its property, as far as it matters."""
-    if name in ("stroke", "fill", "color"):
-        if not URL.match(value) and parse_colour(value) is None:
-            return Notice(
-                "",
-                f"{name} {value[:40]!r} is not a colour: it counts as not given",
-                code="colour-invalid",
-                about=name,
-            )
-    elif name == "stroke-width":
-        try:
-            if length_px(value, diagonal) < 0:
-                raise Error(f"{value[:24]!r} is negative", code="out-of-range")
-        except Error as error:
-            return Notice(
-                "", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid"
-            )
-    elif name in _OPACITIES and not _SHARE.fullmatch(value):
-        return Notice(
-            "",
-            f"{name} {value[:40]!r} is not a number: it counts as not given",
-            code="css-invalid",
-            about=name,
-        )
-    return None
-
-
-def _computed(name: str, value: str, inherited: dict[str, str]) -> str:
-    if name in ("stroke", "fill"):
-        return value if URL.match(value) else parse_colour(value)
-    if name == "color":
-        colour = None if URL.match(value) else parse_colour(value)
-        return inherited["color"] if colour in (None, "none", "currentcolor") else colour
-    if name in _OPACITIES:
-        return f"{min(1.0, max(0.0, length_px(value, 1.0))):.15g}"
-    if name == "visibility":
-        return value.lower() if value.lower() in ("visible", "hidden", "collapse") else inherited[name]
-    if name == "fill-rule":
-        return "evenodd" if value.lower() == "evenodd" else "nonzero"
-    if name == "font-size":
-        return _font_size(value.lower(), inherited["font-size"])
-    if name in _LENGTHS:  # what is said in em is handed down in px
-        return _OF_FONT.sub(
-            lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
-        )
-    return value if name in MARKERS else value.lower()
-
-
-def _font_size(value: str, parents: str) -> str:
-    em_px = float(parents)
-    if value in ("larger", "smaller"):
-        return f"{em_px * (1.2 if value == 'larger' else 1 / 1.2):.15g}"
-    try:
-        size_px = _FONT_SIZES[value] if value in _FONT_SIZES else length_px(value, em_px, em_px)
-    except Error:
-        return parents
-    return f"{size_px:.15g}" if 0 <= size_px <= 1e6 else parents
-
-
-def _substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
-    """A value with its var(--name, fallback) replaced, and why that leads nowhere, "" if it does not."""
-    problem = ""
-
-    @cache  # or variables that name two others each would take for ever
-    def at(depth: int, value: str) -> str:
-        nonlocal problem
-        parts = []
-        for token in tinycss2.parse_component_value_list(value):
-            if token.type != "function" or token.lower_name != "var":
-                parts.append(tinycss2.serialize([token]))
-                continue
-            name, comma, fallback = tinycss2.serialize(token.arguments).partition(",")
-            found = inherited.get(name.strip(), fallback.strip() if comma else None)
-            if found is None:
-                problem = problem or f"names {name.strip()[:40]}, which nothing says"
-            elif depth > 20:
-                problem = problem or f"leads through {name.strip()[:40]} in a circle, or too far"
-            elif len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
-                problem = problem or f"grows beyond {_LONGEST_VALUE} characters"
-            else:
-                parts.append(at(depth + 1, found) if "var(" in found.lower() else found)
-        return "".join(parts).strip()
-
-    return at(0, value), problem
-
-
-def _path_text(value: str) -> str | None:
-    """The text in d: path("..."), "" for none; None if it is neither."""
-    if value.lower() == "none":
-        return ""
-    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
-    if others or token.type != "function" or token.lower_name != "path":
-        return None
-    told = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
-    return told[0].value if len(told) == 1 and told[0].type == "string" else None
 
 
 def unread_own(own: dict[str, str]) -> list[tuple[str, str]]:

@@ -182,7 +182,7 @@ class Painted:
         properties = context.style.inherited
         if properties["stroke-dasharray"] == "none" or not subpaths:
             return subpaths
-        from .dashes import dashed
+        from ..dashes import dashed
 
         words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:

@@ -9,7 +9,7 @@ import pytest
 
 from brushsvg import Stroke, _core, find_brush
 from brushsvg.cli import main
-from brushsvg.pipeline import prediction, preparation, trials
+from brushsvg.pipeline import other_sizes, prediction, preparation
 from brushsvg.planning import size_advice
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">
@@ -77,7 +77,7 @@ def said(tmp_path, text, **options):
     path.write_text(text)
     work = preparation.prepare(path, preparation.Options(**options), partly=True)
     marks = prediction.predict(work, outlines=False)
-    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, trials.advice(work)
+    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, other_sizes.advice(work)
 
 
 DABS = "".join(f'<path d="M{20 * k} 50h0" stroke-width="{w}"/>' for k, w in enumerate((1, 2, 3, 4, 6, 8), 1))

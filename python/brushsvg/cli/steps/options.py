@@ -14,7 +14,7 @@ from ...machine.cell_file import cell_names, find_cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ...pipeline import preparation
 from ..console import about, warn
-from .outputs import suffix_of
+from .output_places import suffix_of
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from itertools import takewhile
 
-from .library import ezdxf
+from .ezdxf_import import ezdxf
 
 SUBCLASS = {
     b"HATCH": b"AcDbHatch",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from .ezdxf_import import ezdxf
 from .file import shown
-from .library import ezdxf
 
 _BYBLOCK, _BYLAYER = 0, 256  # as colours
 _WEIGHT_BYLAYER, _WEIGHT_BYBLOCK = -1, -2

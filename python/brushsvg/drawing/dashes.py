@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...errors import Error
-from ...geometry.arc_length import knots, parameters_at
-from ...geometry.cubics import split
-from ..design import SubPath
+from ..errors import Error
+from ..geometry.arc_length import knots, parameters_at
+from ..geometry.cubics import split
+from .design import SubPath
 
 _ROUNDING = 1e-9  # of a length: a dash that begins nearer to the end would be a dab that nobody drew
 

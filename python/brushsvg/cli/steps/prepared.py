@@ -14,7 +14,7 @@ from ...machine.program import Walked
 from ...pipeline import prediction, preparation
 from ..console import about, stage, warn
 from .options import Choices, options_of
-from .outputs import suffix_of
+from .output_places import suffix_of
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
 

@@ -1,0 +1,68 @@
+"""What was typed, parsed and checked. Nothing heavy is imported: a typing error is told at once."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+
+from ..console import say, tell
+from . import brushes, drawings, machines
+
+
+def parse(argv: list[str] | None = None) -> argparse.Namespace:
+    """The choices; `run` names a function of `commands`. SystemExit on --help, --version and wrong usage."""
+    args = _parser().parse_args(argv)
+    if "check" in args:
+        args.check(args)
+    return args
+
+
+class _Parser(argparse.ArgumentParser):
+    def __init__(self, **settings):
+        # A prefix of a flag is no flag: it would change its meaning as flags are added.
+        super().__init__(allow_abbrev=False, **settings)
+
+    def print_help(self, file=None) -> None:
+        tell(self.format_help())
+
+    def error(self, message: str):
+        say(f"{message} (see {self.prog} --help)")
+        raise SystemExit(2)
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser, *_):
+        from ... import __version__
+
+        tell(f"brushsvg {__version__}\n")
+        parser.exit()
+
+
+@functools.cache  # the flags of all commands take longer than what a short one does
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="brushsvg", description="Vector lettering to brush strokes that a robot can paint.")
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    parser.add_argument(
+        "--messages",
+        choices=("text", "json"),
+        default="text",
+        help="warnings and refusals as lines of text, or of JSON with their codes; default: text",
+    )
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    drawings.add_convert(commands)
+    drawings.add_predict(commands)
+    drawings.add_report(commands)
+    drawings.add_animate(commands)
+    drawings.add_import(commands)
+    drawings.add_text(commands)
+    machines.add_border(commands)
+    machines.add_height(commands)
+    machines.add_check(commands)
+    machines.add_cell(commands)
+    brushes.add_chart(commands)
+    brushes.add_scan(commands)
+    brushes.add_calibrate(commands)
+    brushes.add_brush(commands)
+    drawings.add_compare(commands)
+    machines.add_install_plugin(commands)
+    return parser
