@@ -14,10 +14,10 @@
 #include "closed_form.hpp"
 #include "dot.hpp"
 #include "middle_line.hpp"
+#include "refuse_unusable.hpp"
 #include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
 #include "tolerance.hpp"
-#include "usable.hpp"
 
 namespace brushsvg {
 namespace {

@@ -8,7 +8,7 @@
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
 #include "landing.hpp"
-#include "usable.hpp"
+#include "refuse_unusable.hpp"
 
 namespace brushsvg {
 namespace {

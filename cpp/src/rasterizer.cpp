@@ -8,7 +8,7 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
-#include "usable.hpp"
+#include "refuse_unusable.hpp"
 
 namespace brushsvg {
 namespace {

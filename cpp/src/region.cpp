@@ -13,7 +13,7 @@
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "meanwhile.hpp"
-#include "nearest.hpp"
+#include "nearest_on_polyline.hpp"
 
 namespace brushsvg {
 namespace {

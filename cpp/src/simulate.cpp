@@ -8,8 +8,8 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "pass_walk.hpp"
+#include "refuse_unusable.hpp"
 #include "tolerance.hpp"
-#include "usable.hpp"
 
 namespace brushsvg {
 namespace {

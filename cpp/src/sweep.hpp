@@ -6,7 +6,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/marks.hpp"
-#include "usable.hpp"
+#include "refuse_unusable.hpp"
 
 namespace brushsvg {
 

@@ -9,7 +9,7 @@
 #include "brushsvg/lag.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
-#include "nearest.hpp"
+#include "nearest_on_polyline.hpp"
 #include "tolerance.hpp"
 #include "traced_pass.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "brushsvg/simulate.hpp"
 #include "dot.hpp"
-#include "nearest.hpp"
+#include "nearest_on_polyline.hpp"
 #include "stroke_ends.hpp"
 #include "tolerance.hpp"
 

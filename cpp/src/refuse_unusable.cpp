@@ -1,4 +1,4 @@
-#include "usable.hpp"
+#include "refuse_unusable.hpp"
 
 #include <algorithm>
 #include <cmath>
