@@ -2,9 +2,12 @@
 small steps by another simulator, with faults of paint and sheet, photographed by a camera of its own kind."""
 
 import json
+from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
+import oracle
 import painter
 import photograph
 import pytest
@@ -20,8 +23,12 @@ from brushsvg import find_brush  # noqa: E402
 from brushsvg.brush.library import save_brush  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
+from brushsvg.calibration.from_marks import calibrate_marks  # noqa: E402
 from brushsvg.calibration.from_widths import new_brush  # noqa: E402
+from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.pipeline.preparation import Options, prepare  # noqa: E402
 
+WORD = Path(__file__).parents[2] / "examples" / "vincent.svg"
 A5 = (148.0, 210.0)
 DEEPEST = 8.0
 LAG, GAP = np.array([2.2, 1.5, -0.06]), np.array([0.0, 0.55])
@@ -97,11 +104,11 @@ def photographed(name):
     return photo_of(painted(SHAPES[name]))
 
 
-def calibrated(folder, capsys, photo, *words):
+def calibrated(folder, capsys, photo, *words, before=None):
     """Status, report, what was told, and the brush's path."""
     (folder / "photo.jpg").write_bytes(photo)
     (folder / "dabs.json").write_text(write_chart(printed()))
-    save_brush(assumed(), folder / "before.json")
+    save_brush(before or assumed(), folder / "before.json")
     files = [str(folder / name) for name in ("photo.jpg", "dabs.json", "before.json", "own.json")]
     words = ["calibrate", files[0], "--chart", files[1], "--brush", files[2], "-o", files[3], *words]
     return *in_json(capsys, *words), folder / "own.json"
@@ -119,7 +126,9 @@ def wide_at(outline, x):
     return shapely.Polygon(outline).intersection(across).length
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize(
+    "name", ["lopsided", *(pytest.param(name, marks=pytest.mark.slow) for name in ("ellipse", "egg"))]
+)
 def test_outlines_and_widths_come_back(name, tmp_path, capsys):
     """Of drops that were assumed with the true widths, outlines lie 0.2 to 0.7 mm off."""
     status, report, told, path = calibrated(tmp_path, capsys, photographed(name))
@@ -141,3 +150,68 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
     assert "brush before" in report
     about = json.loads(path.read_text())["footprints"]
     assert about["assumed"] is False and 0.001 < about["standard_error_mm"] < 0.1
+
+
+def painted_word(plan, shape):
+    """What the true brush paints of each stroke."""
+    strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in plan.passes]
+    return [whole(region) for region in painter.swept(truth(shape), strokes, 0.0)]
+
+
+def whole(region):
+    """Without what is bare inside of it."""
+    largest = max(getattr(region, "geoms", [region]), key=lambda part: part.area)
+    return shapely.Polygon(largest.exterior)
+
+
+def predicted_overlap(plan, brush, painted):
+    """Mean over strokes."""
+    marks = core.simulate(plan, brush)
+    core.trace_outlines(marks, brush)
+    told = [whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes]
+    both = zip(told, painted, strict=True)
+    return np.mean([one.intersection(other).area / one.union(other).area for one, other in both])
+
+
+def with_lag(brush, coefficients):
+    other = core.read_brush(core.write_brush(brush).encode())
+    other.lag = core.Profile(list(coefficients))
+    return other
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "drops", "own_outlines"),
+    [("ellipse", 0.96, 0.985), ("egg", 0.96, 0.985), ("lopsided", 0.8, 0.97)],
+)
+def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
+    """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no farther. How
+    far a lopsided dab lies aside is known to 0.03 mm."""
+    _, _, _, path = calibrated(tmp_path, capsys, photographed(name))
+    before, own = with_lag(assumed(), LAG), with_lag(find_brush(path), LAG)
+    plan = prepare(WORD, Options(brush=before)).plan
+    painted = painted_word(plan, SHAPES[name])
+    was, now = (predicted_overlap(plan, brush, painted) for brush in (before, own))
+    assert was < drops < own_outlines < now, (was, now)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "fitted"), [("egg", 0.97), ("lopsided", 0.8)])
+def test_from_strokes_and_dabs_to_a_word(name, fitted, tmp_path, capsys):
+    """The whole way: lag, and eggs for outlines, from a chart of strokes; then the brush's own outlines from dabs."""
+    made = chart(assumed(), A5, "few")
+    strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in made.plan.passes]
+    faults = replace(FAULTS, height=0.05)
+    sheet = painter.paint(np.random.default_rng(8), truth(SHAPES[name]), strokes, faults)
+    rows = [
+        {"stroke": stroke, "outline_mm": [ring.tolist() for ring in rings]}
+        for stroke, _, rings in sheet.marks
+    ]
+    marks = read_painted(json.loads(core.write_plan(made.plan)), rows, None)
+    before = calibrate_marks(marks, "before", leave_out_strays=True).brush
+    status, _, told, path = calibrated(tmp_path, capsys, photographed(name), before=before)
+    assert status == 0, told
+    plan = prepare(WORD, Options(brush=before)).plan
+    painted = painted_word(plan, SHAPES[name])
+    was, now = (predicted_overlap(plan, brush, painted) for brush in (before, find_brush(path)))
+    assert was < fitted < now, (was, now)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import cv2
@@ -22,6 +23,9 @@ UNLIKE, UNLIKE_MM = (
 )  # times the usual distance from the others of its depth, and at least so far: no repeat
 ASIDE, ASIDE_MM = 6.0, 0.6  # the same of its place
 LEAST_LEFT = 2  # dabs of a depth: one alone cannot be told from a bad one
+# times what chance does to sides that are alike: less, and the outline is the mean of both sides, amid the axis. Sides
+# that differ by chance would push every stroke aside
+LOPSIDED = 3.0
 # rms over the outline, of dabs of one heading against all: more, and the shape does not turn with the brush
 MOST_TURNED_MM = 0.25
 SMOOTHED_MM = 0.05  # that smoothing moves a point at most; and by no more, rms, than repeats leave open
@@ -68,12 +72,14 @@ class Shape:
 
 @dataclass(frozen=True)
 class Outlines:
-    """shift_mm, turn_rad: how the sheet lay; remarks: dabs that were left out, and why."""
+    """shift_mm, turn_rad: how the sheet lay amid the dabs; turned_mm: by how much dabs of one heading differ;
+    is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
 
     shapes: tuple[Shape, ...]
     shift_mm: np.ndarray
     turn_rad: float
     turned_mm: float
+    is_even: bool
     remarks: tuple[Notice, ...]
 
 
@@ -87,18 +93,20 @@ def outlines_of(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
         remarks += [bad] if bad else []
         sound += [] if bad else [dab]
     _refuse_open(depths, sound, remarks)
-    shift, turn, sound = _placed(sound, remarks)
+    sheet, sound = _placed(sound, remarks)
     _refuse_open(depths, sound, remarks)
-    seen = [_seen_from_patch(dab, shift, turn) for dab in sound]
-    across = _across(seen)
-    shapes = [
-        _Depth(depth, [each for each in seen if each.dab.depth_mm == depth], across(depth))
-        for depth in depths
-    ]
+    seen = [_seen_from_patch(dab, sheet) for dab in sound]
+    shapes = _by_depth(seen, lambda depth: 0.0)
     usual = float(np.median(np.concatenate([shape.distances_mm() for shape in shapes])))
     for shape in shapes:
         remarks += shape.without_strangers(max(UNLIKE * usual, UNLIKE_MM))
-    _refuse_open(depths, [seen.dab for shape in shapes for seen in shape.seen], remarks)
+    left = {each.dab.name for shape in shapes for each in shape.seen}
+    seen = [each for each in seen if each.dab.name in left]
+    _refuse_open(depths, [each.dab for each in seen], remarks)
+    across, beyond_chance = _across(seen)
+    sides = float(np.sqrt(np.mean([shape.lopsided() ** 2 for shape in shapes])))
+    is_even = max(beyond_chance, sides) < LOPSIDED
+    shapes = _by_depth(seen, (lambda depth: 0.0) if is_even else across)
     turned = _turned_mm(shapes)
     if turned > MOST_TURNED_MM:
         raise Error(
@@ -109,8 +117,8 @@ def outlines_of(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
             turned,
             code="dabs-turned",
         )
-    finished = tuple(shape.finished(slid_mm(shape.seen[0].dab)) for shape in shapes)
-    return Outlines(finished, shift, turn, turned, tuple(remarks))
+    finished = tuple(shape.finished(slid_mm(shape.seen[0].dab), is_even) for shape in shapes)
+    return Outlines(finished, sheet.shift_mm, sheet.turn_rad, turned, is_even, tuple(remarks))
 
 
 def _bad(dab: Dab, joined: set[str]) -> Notice | None:
@@ -175,7 +183,19 @@ def _middle(ring: np.ndarray) -> np.ndarray:
     return (ring + after).T @ cross / (3 * cross.sum())
 
 
-def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[np.ndarray, float, list[Dab]]:
+@dataclass(frozen=True)
+class _Sheet:
+    """Shifted, and turned about its middle."""
+
+    shift_mm: np.ndarray
+    turn_rad: float
+    middle_mm: np.ndarray
+
+    def undone(self, points: np.ndarray) -> np.ndarray:
+        return (points - self.shift_mm - self.middle_mm) @ _rotation(-self.turn_rad) + self.middle_mm
+
+
+def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
     """Shift and turn of the sheet by all middles, of which those of a depth lie alike before and beside the place of
     each dab; and the dabs without those that lie elsewhere."""
     while True:
@@ -196,27 +216,41 @@ def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[np.ndarray, float, 
         off = np.hypot(*(wanted - columns @ answer).reshape(-1, 2).T)
         worst = int(off.argmax())
         if off[worst] <= max(ASIDE * float(np.median(off)), ASIDE_MM):
-            # the shift at the sheet's corner, as the turn counts from there
-            shift = answer[:2] - _rotation(answer[2])[0, 1] * np.array([-1, 1]) * place.mean(axis=0)[::-1]
-            return shift, float(answer[2]), dabs
+            return _Sheet(answer[:2], float(answer[2]), place.mean(axis=0)), dabs
         sentence = f"it lies {off[worst]:.1f} mm from where the others say it should: left out"
         remarks.append(Notice(dabs[worst].name, sentence, code="mark-astray"))
         dabs = dabs[:worst] + dabs[worst + 1 :]
         if {dab.depth_mm for dab in dabs} != set(depths):
-            return np.zeros(2), 0.0, dabs
+            return _Sheet(np.zeros(2), 0.0, np.zeros(2)), dabs
 
 
-def _seen_from_patch(dab: Dab, shift: np.ndarray, turn: float) -> Seen:
-    ring = (_close(_outer(dab)) - shift) @ _rotation(-turn)
+def _seen_from_patch(dab: Dab, sheet: _Sheet) -> Seen:
+    ring = sheet.undone(_close(_outer(dab)))
     return Seen(dab, (ring - dab.place_mm) @ _rotation(-dab.heading_rad), np.zeros(2))
 
 
-def _across(seen: list[Seen]):
-    """How far beside the axis the middle of a dab lies, over depth: single dabs lie aside by more than that."""
+def _across(seen: list[Seen]) -> tuple[Callable[[float], float], float]:
+    """How far beside the axis the middle of a dab lies, over depth: single dabs lie aside by more than that. And how
+    many times as far as by chance."""
     depths = np.array([each.dab.depth_mm for each in seen])
     beside = np.array([_middle(each.outline_mm)[1] for each in seen])
-    law = np.linalg.lstsq(np.column_stack([depths, depths**2]), beside, rcond=None)[0]
-    return lambda depth: float(law @ [depth, depth**2])
+    wide = np.array([np.ptp(each.outline_mm[:, 1]) for each in seen])
+    usual = {depth: float(wide[depths == depth].mean()) for depth in depths.tolist()}
+    columns = np.array(
+        [usual[depth] for depth in depths.tolist()]
+    )  # a shape that grows is as lopsided as before
+    share = float(columns @ beside / (columns @ columns))
+    chance = np.sum((beside - share * columns) ** 2) / max(1, len(seen) - 1)
+    times = abs(share) * np.sqrt(columns @ columns / max(chance, 1e-12))
+    return lambda depth: share * usual[depth], float(times)
+
+
+def _by_depth(seen: list[Seen], across) -> list[_Depth]:
+    depths = sorted({each.dab.depth_mm for each in seen})
+    return [
+        _Depth(depth, [each for each in seen if each.dab.depth_mm == depth], across(depth))
+        for depth in depths
+    ]
 
 
 class _Depth:
@@ -285,8 +319,17 @@ class _Depth:
         all_ = self.reach.mean(axis=0)
         return {h: self._mm(self.reach[heading == h].mean(axis=0) - all_) for h in np.unique(heading)}
 
-    def finished(self, slid_mm: float) -> Shape:
+    def lopsided(self) -> float:
+        """By how much its sides differ, times what chance does to the mean of so many dabs."""
+        apart = self._mm(self.reach - _mirrored(self.reach))
+        chance = np.mean(apart.var(axis=0, ddof=1)) / len(apart)
+        return float(np.sqrt(np.mean(apart.mean(axis=0) ** 2) / max(chance, 1e-12)))
+
+    def finished(self, slid_mm: float, is_even: bool) -> Shape:
+        """is_even: both sides are alike."""
         mean = self.reach.mean(axis=0)
+        if is_even:
+            mean = (mean + _mirrored(mean)) / 2
         off = self._mm(self.reach - mean)
         repeat = float(np.sqrt(np.sum(off**2) / max(1, (len(off) - 1) * VERTICES)))
         even = _smooth(mean, np.hypot(*self.rays.T), repeat / len(off) ** 0.5)
@@ -296,6 +339,11 @@ class _Depth:
         outline = points - tip
         outline[0] = 0.0
         return Shape(self.depth, outline, float(-tip[0]), tuple(self.seen), repeat)
+
+
+def _mirrored(reach: np.ndarray) -> np.ndarray:
+    """Of rays (..., n) from the tip on around, those on the other side of the axis."""
+    return np.roll(reach[..., ::-1], 1, axis=-1)
 
 
 def _turned_mm(shapes: list[_Depth]) -> float:

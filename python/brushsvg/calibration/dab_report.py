@@ -43,8 +43,11 @@ def report(made) -> str:
     lines += ["  +-: half the 95 % confidence interval of the law"]
     if made.edge_mm > 0:
         lines[-1] += f"; in it that all edges may lie {made.edge_mm:.2f} mm off together"
-    lines += [f"outlines are smoothed by {SMOOTHED_MM:g} mm at most", ""]
-    lines += [_hidden(hidden)] if (hidden := _hidden_fronts(shapes)) else []
+    sides = (
+        "both sides alike" if made.outlines.is_even else "one side larger than the other, by more than chance"
+    )
+    lines += [f"outlines: {sides}; smoothed by {SMOOTHED_MM:g} mm at most", ""]
+    lines += [_hidden(hidden)] if (hidden := _hidden_fronts(brush)) else []
     return "\n".join([*lines, *(text.format(before=made.before.name) for text in NOT_SAID), ""])
 
 
@@ -55,9 +58,10 @@ def _cell(value: float, band, k: int) -> str:
     return f"{value:.2f}" + (f" +- {band[0][k]:.2f}" if band else "")
 
 
-def _hidden_fronts(shapes: tuple[Shape, ...]) -> list[float]:
+def _hidden_fronts(brush: _core.Brush) -> list[float]:
     """Depths at which what lies ahead may have been touched before the brush was so deep."""
-    fronts = [float(shape.outline_mm[:, 0].max()) - shape.tip_gap_mm for shape in shapes]
+    shapes = brush.footprints.dragged
+    fronts = [float(shape.outline_mm[:, 0].max()) - brush.tip_gap(shape.depth_mm) for shape in shapes]
     return [shape.depth_mm for k, shape in enumerate(shapes) if k and fronts[k] < max(fronts[:k]) + HIDDEN_MM]
 
 

@@ -14,7 +14,10 @@ from ..errors import Error, Notice
 from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
 from .from_widths import need_fits
 
-CLOSE_MM = 0.03  # a law that stays so near to the mean of each depth bends enough
+CLOSE_MM, CHANCE = (
+    0.03,
+    2.0,
+)  # a law bends enough that lies so near to the mean of each depth, or so many errors of it
 AGREE_MM = 0.4  # farther from an outline, and the brush would be refused
 MOST_TERMS = 5
 BROAD = 0.85  # of the greatest width: the part by which dabs are compared
@@ -147,7 +150,11 @@ def _top(outline: np.ndarray) -> float:
 
 def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
     """The law with the fewest terms that runs near the mean of each depth; terms: as many."""
-    depths = np.unique(values[:, 0])
+    depths, counts = np.unique(values[:, 0], return_counts=True)
+    means = np.array([values[values[:, 0] == depth, 1].mean() for depth in depths])
+    spread = values[:, 1] - means[np.searchsorted(depths, values[:, 0])]
+    error = np.sqrt(np.sum(spread**2) / max(1, len(values) - len(depths)) / counts)
+    enough = np.maximum(CLOSE_MM, CHANCE * error)
     most = min(MOST_TERMS, len(depths))
     for count in [terms] if terms else range(1, most + 1):
         shape = _core.LawShape(
@@ -160,7 +167,7 @@ def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
         fit = _core.fit_law(values[:, 0].tolist(), values[:, 1].tolist(), shape)
         off = [float(np.mean(np.array(fit.residual_mm)[values[:, 0] == depth])) for depth in depths]
         worst = int(np.argmax(np.abs(off)))
-        if abs(off[worst]) <= CLOSE_MM:
+        if (np.abs(off) <= enough).all():
             break
     if abs(off[worst]) > AGREE_MM:
         raise Error(
