@@ -26,6 +26,7 @@ from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.from_marks import calibrate_marks  # noqa: E402
 from brushsvg.calibration.from_widths import new_brush  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.cli import main  # noqa: E402
 from brushsvg.pipeline.preparation import Options, prepare  # noqa: E402
 
 WORD = Path(__file__).parents[2] / "examples" / "vincent.svg"
@@ -215,3 +216,26 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, tmp_path, capsys):
     painted = painted_word(plan, SHAPES[name])
     was, now = (predicted_overlap(plan, brush, painted) for brush in (before, find_brush(path)))
     assert was < fitted < now, (was, now)
+
+
+def test_the_same_from_below_through_glass(tmp_path, capsys):
+    """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was told."""
+    photo = photo_of(painted(lopsided), mirrored=True)
+    status, _, told, path = calibrated(tmp_path, capsys, photo, "--mirrored")
+    assert status == 0, told
+    above = tmp_path / "above"
+    above.mkdir()
+    *_, other = calibrated(above, capsys, photographed("lopsided"))
+    pairs = zip(find_brush(path).footprints.dragged, find_brush(other).footprints.dragged, strict=True)
+    assert max(outline_off(one.outline_mm, two.outline_mm).max() for one, two in pairs) < 0.03
+    for picture, words in ((photo, ()), (photographed("lopsided"), ("--mirrored",))):
+        status, _, told, _ = calibrated(tmp_path, capsys, picture, *words)
+        assert status == 1 and told[-1][1].code == "photo-mirrored", told
+
+
+def test_a_chart_of_dabs_needs_the_brush_whose_lag_is_known(tmp_path, capsys):
+    (tmp_path / "photo.jpg").write_bytes(photographed("lopsided"))
+    (tmp_path / "dabs.json").write_text(write_chart(printed()))
+    files = [str(tmp_path / name) for name in ("photo.jpg", "dabs.json", "own.json")]
+    assert main(["calibrate", files[0], "--chart", files[1], "-o", files[2]]) == 2
+    assert "--brush" in capsys.readouterr().err and not (tmp_path / "own.json").exists()

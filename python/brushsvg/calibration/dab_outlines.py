@@ -17,10 +17,8 @@ VERTICES = 96  # of an outline; more cost time in every sweep
 HOLLOW = 0.03  # share of a dab that is bare inside of its edge: more, and its middle has no paint
 BROKEN = 0.1  # share of its paint that lies apart
 RAGGED = 0.15  # share of its hull that is bare: paint was dry, or it is no footprint
-UNLIKE, UNLIKE_MM = (
-    4.0,
-    0.15,
-)  # times the usual distance from the others of its depth, and at least so far: no repeat
+# times the usual distance from the others of its depth, and at least so far: no repeat of them
+UNLIKE, UNLIKE_MM = 4.0, 0.15
 ASIDE, ASIDE_MM = 6.0, 0.6  # the same of its place
 LEAST_LEFT = 2  # dabs of a depth: one alone cannot be told from a bad one
 # times what chance does to sides that are alike: less, and the outline is the mean of both sides, amid the axis. Sides
@@ -124,7 +122,7 @@ def outlines_of(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
 def _bad(dab: Dab, joined: set[str]) -> Notice | None:
     """What is no whole dab."""
     areas = np.array([signed_area(ring) for ring in dab.rings_mm])
-    if not len(areas):
+    if not (areas > 0).any():
         return Notice(dab.name, "no paint is found of it: left out", code="mark-missing")
     if dab.name in joined:
         return Notice(dab.name, "it runs together with another dab: left out", code="dabs-touch")

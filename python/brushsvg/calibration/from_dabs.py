@@ -14,10 +14,8 @@ from ..errors import Error, Notice
 from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
 from .from_widths import need_fits
 
-CLOSE_MM, CHANCE = (
-    0.03,
-    2.0,
-)  # a law bends enough that lies so near to the mean of each depth, or so many errors of it
+# a law bends enough that lies so near to the mean of each depth, or so many errors of that mean
+CLOSE_MM, CHANCE = 0.03, 2.0
 AGREE_MM = 0.4  # farther from an outline, and the brush would be refused
 MOST_TERMS = 5
 BROAD = 0.85  # of the greatest width: the part by which dabs are compared

@@ -24,9 +24,8 @@ HEADINGS_DEG = (
 )  # what the sheet or the tool does to them all is told from the footprint
 SHALLOWEST = 0.2  # of the greatest depth: below, outlines shrink in proportion to depth
 LEAST_HALF_MM = 0.5  # of the shallowest: narrower dabs are taken for splashes
-NEARLY = (
-    0.95  # of the lag: more, and a brush that trails a little less than thought is dragged, its dab longer
-)
+# of the lag: more, and a brush that trails a little less than thought is dragged, its dab longer
+NEARLY = 0.95
 STEPS = 8  # of a way that is not straight
 
 

@@ -112,6 +112,11 @@ def _add_photo(command, needed: bool) -> None:
         help="of a flatbed's scan of a sheet on which nothing is printed: the strokes themselves tell its place",
     )
     command.add_argument(
+        "--mirrored",
+        action="store_true",
+        help="the photograph was taken from below, through glass and a clear sheet on which the page is printed",
+    )
+    command.add_argument(
         "--picture", metavar="FILE", help="also draw what was read over the flattened photograph (.png)"
     )
 
@@ -123,6 +128,7 @@ def _check_calibrate(args) -> None:
         _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
         return
     for flag, value in (
+        ("--mirrored", args.mirrored or None),
         ("--chart", args.chart),
         ("--bar", args.bar),
         ("--dpi", args.dpi),
