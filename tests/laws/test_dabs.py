@@ -149,6 +149,8 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
         assert np.ptp(contour[:, 1]) - wide_at(contour, found.tip_to_widest(depth)) < 0.05, depth
         assert abs(found.tip_gap(depth) - GAP[1] * depth) < 0.25, depth
     assert "brush before" in report
+    # the fronts of both others lie behind those of depth 6.7, on the way
+    assert ("At depth 8 mm" in report) == (name != "egg")
     about = json.loads(path.read_text())["footprints"]
     assert about["assumed"] is False and 0.001 < about["standard_error_mm"] < 0.1
 

@@ -12,11 +12,13 @@ if not hasattr(core, "fit_marks"):
 from dataclasses import replace  # noqa: E402
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.calibration.chart.dabs import dab_depths, dab_poses, landing  # noqa: E402
+from brushsvg.calibration.chart.dabs import dab_depths, dab_poses, is_of_dabs, landing  # noqa: E402
+from brushsvg.calibration.chart.file import read_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.dab_outlines import Dab  # noqa: E402
 from brushsvg.calibration.from_dabs import calibrate_dabs  # noqa: E402
 from brushsvg.calibration.from_widths import new_brush  # noqa: E402
+from brushsvg.cli import main  # noqa: E402
 
 BRUSH = find_brush("round-6")
 DEPTHS, HEADINGS = (2.0, 4.0, 6.0, 8.0), np.radians([0, 180, 90, 270])
@@ -167,3 +169,27 @@ def test_a_chart_of_dabs():
     assert dab_depths(BRUSH, 3, 6.0) == [1.2, 3.6, 6.0]
     with refused("out-of-range liner 0.8 1.2", "brush"):
         chart(new_brush("liner", 6.0, [(2, 0.4), (5, 0.8)]), (148.0, 210.0), dabs=True)
+
+
+def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
+    files = [str(tmp_path / name) for name in ("dabs.ngc", "page.svg", "dabs.json")]
+    words = [
+        "chart",
+        files[0],
+        "--dabs",
+        "--sheet",
+        "a5",
+        "--strokes",
+        "few",
+        "--page",
+        files[1],
+        "--chart",
+        files[2],
+    ]
+    assert main(words) == 0, capsys.readouterr().err
+    made = read_chart((tmp_path / "dabs.json").read_bytes())
+    assert is_of_dabs(made) and len(made.strokes) == 16
+    assert "dab-16" in (tmp_path / "page.svg").read_text()
+    program = (tmp_path / "dabs.ngc").read_text()
+    assert program.count("(stroke ") == 16 and "Z-10.0000" in program
+    assert not is_of_dabs(chart(BRUSH, (148.0, 210.0), "few"))
