@@ -6,6 +6,7 @@ Lengths in mm.
 """
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,7 +21,8 @@ CLOSE = (
 
 @dataclass
 class TrueBrush:
-    """A round brush: coefficients in ascending powers of depth; footprints are drops, or eggs where tails are round."""
+    """A round brush: coefficients in ascending powers of depth; footprints are drops, or eggs where tails are round, or
+    of a shape of their own: depths (n,) -> convex outlines (n, m, 2) from the tip, x towards the tool."""
 
     deepest: float
     lag: np.ndarray
@@ -29,6 +31,7 @@ class TrueBrush:
     widest_per_half: float
     front_per_half: float
     round_tail: bool = False
+    shape: Callable | None = None
 
     def law(self, name):
         return oracle.Law(getattr(self, name))
@@ -202,9 +205,10 @@ def _painted(brush, plan, contact, vertices):
             [*np.sin(angle), *(np.sin(behind) if brush.round_tail else [0.0])],
         ]
     )
+    shapes = brush.shape(depth) if brush.shape else np.maximum(half, 1e-6)[:, None, None] * unit
     outlines = []
-    for p, axis, b, h in zip(contact, u, gap, half, strict=True):
-        outlines.append(p - b * axis + max(h, 1e-6) * unit @ np.array([axis, [-axis[1], axis[0]]]))
+    for p, axis, b, shape in zip(contact, u, gap, shapes, strict=True):
+        outlines.append(p - b * axis + shape @ np.array([axis, [-axis[1], axis[0]]]))
     return oracle.swept(outlines, True)
 
 

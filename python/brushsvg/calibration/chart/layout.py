@@ -19,6 +19,7 @@ import numpy as np
 from ... import _core
 from ...brush.perturbed import with_lag
 from ...errors import Error
+from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
 
 SETS = {"few": 4, "normal": 6, "many": 9}  # depths
 MOST_SETS = 12  # depths; beyond, a larger sheet repeats them
@@ -30,7 +31,10 @@ LIFT_STEP = 1.0  # mm down, or up, per mm along at the other landings and at all
 LAG_SHARES, WIDER = (0.7, 1.0, 1.3), 1.2
 EDGE_MM, GAP_MM, LABEL_MM, BAR_MM = 5.0, 2.0, 3.5, 6.0
 ATTEMPTS = 80  # of packing: fewer, and sheets are refused that have room; more, and little is won
-CODES = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "reference": "R"}
+# Of dabs the lag is known and the footprint is not
+DAB_LAG_SHARES, DAB_WIDER, DAB_BEYOND_MM = (0.9, 1.0, 1.1), 1.5, 0.3
+MOST_DAB_SETS = 8  # depths; beyond, a larger sheet repeats them once
+CODES = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "reference": "R", KIND: "D"}
 LETTER_MM = 1.4  # of a label, on average
 QUIET = 1 / 6  # of a marker's side, white around it: more than a module
 MARKERS = (8.0, 20.0)  # mm, the least and the greatest side
@@ -132,12 +136,17 @@ class _Unit:
 
 
 def chart(
-    brush, sheet_mm: tuple[float, float], strokes: str | None = None, deepest_mm: float = math.inf
+    brush,
+    sheet_mm: tuple[float, float],
+    strokes: str | None = None,
+    deepest_mm: float = math.inf,
+    dabs: bool = False,
 ) -> Chart:
     """The chart of a brush that is known roughly: its depth range, its lag, its width.
 
     strokes: few, normal, many; None for as many as the sheet has room for; deepest_mm: what the machine can reach, if
-    less than the brush. Error for a pen, and where the sheet is too small, with the size that would do.
+    less than the brush; dabs: of a brush whose lag is known, for its outlines. Error for a pen, and where the sheet is
+    too small, with the size that would do.
     """
     if brush.is_rigid():
         raise Error(
@@ -155,8 +164,11 @@ def chart(
             code="sheet-too-small",
         )
     best, beside = None, None
-    for depths, repeats in [(SETS[strokes], 1)] if strokes else _choices():
-        units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
+    for depths, repeats in [(SETS[strokes], 1)] if strokes else _dab_choices() if dabs else _choices():
+        if dabs:
+            units = _dab_units(brush, dab_depths(brush, depths, deepest_mm), repeats)
+        else:
+            units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
         # the first choice settles where markers stand at the sides; strokes matter more than these two
         for tried in (beside,) if best is not None else (*_marker_gaps(sheet_mm, side), None):
             placed, used = _packed(units, room[0], side, room[1], tried)
@@ -198,6 +210,11 @@ def _choices() -> Iterator[tuple[int, int]]:
     yield from ((MOST_SETS, repeats) for repeats in range(2, MOST_REPEATS + 1))
 
 
+def _dab_choices() -> Iterator[tuple[int, int]]:
+    yield from ((depths, 1) for depths in range(SETS["few"], MOST_DAB_SETS + 1))
+    yield MOST_DAB_SETS, 2
+
+
 def _depths(brush, count: int, deepest_mm: float) -> list[float]:
     least, deepest = brush.depth_range_mm[0], min(brush.depth_range_mm[1], deepest_mm)
     depths = np.linspace(max(least, SHALLOWEST * deepest), deepest, count).round(2)
@@ -216,6 +233,16 @@ def _units(brush, depths: list[float], repeats: int) -> list[_Unit]:
             groups.append((_reversal(brush, depth),))
     boxes = _boxes(brush, [stroke for group in groups for stroke in group])
     return [_Unit(group, tuple(next(boxes) for _ in group)) for group in groups]
+
+
+def _dab_units(brush, depths: list[float], repeats: int) -> list[_Unit]:
+    dabs = [
+        _Drawn(KIND, depth, dab_poses(brush, depth, heading))
+        for depth in depths
+        for heading in HEADINGS_DEG * repeats
+    ]
+    boxes = _boxes(brush, dabs, DAB_LAG_SHARES, DAB_WIDER, DAB_BEYOND_MM)
+    return [_Unit((dab,), (next(boxes),)) for dab in dabs]
 
 
 def _path(depth: float, points, ramp: float = LIFT_STEP) -> np.ndarray:
@@ -286,19 +313,21 @@ def _references(brush, depth: float) -> Iterator[tuple[_Drawn, ...]]:
         yield tuple(_Drawn("reference", depth, _path(depth, points)) for points in (there, back))
 
 
-def _boxes(brush, strokes: list[_Drawn]) -> Iterator[tuple[float, float, float, float]]:
+def _boxes(
+    brush, strokes: list[_Drawn], lag_shares=LAG_SHARES, wider: float = WIDER, beyond_mm: float = 0.0
+) -> Iterator[tuple[float, float, float, float]]:
     """Of what brushes that trail a little less and more than this one paint, and a little wider."""
     plan = _plan(brush, (1e4, 1e4), [(f"{k}", stroke, (0.0, 0.0)) for k, stroke in enumerate(strokes)])
     law = np.array(brush.lag.coefficients)
     bounds = []
-    for share in LAG_SHARES:
+    for share in lag_shares:
         other = with_lag(brush, (share - 1) * law)
         marks = _core.simulate(plan, other, for_outlines=False)
         bounds.append([_core.painted_bounds(trace, other) for trace in marks.passes])
     bounds = np.array(bounds)
     low, high = bounds[..., :2].min(axis=0), bounds[..., 2:].max(axis=0)
-    wider = np.array([(WIDER - 1) * brush.half_width(stroke.depth_mm) for stroke in strokes])[:, None]
-    yield from (tuple(box) for box in np.hstack([low - wider, high + wider]).tolist())
+    grown = np.array([(wider - 1) * brush.half_width(each.depth_mm) + beyond_mm for each in strokes])[:, None]
+    yield from (tuple(box) for box in np.hstack([low - grown, high + grown]).tolist())
 
 
 def _packed(
@@ -367,8 +396,8 @@ def _top_middle(side: float) -> float:
 
 
 def _turned(unit: _Unit) -> _Unit:
-    """By a quarter, counter-clockwise; reference strokes stay as they are."""
-    if unit.strokes[0].kind == "reference":
+    """By a quarter, counter-clockwise; reference strokes and dabs, which come in directions, stay as they are."""
+    if unit.strokes[0].kind in ("reference", KIND):
         return unit
     strokes = []
     for stroke in unit.strokes:

@@ -44,10 +44,15 @@ class Read:
 
 
 def read_chart_photos(
-    chart: Chart, photos: list[tuple[str, bytes]], bar_mm: float | None = None, dpi: float | None = None
+    chart: Chart,
+    photos: list[tuple[str, bytes]],
+    bar_mm: float | None = None,
+    dpi: float | None = None,
+    mirrored: bool = False,
 ) -> Read:
     """photos: names and what their files hold, of one painted sheet; bar_mm: how long the printed bar is by a ruler,
-    where the page was not printed at 100 %; dpi: of a flatbed's scan of a sheet on which nothing is printed. Several
+    where the page was not printed at 100 %; dpi: of a flatbed's scan of a sheet on which nothing is printed; mirrored:
+    taken from below, through a clear sheet and glass. Several
     photographs must agree; their paint is averaged, and the view is that of the one whose markers lie farthest off.
     Error in one sentence, with the file."""
     size = _size(chart, bar_mm)
@@ -67,8 +72,10 @@ def read_chart_photos(
         try:
             pixels = read_photo(data)
             _refuse_compressed(data)
+            if mirrored:
+                pixels = np.ascontiguousarray(pixels[:, ::-1])
             if dpi is None:
-                view = find_view(pixels, shown)
+                view = _view(pixels, shown, mirrored)
             else:
                 pixels, view = find_scan_view(
                     pixels, dpi, shown.sheet_mm, rooms, _pressed(chart), shown.dictionary
@@ -97,6 +104,18 @@ def read_chart_photos(
         _refuse_another_sheet(each.marks, marks, name)
     worst = max((each.view for each in reads), key=lambda view: view.residual_mm)
     return Read(chart, reads[0].flat, worst, marks, len(reads))
+
+
+def _view(pixels: np.ndarray, shown: Printed, mirrored: bool) -> View:
+    try:
+        return find_view(pixels, shown)
+    except Error as refusal:
+        if not mirrored or refusal.code != "photo-mirrored":
+            raise
+        sentence = (
+            "the picture shows the page from above, not mirrored as from below through glass: no --mirrored"
+        )
+        raise Error(sentence, code="photo-mirrored") from None
 
 
 def _pressed(chart: Chart) -> list[np.ndarray]:

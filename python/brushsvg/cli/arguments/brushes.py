@@ -29,6 +29,11 @@ def add_chart(commands) -> None:
         "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
     )
     chart.add_argument(
+        "--dabs",
+        action="store_true",
+        help="dabs in place of strokes, to measure the footprints of a brush whose lag is known: give it with --brush",
+    )
+    chart.add_argument(
         "--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)"
     )
     chart.add_argument(
@@ -80,6 +85,11 @@ def add_calibrate(commands) -> None:
         default=(),
         help="from painted marks: also find what the machine does besides what it is told, of lean,axes,tilt,backlash",
     )
+    fit.add_argument(
+        "--brush",
+        metavar="NAME|FILE",
+        help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines",
+    )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
@@ -102,6 +112,11 @@ def _add_photo(command, needed: bool) -> None:
         help="of a flatbed's scan of a sheet on which nothing is printed: the strokes themselves tell its place",
     )
     command.add_argument(
+        "--mirrored",
+        action="store_true",
+        help="the photograph was taken from below, through glass and a clear sheet on which the page is printed",
+    )
+    command.add_argument(
         "--picture", metavar="FILE", help="also draw what was read over the flattened photograph (.png)"
     )
 
@@ -113,10 +128,12 @@ def _check_calibrate(args) -> None:
         _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
         return
     for flag, value in (
+        ("--mirrored", args.mirrored or None),
         ("--chart", args.chart),
         ("--bar", args.bar),
         ("--dpi", args.dpi),
         ("--picture", args.picture),
+        ("--brush", args.brush),
     ):
         if value is not None:
             args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")

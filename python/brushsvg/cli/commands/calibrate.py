@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from ..._core import remarks, write_brush
+from ...brush.library import find_brush
 from ...errors import Error
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
@@ -21,6 +22,9 @@ def calibrate_file(args) -> None:
     check_places(args.output, args.plot, args.picture)
     name = os.path.splitext(os.path.basename(args.output))[0]
     read = read_photographs(args, args.photos) if args.photos else None
+    if read and _is_of_dabs(args, read):
+        _calibrate_dabs(args, read, name)
+        return
     with about(args.input):
         if read:
             made, report, report_picture = _from_photo(read, name, args.machine)
@@ -52,6 +56,42 @@ def calibrate_file(args) -> None:
                 files[args.picture] = read_picture(read, made)
     warn(args.output, remarks(made.brush))
     write(args, files, more=more)
+    tell(report(made))
+
+
+def _is_of_dabs(args, read) -> bool:
+    from ...calibration.chart.dabs import is_of_dabs
+
+    dabs = is_of_dabs(read.chart)
+    if dabs and args.brush is None:
+        args.parser.error(f"{args.chart} is a chart of dabs: give the brush whose lag is known, --brush FILE")
+    if args.brush is not None and not dabs:
+        args.parser.error(f"--brush is for a chart of dabs, which {args.chart} is not")
+    if dabs and args.machine:
+        args.parser.error("--machine needs strokes: dabs say nothing of the machine")
+    return dabs
+
+
+def _calibrate_dabs(args, read, name: str) -> None:
+    """Outlines of dabs into a brush whose lag is known."""
+    from ...calibration.chart.dabs import dabs_of
+    from ...calibration.chart.photograph import edge_mm, told
+    from ...calibration.dab_report import report, report_picture
+    from ...calibration.from_dabs import calibrate_dabs
+    from ...calibration.photo_report import read_picture
+
+    before = find_brush(args.brush)
+    joined = tuple(stroke for pair in read.marks.joined for stroke in pair)
+    with about(args.input):
+        made = calibrate_dabs(dabs_of(read), before, name, edge_mm(read), joined)
+    files = {args.output: write_brush(made.brush)}
+    if args.plot:
+        files[args.plot] = report_picture(made, suffix_of(args.plot))
+    if args.picture:
+        files[args.picture] = read_picture(read)
+    warn(args.input, made.remarks)
+    warn(args.output, remarks(made.brush))
+    write(args, files, more=told(read))
     tell(report(made))
 
 

@@ -16,6 +16,7 @@ from ..steps.prepared import seconds_written
 
 
 def chart_file(args) -> None:
+    from ...calibration.chart.dabs import dab_chart_report
     from ...calibration.chart.expected import chart_report
     from ...calibration.chart.file import write_chart
     from ...calibration.chart.layout import chart
@@ -31,14 +32,14 @@ def chart_file(args) -> None:
         if suffix != ".json":
             writer.post_for(suffix, cell)
         stage("laying out the chart")
-        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm)
+        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs)
         painting = writer.painting_cell(suffix, cell)
         loads, marks = in_loads(made.plan, brush, painting), _core.simulate(made.plan, brush)
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.look(loads, brush, marks, painting, tolerance_mm, Job(args.z_offset))
         if walk.problems:
             raise RefusedError(args.output, summarized(walk.problems))
-        title = f"calibration chart of brush {brush.name}"
+        title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
         files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
     if args.page:
         pdf = suffix_of(args.page) == ".pdf"
@@ -48,4 +49,4 @@ def chart_file(args) -> None:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)
     write(args, files, len(loads.loads), seconds_written(suffix, made.plan, walk, brush, cell))
-    tell(chart_report(made, brush, args.noise))
+    tell(dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise))

@@ -28,6 +28,8 @@ def read_photographs(args, paths: list[str]):
         chart = read_chart(read_bytes(args.chart))
     with about(paths[0]):
         stage("reading the photographs")
-        read = read_chart_photos(chart, [(path, read_bytes(path)) for path in paths], args.bar, args.dpi)
+        read = read_chart_photos(
+            chart, [(path, read_bytes(path)) for path in paths], args.bar, args.dpi, args.mirrored
+        )
     warn(paths[0], remarks(read))
     return read
