@@ -9,7 +9,7 @@ from plugin import SOURCE, sentence
 from brushsvg.machine.cell_file import DEFAULT_CELL
 from brushsvg.pipeline.preparation import DEFAULT_BRUSH, Options
 
-MACHINES = f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120"
+MACHINES = f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6"
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
 
 
@@ -85,10 +85,7 @@ def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
     monkeypatch.syspath_prepend(SOURCE)
     from brushsvg_settings import OWN
 
-    options, cell = (
-        Options(),
-        f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120",
-    )
+    options = Options()
     assert {
         "brush": DEFAULT_BRUSH,
         "compensation": options.compensation,

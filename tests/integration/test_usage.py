@@ -130,6 +130,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.script",
             "made.jks",
             "made.mod",
+            "made.py",
             "page.pdf",
             "page.svg",
             "seen.png",

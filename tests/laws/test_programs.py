@@ -27,6 +27,7 @@ LANGUAGES = {
     "ur5e": ".script",
     "jaka-zu3": ".jks",
     "irb120": ".mod",
+    "xarm6": ".py",
 }
 SHEET = (400.0, 400.0)
 
@@ -133,7 +134,17 @@ def rapid_moves(text):
             yield False, tuple(map(float, point)), float(speed[1]), visit
 
 
-ROBOTS = {"ur5e": urscript_moves, "jaka-zu3": jaka_moves, "irb120": rapid_moves}
+def xarm_moves(text):
+    visit = False
+    for line in text.splitlines():
+        if line.startswith("# "):
+            visit = line.startswith("# paint")
+        if move := re.fullmatch(r"go\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+), ([\d.]+), .*\)", line):
+            *point, speed = map(float, move.groups())
+            yield False, tuple(point), speed, visit
+
+
+ROBOTS = {"ur5e": urscript_moves, "jaka-zu3": jaka_moves, "irb120": rapid_moves, "xarm6": xarm_moves}
 ON_PAPER = ("ur5e", "irb120")  # whose points are the paper's
 
 

@@ -1,6 +1,7 @@
-"""RAPID: what an interpreter of the tests' own, made from the manual, does with our programs, and
+"""RAPID and Python for xArm: what an interpreter of the tests' own, made from the manual, does with our programs, and
 what `check` makes of them. It shares nothing with what writes and reads them."""
 
+import inspect
 import itertools
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from judge.moves import Leg, Run
 from judge.table import Figures, measure
 from judge.verdict import ROBOTS
 from judge.works import make
+from judge.xarm import XArmAPI, executed
 from programs import LANGUAGES
 from test_urscript import ARC, STROKES, text_for
 
@@ -24,7 +26,7 @@ from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.verification.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-NAMES = {"irb120": "rapid"}
+NAMES = {"irb120": "rapid", "xarm6": "xarm"}
 CIRCLES = {"irb120"}  # what tells them
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
@@ -40,6 +42,12 @@ def run(text: str, cell, height_mm: float = 300.0) -> Run:
     spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
     tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
     return ROBOTS[cell.language](text, (-100.0, -400.0, height_mm), robot_from_paper(cell), spin, tool)
+
+
+def stub(cell) -> XArmAPI:
+    spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
+    tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
+    return XArmAPI((-100.0, -400.0, 300.0), robot_from_paper(cell), spin, tool)
 
 
 def sound(text: str, cell, **at) -> Run:
@@ -147,6 +155,12 @@ REFUSED = [
     ("irb120", "within(0.039)", "within(-0.039)", "line-unread blend"),
     ("irb120", "AccMax:=0.500", "AccMax:=0.050", "line-incomplete"),
     ("irb120", "ENDMODULE", "", "program-cut-short"),
+    ("xarm6", "go(-140.000", "go(x=-140.000", "line-unread"),
+    ("xarm6", "go(-140.000", " go(-140.000", "line-unread"),
+    ("xarm6", "100.000, None", "0.000, None", "line-incomplete speed"),
+    ("xarm6", "wait=False", "wait=True", "line-unread"),
+    ("xarm6", ", 0.031)", ", radius=0.031)", "line-unread"),
+    ("xarm6", "arm.disconnect()\n", "", "program-cut-short"),
 ]
 
 
@@ -176,6 +190,12 @@ BROKEN = [
     ("irb120", "[0.0000000, 1.0000000, ", "[0.0000000, 1.1000000, "),
     ("irb120", "[TRUE, ", "["),
     ("irb120", "VAR robtarget", "VAR robtaget"),
+    ("xarm6", "def done", "def dun"),
+    ("xarm6", "set_tcp_offset", "set_tool_offset"),
+    ("xarm6", "done(arm.set_state(0))", "done(arm.set_state(4))"),
+    ("xarm6", ", 20.000, 0.031)", ", 20.000)"),
+    ("xarm6", "    done(code)", "   done(code)"),
+    ("xarm6", "TOOL = [", "TOOL = [0, "),
 ]
 
 
@@ -184,6 +204,30 @@ def test_the_interpreter_refuses_broken_programs(name, old, new):
     text = text_for(find_cell(name))
     assert old in text
     assert run(text.replace(old, new, 1), find_cell(name)).refused
+
+
+@pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
+@pytest.mark.parametrize(
+    "broken", [None, ("MOST, is_radian", "MOST, in_radian"), ("set_mode(0)", "set_mode(0, 0, 0)")]
+)
+def test_every_call_is_one_of_the_vendors_sdk(broken):
+    from xarm.wrapper import XArmAPI
+
+    cell = replace(
+        on("xarm6", SQUARE), reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),)
+    )
+    arm = stub(cell)
+    text = text_for(cell)
+    calls = executed(text.replace(*broken) if broken else text, arm).calls
+    try:
+        for name, given, named in calls:
+            inspect.signature(getattr(XArmAPI, name)).bind(arm, *given, **named)
+            known = inspect.signature(getattr(XArmAPI, name)).parameters
+            assert set(named) <= set(known), "kwargs take anything"
+    except (TypeError, AssertionError):
+        assert broken
+    else:
+        assert not broken and len(calls) > 30
 
 
 def test_a_slower_robot_than_rapid_can_tell_is_refused():

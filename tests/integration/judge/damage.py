@@ -102,6 +102,46 @@ SCRIPTS = {
         rates=(r"(mm_s\()(\d+\.\d+)", r"(within\()(\d+\.\d+)", r"(Max:=)(\d+\.\d+)"),
         after=1,
     ),
+    "xarm": Script(
+        remark="#",
+        moves=r"go\(",
+        words=(
+            *(
+                ("go(", "rise("),
+                ("None", "Nan"),
+                ("radius", "speed"),
+                ("here[2]", "here[1]"),
+                ("<", ">"),
+                ("x, y", "y, x"),
+            ),
+            *(("False", "True"), ("wait=", "relative="), ("!=", "=="), ("    ", ""), ("arrive", "arive")),
+        ),
+        modes=(
+            *(
+                ("set_tcp_offset(TOOL", "set_tcp_offset(UPRIGHT"),
+                ("TOOL", "TOL"),
+                ("set_mode(0", "set_mode(1"),
+            ),
+            *(
+                ("set_state(0", "set_state(3"),
+                ("motion_enable(True", "motion_enable(False"),
+                ("MOST = ", "MUST = "),
+            ),
+        ),
+        offsets=r"^(?:UPRIGHT|TOOL) =|world_offset",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *("sys.exit()", "rest(0.500)", "arm.set_cgpio_digital(0, 1)", 'stop("x")', 'print("x")'),
+            *("arm.set_state(4)", "arrive()", "arm.disconnect()", "arm.set_mode(2)"),
+        ),
+        says='print("{}")',
+        rates=(
+            r"(go\((?:-?[\d.]+, ){3})(\d+\.\d+)",
+            r"(go\((?:-?[\d.]+, ){4})(\d+\.\d+)",
+            r"(MOST = |rise\([\d.]+, )(\d+\.\d+)",
+        ),
+        after=2,
+    ),
 }
 
 
@@ -127,7 +167,7 @@ class Page:
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + (self.dialect == "jaka")
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm"))
         last -= self.script.after if self.script else 0
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))

@@ -20,6 +20,7 @@ from .jaka import run_jaka
 from .moves import Leg, Run, arc_points
 from .rapid import run_rapid
 from .urscript import run_urscript
+from .xarm import run_xarm
 
 OFF_MM = 0.1  # what the mark of a brush shows
 STEP_MM = 0.04  # of samples where the brush may touch: how exactly OFF_MM is known
@@ -31,7 +32,7 @@ SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
 MOST = 4000  # samples of one leg
 
 
-ROBOTS = {"urscript": run_urscript, "jaka": run_jaka, "rapid": run_rapid}
+ROBOTS = {"urscript": run_urscript, "jaka": run_jaka, "rapid": run_rapid, "xarm": run_xarm}
 
 
 @dataclass

@@ -61,6 +61,12 @@ def _rapid(program: Program) -> Iterator[str]:
     return rapid(program)
 
 
+def _xarm(program: Program) -> Iterator[str]:
+    from .xarm import xarm
+
+    return xarm(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -69,4 +75,5 @@ POSTS = {  # by the language a cell names
     "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
     "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
+    "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
 }

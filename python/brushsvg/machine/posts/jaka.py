@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cell import Blending, robot_from_paper
-from ..frames import rotation_deg
+from ..cell import Blending
 from ..motion import Move, Program, Wait, via
-from .script import Words, body, down, numbers, rounded_down
+from .script import Words, body, numbers, rounded_down, upright_deg
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -30,7 +29,7 @@ def jaka(program: Program) -> Iterator[str]:
     yield "set_user_frame_id(0)\n"
     yield f"tool = [{numbers(cell.tool.tcp_mm, decimals)}, {numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
     yield "set_tool(tool)\n"
-    turned = numbers(turned_deg(cell), DEGREE_DECIMALS)
+    turned = numbers(upright_deg(cell), DEGREE_DECIMALS)
     acceleration = number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
     words = Words(
         comment,
@@ -40,11 +39,6 @@ def jaka(program: Program) -> Iterator[str]:
     )
     yield from body(program, words)
     yield "\n" + comment(JAKA_END)
-
-
-def turned_deg(cell) -> np.ndarray:
-    """(3,) the tool in the robot's frame, its z into the paper: turned about the fixed x, then y, then z axis."""
-    return rotation_deg(robot_from_paper(cell)[:3, :3] @ down(cell.tool.spin_deg))
 
 
 def comment(text: str) -> str:

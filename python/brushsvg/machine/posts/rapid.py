@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frames import frame_of_pose, quaternion
 from ..motion import Move, Program, Wait, via
-from .script import Words, blends_mm, body, down, numbers, rounded_down
+from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -96,11 +96,8 @@ def _lines(move: Move, decimals: int) -> Iterator[str]:
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'    TPWrite "{plain(step.message, STRING_LIMIT).translate(_QUIET)}";\n    Stop;\n'
+        return f'    TPWrite "{plain(step.message, STRING_LIMIT).translate(QUIET)}";\n    Stop;\n'
     return f"    WaitTime \\InPos, {number(step.seconds, 3)};\n"
-
-
-_QUIET = {ord('"'): "'", ord("\\"): "/"}
 
 
 def _pose(frame: np.ndarray, decimals: int) -> str:

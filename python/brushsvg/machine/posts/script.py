@@ -7,11 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..cell import Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait
 from .text import number
 
 RISE_MM_S = 50.0
+QUIET = {ord('"'): "'", ord("\\"): "/"}  # what would end a text between quotes
 
 
 class Words(NamedTuple):
@@ -64,6 +66,6 @@ def down(spin_deg: float) -> np.ndarray:
     return np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, spin_deg))
 
 
-def down_deg(spin_deg: float) -> np.ndarray:
-    """(3,) the same as angles about the fixed x, then y, then z axis."""
-    return rotation_deg(down(spin_deg))
+def upright_deg(cell: Cell) -> np.ndarray:
+    """(3,) the tool in the robot's frame, the brush upright on the paper: about the fixed x, then y, then z axis."""
+    return rotation_deg(robot_from_paper(cell)[:3, :3] @ down(cell.tool.spin_deg))

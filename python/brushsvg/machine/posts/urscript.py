@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
 from ..motion import Move, Program, Wait, via
-from .script import Words, body, down
+from .script import QUIET, Words, body, down
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -75,11 +75,8 @@ def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'  popup("{plain(step.message, 60).translate(_QUIET)}", "brushsvg", False, False, blocking=True)\n'
+        return f'  popup("{plain(step.message, 60).translate(QUIET)}", "brushsvg", False, False, blocking=True)\n'
     return f"  sleep({number(step.seconds, 3)})\n"
-
-
-_QUIET = {ord('"'): "'", ord("\\"): "/"}
 
 
 def _pose(frame: np.ndarray, decimals: int) -> str:

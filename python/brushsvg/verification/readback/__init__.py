@@ -188,6 +188,12 @@ def _rapid(text: str, cell: Cell) -> Readback:
     return read_rapid(text)
 
 
+def _xarm(text: str, cell: Cell) -> Readback:
+    from .xarm import read_xarm
+
+    return read_xarm(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -195,4 +201,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "urscript": _urscript,
     "jaka": _jaka,
     "rapid": _rapid,
+    "xarm": _xarm,
 }

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-
 from ...machine.cell import Cell
-from ...machine.posts.jaka import DEGREE_DECIMALS, JAKA_END, turned_deg
+from ...machine.posts.jaka import JAKA_END, upright_deg
 from . import Readback
 from .script import N, Script, place, read_script
 
@@ -34,6 +32,6 @@ _LINES = tuple(
 
 def read_jaka(text: str, cell: Cell) -> Readback:
     """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
-    turned = tuple((np.round(turned_deg(cell), DEGREE_DECIMALS) + 0.0).tolist())
+    turned = tuple(upright_deg(cell).tolist())
     script = Script("# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned)
     return read_script(text, script, Readback())

@@ -72,7 +72,10 @@ class _Reader:
         line = self.spelled(line)
         for kind, pattern in self.script.lines:
             if found := pattern.fullmatch(line):
-                getattr(self, f"_{kind}")(number, line, self._values(number, line, found))
+                values = self._values(number, line, found)
+                if kind == "text" and found.groupdict().get("turned"):
+                    line = line[: found.start("turned")]  # which was looked at
+                getattr(self, f"_{kind}")(number, line, values)
                 return
         raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
 
@@ -88,7 +91,7 @@ class _Reader:
 
     def _stands(self, number: int, line: str, found_deg: list[float]) -> None:
         """The brush stands on the paper: whole turns are none."""
-        wanted_deg = np.array(self.script.turned_deg)
+        wanted_deg = np.round(self.script.turned_deg, 6) + 0.0
         off_deg = np.abs((np.array(found_deg) - wanted_deg + 180.0) % 360.0 - 180.0).max()
         if off_deg > LEANS_DEG:
             wanted = ", ".join(f"{value:g}" for value in wanted_deg)
@@ -130,7 +133,11 @@ class _Reader:
         self.out.rises_mm += [values["height"]] if "height" in values else []
         height = f" {values['height']:.4f}" if "height" in values else ""
         at_most = self._at_most(number, line, values)
-        self.out.acts.append(Act(number, "text", f"rises{height}", (), at_most))
+        act = Act(number, "text", f"rises{height}", (), at_most)
+        if (
+            not self.out.acts or self.out.acts[-1][1:] != act[1:]
+        ):  # twice, the second one finds the tool up there
+            self.out.acts.append(act)
 
     def _wait(self, number: int, line: str, values: dict) -> None:
         self.out.acts.append(Act(number, "wait", same=(values["seconds"],)))
