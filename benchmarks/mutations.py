@@ -1,6 +1,6 @@
 """A thousand damaged programs for every dialect and job, judged and checked: the table of docs/machines.md.
 
-python benchmarks/mutations.py [COUNT of each job]
+python benchmarks/mutations.py [COUNT of each job [DIALECT ...]]
 """
 
 import sys
@@ -25,7 +25,7 @@ def one(dialect: str, name: str, count: int) -> Figures:
 
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    jobs = [(dialect, name, count) for dialect in CELLS for name in WORKS]
+    jobs = [(dialect, name, count) for dialect in sys.argv[2:] or CELLS for name in WORKS]
     whole = Figures()
     with ProcessPoolExecutor() as pool:
         for figures in pool.map(one, *zip(*jobs, strict=True)):

@@ -18,7 +18,7 @@ OWN = {  # what brushsvg does where the document says nothing
     "brush": "round-6",
     "compensation": "closed",
     "start": "auto",
-    "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3",
+    "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6",
     "wide": "auto",
     "tolerance": "0.05mm",
 }

@@ -9,6 +9,7 @@ from plugin import SOURCE, sentence
 from brushsvg.machine.cell_file import DEFAULT_CELL
 from brushsvg.pipeline.preparation import DEFAULT_BRUSH, Options
 
+MACHINES = f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6"
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
 
 
@@ -51,7 +52,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         (
             "--cell=default",
             {"cell": None},
-            "machine: nothing, and brushsvg takes linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3",
+            f"machine: nothing, and brushsvg takes {MACHINES}",
         ),
         ("--wide=passes", {"wide": "passes"}, "letters wider than the brush: passes (before: nothing)"),
         ("--tolerance=0.2", {"tolerance": "0.2mm"}, "tolerance: 0.2mm (before: 0.1mm)"),
@@ -84,12 +85,12 @@ def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
     monkeypatch.syspath_prepend(SOURCE)
     from brushsvg_settings import OWN
 
-    options, cell = Options(), f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3"
+    options = Options()
     assert {
         "brush": DEFAULT_BRUSH,
         "compensation": options.compensation,
         "start": options.start,
-        "cell": cell,
+        "cell": MACHINES,
         "wide": options.wide,
         "tolerance": f"{options.tolerance_mm}mm",
     } == OWN

@@ -108,7 +108,11 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     # every extension that help names is one the command takes
     values = {"IN": "sound.svg", "--brush": "round-6"}
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("convert",)])[0]):
-        cell = {".script": ("--cell", "ur5e"), ".jks": ("--cell", "jaka-zu3")}.get(suffix, ())
+        cell = {
+            ".script": ("--cell", "ur5e"),
+            ".jks": ("--cell", "jaka-zu3"),
+            ".mod": ("--cell", "irb120"),
+        }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
         brushsvg("predict", values["IN"], f"seen{suffix}", cwd=desk, status=0)
@@ -125,6 +129,8 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.nc",
             "made.script",
             "made.jks",
+            "made.mod",
+            "made.py",
             "page.pdf",
             "page.svg",
             "seen.png",

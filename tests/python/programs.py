@@ -13,6 +13,8 @@ LANGUAGES = {
     "grbl-servo": ".nc",
     "ur5e": ".script",
     "jaka-zu3": ".jks",
+    "irb120": ".mod",
+    "xarm6": ".py",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

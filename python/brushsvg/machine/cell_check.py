@@ -8,7 +8,17 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Error, Notice
-from .cell import NEEDED_BY, RELOADS, Cell, Station, robot_from_paper, value_mm
+from .cell import (
+    LEAST_ACCELERATION_MM_S2,
+    NEEDED_BY,
+    RELOADS,
+    Cell,
+    Speeds,
+    Station,
+    entries,
+    robot_from_paper,
+    value_mm,
+)
 from .frames import moved, normal_tilt_deg
 from .move_extents import from_origin, ways
 from .workspace_limits import astray
@@ -27,6 +37,15 @@ def check(cell: Cell) -> None:
         )
     if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
         raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
+    least = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
+    if cell.speeds.acceleration_mm_s2 < least:
+        greatest = entries(Speeds)["acceleration_mm_s2"].greatest
+        raise Error(
+            f"{cell.speeds.acceleration_mm_s2:g} mm/s2 is outside the range [{least:g}, {greatest:g}] "
+            f"mm/s2 of language {cell.language!r}",
+            where="speeds.acceleration_mm_s2",
+            code="out-of-range",
+        )
     _check_paper(cell)
     _check_workspace(cell)
     if cell.servo:

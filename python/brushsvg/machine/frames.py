@@ -96,22 +96,26 @@ def is_upright(frame: np.ndarray) -> bool:
     return bool(np.allclose(frame[:3, 2], (0, 0, 1), atol=1e-9))
 
 
-def rotation_vector(turned: np.ndarray) -> np.ndarray:
-    """(3,) axis times angle [rad] of a rotation (3, 3), angle in [0, pi]: by its quaternion, whose largest part
-    is found first (Shepperd), so that half a turn, at which a tool points down, is as exact as any other."""
+def quaternion(turned: np.ndarray) -> np.ndarray:
+    """(4,) w, x, y, z of a rotation (3, 3), w not negative: the largest part is found first (Shepperd), so that half a
+    turn, at which a tool points down, is as exact as any other."""
     squares = np.array([1 + turned.trace(), *(1 + 2 * turned.diagonal() - turned.trace())])
     largest = int(squares.argmax())
     m = turned
     skew = np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
     if largest == 0:
-        quaternion = np.array([squares[0], *skew])
+        found = np.array([squares[0], *skew])
     else:
         axis = largest - 1
-        quaternion = np.array([skew[axis], *(m[axis] + m[:, axis])])
-        quaternion[largest] = squares[largest]
-    quaternion /= np.linalg.norm(quaternion)
-    if quaternion[0] < 0:
-        quaternion = -quaternion
-    sine = np.linalg.norm(quaternion[1:])
-    angle = 2 * np.arctan2(sine, quaternion[0])
-    return quaternion[1:] / sine * angle if sine > 0 else np.zeros(3)
+        found = np.array([skew[axis], *(m[axis] + m[:, axis])])
+        found[largest] = squares[largest]
+    found /= np.linalg.norm(found)
+    return -found if found[0] < 0 else found
+
+
+def rotation_vector(turned: np.ndarray) -> np.ndarray:
+    """(3,) axis times angle [rad] of a rotation (3, 3), angle in [0, pi]."""
+    turn = quaternion(turned)
+    sine = np.linalg.norm(turn[1:])
+    angle = 2 * np.arctan2(sine, turn[0])
+    return turn[1:] / sine * angle if sine > 0 else np.zeros(3)

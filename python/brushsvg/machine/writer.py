@@ -78,7 +78,8 @@ def painting_cell(suffix: str, cell: Cell) -> Cell:
 
 def text_of(post: Post, made: Program) -> Iterator[str]:
     """The program in a robot's language, in pieces."""
-    return post.write(in_robot_frame(made) if post.in_robot_frame else made)
+    pieces = post.write(in_robot_frame(made) if post.in_robot_frame else made)
+    return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 
 def whole_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:

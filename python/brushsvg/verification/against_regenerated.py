@@ -194,7 +194,7 @@ def _near(line: str, place: int) -> str:
     return ("..." if first else "") + line.strip()[first : first + 60]
 
 
-_TOLD = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =")
+_TOLD = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =|local ")
 
 
 def _with_header_sorted(acts: list[Act]) -> list[Act]:
@@ -207,7 +207,9 @@ def _with_header_sorted(acts: list[Act]) -> list[Act]:
 
 
 def _header_word(act: Act) -> str:
-    return act.text.partition(":")[0][:8]
+    """What tells one line of a header from the others: its first word, or what it declares."""
+    word = act.text.partition(":")[0]
+    return word if word.startswith("local ") else word[:8]
 
 
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")

@@ -80,7 +80,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
             just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
             poses[just_over, 2] = -deepest_mm
-            joint = radii if read.in_paper_frame else blend_radii(poses, Blending(read.joint_mm), arcs)
+            joint = radii if read.blends_by_radius else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs))
             told = [told_pass(meant[-1], cell)]
             cut.append(true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell))

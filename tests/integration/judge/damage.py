@@ -4,45 +4,176 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
+class Script(NamedTuple):
+    """What a robot's language looks like, for who damages it.
+
+    remark: what a comment begins with; moves: where a line that moves begins; words: for others of the same kind;
+    modes: what sets frames and tools; offsets: lines whose numbers shift what follows, and by how much, in so many
+    decimals; more: lines that do something else; says: a line that only says something; rates: numbers of speed,
+    acceleration and blend, the number as second group; after: lines of code behind the last stroke; first: lines
+    before which no remark may stand.
+    """
+
+    remark: str
+    moves: str
+    words: tuple[tuple[str, str], ...]
+    modes: tuple[tuple[str, str], ...]
+    offsets: str
+    shifts: tuple[float, ...]
+    more: tuple[str, ...]
+    says: str
+    rates: tuple[str, ...]
+    after: int = 0
+    first: int = 0
+    decimals: int = 3
+
+
+SCRIPTS = {
+    "urscript": Script(
+        remark="  #",
+        moves="  move",
+        words=(
+            *(("movel", "movep"), ("movep", "movel"), ("movel", "movej"), ("movec", "movel"), ("a=", "v=")),
+            *(("mode=1", "mode=0"), ("v=", "a=")),
+        ),
+        modes=(("set_tcp(", "set_tpc("), ("pose_trans(paper", "pose_trans(here"), ("paper = ", "p = ")),
+        offsets=r"set_tcp|  paper =|return pose_trans",
+        shifts=(-0.1, -0.001, 0.001, 0.1),
+        more=("  halt", "  sleep(0.500)", "  set_digital_out(0, True)", '  textmsg("x")'),
+        says='  textmsg("{}")',
+        rates=(r"(\b[avr]=)(\d+\.\d+)",),
+        after=1,
+        first=1,
+        decimals=7,
+    ),
+    "jaka": Script(
+        remark="#",
+        moves=r"(?:to|via) = |mov[lc]",
+        words=(
+            *(("movl", "movj"), ("movc(via, to", "movl(to"), ("to = ", "via = "), ("via = ", "to = ")),
+            *(("(to, 0", "(to, 1"), ("(up, 1", "(up, 0"), ("here[2]", "here[1]"), (" - here", " + here")),
+        ),
+        modes=(
+            *(("set_tool(", "set_tol("), ("tool = ", "tol = "), ("frame_id(0", "frame_id(1")),
+            ("up = ", "u = "),
+        ),
+        offsets=r"^(?:tool|to|rise) =",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=("exit()", "sleep(0.500)", "set_digital_output(0, 0, 1, 1)", "pause()", 'log_message(1, "x")'),
+        says='log_message(1, "{}")',
+        rates=tuple(rf"(mov\w\([\w, ]*, (?:\d+\.\d+, ){{{k}}})(\d+\.\d+)" for k in range(3)),
+    ),
+    "rapid": Script(
+        remark="  !",
+        moves=r" +Move",
+        words=(
+            *(
+                ("MoveL", "MoveJ"),
+                ("MoveC", "MoveL"),
+                ("MoveL", "Movel"),
+                ("fine", "z10"),
+                ("trans.z", "trans.y"),
+            ),
+            *(("mm_s(", "within("), ("within(", "mm_s("), ("<", ">"), ("here", "on_paper"), (":=", "=")),
+        ),
+        modes=(
+            *(
+                ("WObj:=paper", "WObj:=wobj0"),
+                ("brush\\", "tool0\\"),
+                ("\\WObj:=paper", ""),
+                ("brush", "brsh"),
+            ),
+            *(("\\Off", "\\On"), ("FALSE", "TRUE"), ("TRUE", "FALSE")),
+        ),
+        offsets=r"  LOCAL PERS|    RETURN|      here",
+        shifts=(-100, -1, 1, 0.2, 0.01),
+        more=(
+            *("    EXIT;", "    WaitTime 0.5;", "    SetDO do1, 1;", "    Stop;", '    TPWrite "x";'),
+            *("    ConfL \\On;", "    AccSet 10, 10;", "    VelSet 200, 5000;"),
+        ),
+        says='    TPWrite "{}";',
+        rates=(r"(mm_s\()(\d+\.\d+)", r"(within\()(\d+\.\d+)", r"(Max:=)(\d+\.\d+)"),
+        after=1,
+    ),
+    "xarm": Script(
+        remark="#",
+        moves=r"go\(",
+        words=(
+            *(
+                ("go(", "rise("),
+                ("None", "Nan"),
+                ("radius", "speed"),
+                ("here[2]", "here[1]"),
+                ("<", ">"),
+                ("x, y", "y, x"),
+            ),
+            *(("False", "True"), ("wait=", "relative="), ("!=", "=="), ("    ", ""), ("arrive", "arive")),
+        ),
+        modes=(
+            *(
+                ("set_tcp_offset(TOOL", "set_tcp_offset(UPRIGHT"),
+                ("TOOL", "TOL"),
+                ("set_mode(0", "set_mode(1"),
+            ),
+            *(
+                ("set_state(0", "set_state(3"),
+                ("motion_enable(True", "motion_enable(False"),
+                ("MOST = ", "MUST = "),
+            ),
+        ),
+        offsets=r"^(?:UPRIGHT|TOOL) =|world_offset",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *("sys.exit()", "rest(0.500)", "arm.set_cgpio_digital(0, 1)", 'stop("x")', 'print("x")'),
+            *("arm.set_state(4)", "arrive()", "arm.disconnect()", "arm.set_mode(2)"),
+        ),
+        says='print("{}")',
+        rates=(
+            r"(go\((?:-?[\d.]+, ){3})(\d+\.\d+)",
+            r"(go\((?:-?[\d.]+, ){4})(\d+\.\d+)",
+            r"(MOST = |rise\([\d.]+, )(\d+\.\d+)",
+        ),
+        after=2,
+    ),
+}
+
+
 class Page:
-    """A program's lines, by what they are."""
+    """A program's lines, by what they are. Their ends are put back by `damaged`."""
 
     def __init__(self, text: str, dialect: str):
-        self.dialect, self.is_robot, self.is_jaka = (
-            dialect,
-            dialect in ("urscript", "jaka"),
-            dialect == "jaka",
-        )
-        self.remark = "#" if self.is_jaka else "  #" if self.is_robot else "("
+        self.dialect, self.script = dialect, SCRIPTS.get(dialect)
+        self.remark = self.script.remark if self.script else "("
         self.lines = text.split("\n")[:-1]
         self.comments = [k for k, line in enumerate(self.lines) if self._comment(line)]
         self.code = [k for k, line in enumerate(self.lines) if line.strip() and not self._comment(line)]
         self.header = [k for k in self.comments if k < next(c for c in self.code if self._acts(c))]
         self.titles = [k for k in self.comments if re.search(r"stroke \d|paint: ", self.lines[k])]
-        self.moves = [
-            k for k in self.code if re.match(r"G[0-3] |  move|M3 |(?:to|via) = |mov[lc]", self.lines[k])
-        ]
+        moves = self.script.moves if self.script else r"G[0-3] |M3 "
+        self.moves = [k for k in self.code if re.match(moves, self.lines[k])]
 
     def _comment(self, line: str) -> bool:
         return line.startswith(self.remark)
 
     def _acts(self, k: int) -> bool:
-        return not self.lines[k].startswith("def ")
+        return not self.lines[k].startswith(("def ", "MODULE "))
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + 1 if self.is_jaka else self.code[-1] - self.is_robot
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm"))
+        last -= self.script.after if self.script else 0
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))
 
     def made(self, words: str) -> str:
-        return f"{self.remark} {words}" if self.is_robot else f"({words})"
+        return f"{self.remark} {words}" if self.script else f"({words})"
 
 
 Damage = Callable[[Page, np.random.Generator], list[str] | None]
@@ -190,10 +321,11 @@ def cut_off(page, random):
 
 def feed(page, random):
     """Faster or slower; also a robot's acceleration and blend."""
-    word = r"(\b[avr]=)(\d+\.\d+)" if page.is_robot else r"(F|G64 P)(\d+\.\d+)"
-    if page.is_jaka:  # speed, acceleration or tolerance
-        word = rf"(mov\w\([\w, ]*, (?:\d+\.\d+, ){{{int(random.integers(3))}}})(\d+\.\d+)"
-    if random.random() < 0.2 and not page.is_robot:
+    word = r"(F|G64 P)(\d+\.\d+)"
+    if page.script:
+        rates = page.script.rates
+        word = rates[int(random.integers(len(rates)))] if len(rates) > 1 else rates[0]
+    if random.random() < 0.2 and not page.script:
         word = r"(P)(\d+\.\d+)"  # a dwell
     lines = [k for k in page.code if re.search(word, page.lines[k])]
     if not lines:
@@ -213,33 +345,11 @@ def word_lost(page, random):
     return _with(page, k, " ".join(words[:at] + words[at + 1 :]))
 
 
-JAKA_WORDS = (
-    ("movl", "movj"),
-    ("movc(via, to", "movl(to"),
-    ("to = ", "via = "),
-    ("via = ", "to = "),
-    ("(to, 0", "(to, 1"),
-    ("(up, 1", "(up, 0"),
-    ("here[2]", "here[1]"),
-    (" - here", " + here"),
-)
-
-
 def word_changed(page, random):
     """Letters of words: one axis or code for another."""
     pairs = (
-        JAKA_WORDS
-        if page.is_jaka
-        else (
-            ("movel", "movep"),
-            ("movep", "movel"),
-            ("movel", "movej"),
-            ("movec", "movel"),
-            ("a=", "v="),
-            ("mode=1", "mode=0"),
-            ("v=", "a="),
-        )
-        if page.is_robot
+        page.script.words
+        if page.script
         else (
             *(("X", "Y"), ("Y", "X"), ("Z", "X"), ("G1", "G0"), ("G0", "G1"), ("G2", "G3"), ("G3", "G2")),
             *(("G1 ", ""), ("G0 ", ""), ("I", "J"), ("S", "F"), ("F", "S"), ("M3", "M4"), ("M3", "M5")),
@@ -268,19 +378,8 @@ MODES = {
 
 def mode(page, random):
     """Units, absolute places, planes, the path's mode: another, or none."""
-    if page.is_jaka:
-        pairs = (
-            ("set_tool(", "set_tol("),
-            ("tool = ", "tol = "),
-            ("frame_id(0", "frame_id(1"),
-            ("up = ", "u = "),
-        )
-        return _word(page, random, *_pick(random, pairs))
-    if page.is_robot:
-        old, new = _pick(
-            random, (("set_tcp(", "set_tpc("), ("pose_trans(paper", "pose_trans(here"), ("paper = ", "p = "))
-        )
-        return _word(page, random, old, new)
+    if page.script:
+        return _word(page, random, *_pick(random, page.script.modes))
     old = _pick(random, list(MODES))
     return _word(page, random, old, _pick(random, MODES[old]))
 
@@ -290,23 +389,16 @@ def _word(page, random, old: str, new: str):
     if not lines:
         return None
     k = _pick(random, lines)
-    line = re.sub(rf"(?<![\w.]){re.escape(old)}(?![\d.])", new, page.lines[k], count=1)
-    return _with(page, k, line if page.is_robot else " ".join(line.split()))
+    line = re.sub(rf"(?<![\w.]){re.escape(old)}(?![\d.])", lambda _: new, page.lines[k], count=1)
+    return _with(page, k, line if page.script else " ".join(line.split()))
 
 
 def offset(page, random):
     """A line more that shifts, scales or turns all that follows; or a robot's paper and tool."""
-    if page.is_jaka:
-        k = _pick(random, [k for k in page.code if re.match(r"tool =|to =|rise =", page.lines[k])])
+    if script := page.script:
+        k = _pick(random, [k for k in page.code if re.search(script.offsets, page.lines[k])])
         return _at_number(
-            page, random, [k], lambda n: f"{float(n) + random.choice((-100, -1, 1, 0.2, 90)):.3f}"
-        )
-    if page.is_robot:
-        k = _pick(
-            random, [k for k in page.code if re.search(r"set_tcp|  paper =|return pose_trans", page.lines[k])]
-        )
-        return _at_number(
-            page, random, [k], lambda n: f"{float(n) + random.choice((-0.1, -0.001, 0.001, 0.1)):.7f}"
+            page, random, [k], lambda n: f"{float(n) + random.choice(script.shifts):.{script.decimals}f}"
         )
     line = _pick(
         random,
@@ -332,15 +424,8 @@ def _more(page, random, line: str) -> list[str]:
 
 
 def m_code(page, random):
-    if page.is_jaka:
-        lines = "exit()", "sleep(0.500)", "set_digital_output(0, 0, 1, 1)", "pause()", 'log_message(1, "x")'
-        return _more(page, random, _pick(random, lines))
-    if page.is_robot:
-        return _more(
-            page,
-            random,
-            _pick(random, ("  halt", "  sleep(0.500)", "  set_digital_out(0, True)", '  textmsg("x")')),
-        )
+    if page.script:
+        return _more(page, random, _pick(random, page.script.more))
     if random.random() < 0.5:
         return _more(
             page,
@@ -368,7 +453,7 @@ def title(page, random):
     """A letter of a section's title."""
     k = _pick(random, page.titles)
     line = page.lines[k]
-    at = int(random.integers(len(page.remark) + page.is_robot, len(line) - 1))
+    at = int(random.integers(len(page.remark) + bool(page.script), len(line) - 1))
     return _with(page, k, line[:at] + _pick(random, "abcxyz0123456789") + line[at + 1 :])
 
 
@@ -387,8 +472,7 @@ WORDS = (
 def remark(page, random):
     """A comment more, of somebody's own."""
     at = int(random.integers(len(page.lines)))
-    if page.dialect == "urscript":
-        at = max(at, 1)
+    at = max(at, page.script.first if page.script else 0)
     return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
 
 
@@ -420,8 +504,8 @@ def acting(page, random):
     if which < 0.25:
         k = _pick(random, page.comments)
         line = page.lines[k]
-        if page.is_robot:
-            return _with(page, k, line.lstrip().replace("#", "", 1) or "x")
+        if page.script:
+            return _with(page, k, line.lstrip().replace(page.remark.strip(), "", 1) or "x")
         if kind == "linuxcnc":
             return _with(page, k, f"({words})")
         at = int(random.integers(1, len(line)))
@@ -438,10 +522,8 @@ def acting(page, random):
     if which < 0.75:
         k = _pick(random, page.comments)
         line = page.lines[k]
-        return _with(page, k, line[:-1] if not page.is_robot else line.replace("#", "", 1))
-    if page.is_jaka:
-        return _more(page, random, f'log_message(1, "{words[:3]}")')
-    return _more(page, random, page.made(words) if not page.is_robot else f'  textmsg("{words[:3]}")')
+        return _with(page, k, line.replace(page.remark.strip(), "", 1) if page.script else line[:-1])
+    return _more(page, random, page.script.says.format(words[:3]) if page.script else page.made(words))
 
 
 def return_in_line(page, random):
@@ -489,7 +571,8 @@ DAMAGES: dict[str, tuple[Damage, float]] = {
 def damaged(text: str, dialect: str, count: int, seed) -> list[tuple[str, str]]:
     """(which damage, text) of so many damaged programs, no two alike."""
     random = np.random.default_rng(seed)
-    page, names = Page(text, dialect), list(DAMAGES)
+    end = "\r\n" if "\r\n" in text else "\n"
+    page, names = Page(text.replace(end, "\n"), dialect), list(DAMAGES)
     weights = np.array([weight for _, weight in DAMAGES.values()], dtype=float)
     out: dict[str, str] = {}
     tries = 0
@@ -499,7 +582,7 @@ def damaged(text: str, dialect: str, count: int, seed) -> list[tuple[str, str]]:
         lines = DAMAGES[name][0](page, random)
         if lines is None:
             continue
-        new = "\n".join(lines) + "\n"
+        new = end.join(lines) + end
         if new != text:
             out.setdefault(new, name)
     return [(name, new) for new, name in out.items()]

@@ -10,8 +10,9 @@ import re
 
 import numpy as np
 
-from .moves import Leg, RefusedError, Run
-from .places import angle_rad, frame, turned_deg
+from .arm import Arm
+from .moves import RefusedError, Run
+from .places import frame, turned_deg
 
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 SUM = rf"\(?(?:{N}|\w+(?:\[\d\])?)(?: [-+] (?:{N}|\w+(?:\[\d\])?))?\)?"
@@ -74,12 +75,9 @@ def _compiled(text: str, run: Run) -> list:
     return blocks[0]
 
 
-class _Robot:
+class _Robot(Arm):
     def __init__(self, start, paper, down, tool):
-        self.run = Run()
-        self.at = np.array(start, dtype=float)
-        self.paper, self.down, self.true_tool = paper, down, tool
-        self.tcp = np.eye(4)  # of the installation: the flange
+        super().__init__(start, paper, down, tool, by_radius=False)
         self.names: dict[str, object] = {}
         self.in_base = False
         self.had_code = False
@@ -95,10 +93,6 @@ class _Robot:
                 self._if(number, *found)
             else:
                 getattr(self, f"_{what}")(number, found)
-
-    def _leg(self, leg: Leg) -> None:
-        self.run.legs.append(leg)
-        self.at = np.array(leg.end)
 
     def _known(self, number: int, name: str, length: int = 6):
         value = self.names.get(name.lower())
@@ -142,85 +136,39 @@ class _Robot:
 
     def _here(self, number: int, found) -> None:
         """The pose of the TCP as the controller believes it to be; of its angles a program of ours asks nothing."""
-        true = self.paper @ frame((0, 0, 0), self.down)
-        true[:3, 3] = self.at
-        believed = true @ np.linalg.inv(self.true_tool) @ self.tcp
-        self.names[found[1].lower()] = np.array([*believed[:3, 3], 0.0, 0.0, 0.0])
+        self.names[found[1].lower()] = np.array([*self.believed()[:3, 3], 0.0, 0.0, 0.0])
 
-    def _tip(self, number: int, values: np.ndarray) -> tuple[np.ndarray, float]:
-        """Where the real brush's tip comes, and how far it leans."""
+    def _target(self, number: int, values: np.ndarray) -> np.ndarray:
         if not self.in_base:
             self.run.acts.append(f"line {number}: in a frame that somebody has left")
-        target = frame(values[:3], turned_deg(*values[3:]))
-        tip = target @ np.linalg.inv(self.tcp) @ self.true_tool
-        return tip[:3, 3], angle_rad(tip[:3, :3], self.paper[:3, :3] @ self.down)
-
-    def _speeds(self, number: int, speed: str, acceleration: str, cut: str) -> tuple[float, float, float]:
-        if not (float(speed) > 0 and float(acceleration) > 0 and float(cut) >= 0):
-            raise RefusedError(f"line {number}: no speed, no acceleration or a tolerance below 0")
-        return float(speed), float(acceleration), float(cut)
+        return frame(values[:3], turned_deg(*values[3:]))
 
     def _line(self, number: int, found) -> None:
         values = self._known(number, found[2])
-        speed, acceleration, cut_mm = self._speeds(number, *found.groups()[3:])
+        speed, acceleration, cut_mm = map(float, found.groups()[3:])
         if found[1] == "movj":
             self.run.acts.append(f"line {number}: a move of the joints, whose way nobody knows")
         if found[3] == "0":
-            tip, tilt = self._tip(number, values)
-        else:
-            along = np.eye(3) if found[3] == "1" else self.paper[:3, :3] @ self.down
-            tip, tilt = self.at + along @ values[:3], float(np.radians(np.abs(values[3:]).max()))
-        at = tuple(self.at)
-        self._leg(
-            Leg(
-                number,
-                "feed",
-                at,
-                tuple(tip),
-                speed,
-                cut_mm=cut_mm,
-                tilt_rad=tilt,
-                acceleration=acceleration,
-            )
-        )
+            self.line(number, self._target(number, values), speed, acceleration, cut_mm)
+            return
+        along = np.eye(3) if found[3] == "1" else self.paper[:3, :3] @ self.down
+        tip, at = self.at + along @ values[:3], tuple(self.at)
+        tilt = float(np.radians(np.abs(values[3:]).max()))
+        self.line(number, self.believed(), speed, acceleration, cut_mm)
+        self.run.legs[-1] = self.run.legs[-1]._replace(start=at, end=tuple(tip), tilt_rad=tilt)
+        self.at = tip
 
     def _circle(self, number: int, found) -> None:
-        via, _ = self._tip(number, self._known(number, found[1]))
-        end, tilt = self._tip(number, self._known(number, found[2]))
+        via, end = (self._target(number, self._known(number, name)) for name in (found[1], found[2]))
         if found[3] != "0":
             self.run.acts.append(f"line {number}: a circle counted from where the tool is")
-        speed, acceleration, cut_mm = self._speeds(number, *found.groups()[3:])
-        a, b, c = self.at, via, end
-        if max(abs(a[2] - b[2]), abs(a[2] - c[2])) > 0.05:
-            self.run.acts.append(f"line {number}: a circle that is not level")
-        (x, y), (u, v) = (b - a)[:2], (c - a)[:2]
-        cross = x * v - y * u
-        if abs(cross) < 1e-6:
-            raise RefusedError(f"line {number}: three points of a circle on one line")
-        one, other = x * x + y * y, u * u + v * v
-        centre = a[:2] + np.array([v * one - y * other, x * other - u * one]) / (2 * cross)
-        self._leg(
-            Leg(
-                number,
-                "arc",
-                tuple(self.at),
-                tuple(end),
-                speed,
-                tuple(centre),
-                1 if cross > 0 else -1,
-                cut_mm,
-                tilt_rad=tilt,
-                acceleration=acceleration,
-            )
-        )
+        self.circle(number, via, end, *map(float, found.groups()[3:]))
 
     def _sleep(self, number: int, found) -> None:
-        if float(found[1]) < 0:
-            raise RefusedError(f"line {number}: sleeps less than nothing")
-        self._leg(Leg(number, "wait", tuple(self.at), tuple(self.at), seconds=float(found[1])))
+        self.rest(number, "wait", float(found[1]))
 
     def _pause(self, number: int, found) -> None:
-        self._leg(Leg(number, "stop", tuple(self.at), tuple(self.at)))
+        self.rest(number, "stop")
 
     def _acts(self, number: int, found) -> None:
         self.run.acts.append(f"line {number}: {found[0][:30]}")

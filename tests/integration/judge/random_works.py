@@ -12,10 +12,10 @@ from brushsvg.calibration.from_widths import new_brush
 from brushsvg.machine.cell import Blending, Paper, Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell
 
+from .verdict import ROBOTS
 from .works import CELLS
 
 SHEET = (80.0, 60.0)
-ROBOTS = ("urscript", "jaka")
 
 
 def random_svg(random) -> str:

@@ -10,8 +10,9 @@ import re
 
 import numpy as np
 
-from .moves import Leg, RefusedError, Run
-from .places import angle_rad, frame, turned_vector
+from .arm import Arm
+from .moves import RefusedError, Run
+from .places import frame, turned_vector
 
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 POSE = rf"p\[({N}), ({N}), ({N}), ({N}), ({N}), ({N})\]"
@@ -81,12 +82,9 @@ def _without_comment(line: str) -> str:
     return line
 
 
-class _Robot:
+class _Robot(Arm):
     def __init__(self, start, paper, down, tool):
-        self.run = Run(blends_by_radius=True)
-        self.at = np.array(start, dtype=float)
-        self.true_paper, self.true_down, self.true_tool = paper, down, tool
-        self.tcp = np.eye(4)  # of the installation: the flange
+        super().__init__(start, paper, down, tool, by_radius=True)
         self.names: dict[str, np.ndarray] = {}
         self.places: dict[str, tuple[str, np.ndarray]] = {}
         self.here: np.ndarray | None = None
@@ -182,20 +180,13 @@ class _Robot:
         elif what == "circle":
             self._circle(number, found)
         elif what == "sleep":
-            if float(found[1]) < 0:
-                raise RefusedError(f"line {number}: sleeps less than nothing")
-            self._leg(Leg(number, "wait", tuple(self.at), tuple(self.at), seconds=float(found[1])))
+            self.rest(number, "wait", float(found[1]))
         elif what == "popup":
-            kind = "stop" if found[1] == "True" else "wait"
-            self._leg(Leg(number, kind, tuple(self.at), tuple(self.at)))
+            self.rest(number, "stop" if found[1] == "True" else "wait")
         elif what == "acts":
             self.run.acts.append(f"line {number}: {found[0][:30]}")
         else:
             raise RefusedError(f"line {number}: {what} has no place here")
-
-    def _leg(self, leg: Leg) -> None:
-        self.run.legs.append(leg)
-        self.at = np.array(leg.end)
 
     def _known(self, number: int, name: str) -> np.ndarray:
         if name not in self.names:
@@ -204,17 +195,9 @@ class _Robot:
 
     def _look(self, number: int, name: str) -> None:
         """The pose of the TCP, as the controller believes it to be, in the paper that the program has set."""
-        true = self.true_paper @ frame((0, 0, 0), self.true_down)
-        true[:3, 3] = self.at
-        believed = true @ np.linalg.inv(self.true_tool) @ self.tcp
-        seen = np.linalg.inv(self._known(number, name)) @ believed
+        seen = np.linalg.inv(self._known(number, name)) @ self.believed()
         self.here = np.array([*(seen[:3, 3] * 1e-3), 0.0, 0.0, 0.0])
         self.here_turned = seen[:3, :3]
-
-    def _tip(self, target: np.ndarray) -> tuple[np.ndarray, float]:
-        """Where the real brush's tip comes, and how far it leans, when the believed TCP is at a pose."""
-        tip = target @ np.linalg.inv(self.tcp) @ self.true_tool
-        return tip[:3, 3], angle_rad(tip[:3, :3], self.true_paper[:3, :3] @ self.true_down)
 
     def _rise(self, number: int, found) -> None:
         if self.here is None:
@@ -224,75 +207,28 @@ class _Robot:
             raise RefusedError(f"line {number}: a pose has six numbers")
         place = np.array([self.here[which[0]], self.here[which[1]], float(found[4])]) * 1e3
         turned = self.here_turned if which[2:] == [3, 4, 5] else np.eye(3)
-        tip, tilt = self._tip(self._known(number, found[1]) @ frame(place, turned))
-        self._checked(number, found[8], found[9])
-        speed, acceleration = 1e3 * float(found[9]), float(found[8])
-        at = tuple(self.at)
-        self._leg(Leg(number, "feed", at, tuple(tip), speed, tilt_rad=tilt, acceleration=acceleration))
+        target = self._known(number, found[1]) @ frame(place, turned)
+        self.line(number, target, 1e3 * float(found[9]), float(found[8]), 0.0)
 
-    def _place(self, number: int, name: str, texts) -> tuple[np.ndarray, float]:
+    def _place(self, number: int, name: str, texts) -> np.ndarray:
         if name not in self.places:
             raise RefusedError(f"line {number}: no function {name}")
         paper, down = self.places[name]
         place = np.array([float(text) for text in texts]) * 1e3
-        return self._tip(self._known(number, paper) @ frame(place, down))
-
-    def _checked(self, number: int, acceleration: str, speed: str) -> None:
-        if not (float(acceleration) > 0 and float(speed) > 0):
-            raise RefusedError(f"line {number}: no acceleration or speed")
+        return self._known(number, paper) @ frame(place, down)
 
     def _move(self, number: int, found) -> None:
-        kind = found[1]
-        tip, tilt = self._place(number, found[2], found.groups()[2:5])
-        self._checked(number, found[6], found[7])
-        cut_mm = 1e3 * float(found[8] or 0)
-        if cut_mm < 0:
-            raise RefusedError(f"line {number}: a negative radius")
-        if kind == "movej":
+        target = self._place(number, found[2], found.groups()[2:5])
+        if found[1] == "movej":
             self.run.acts.append(f"line {number}: a move of the joints, whose way nobody knows")
-        speed = 1e3 * float(found[7])
-        self._leg(
-            Leg(
-                number,
-                "process" if kind == "movep" else "feed",
-                tuple(self.at),
-                tuple(tip),
-                speed,
-                cut_mm=cut_mm,
-                tilt_rad=tilt,
-                acceleration=float(found[6]),
-            )
-        )
+        acceleration, speed, cut = (float(found[k] or 0) for k in (6, 7, 8))
+        self.line(number, target, 1e3 * speed, acceleration, 1e3 * cut)
+        if found[1] == "movep":
+            self.run.legs[-1] = self.run.legs[-1]._replace(kind="process")
 
     def _circle(self, number: int, found) -> None:
         self.run.frame.append(f"circles turn the tool by mode {found[12]}")
-        via, _ = self._place(number, found[1], found.groups()[1:4])
-        end, tilt = self._place(number, found[5], found.groups()[5:8])
-        self._checked(number, found[9], found[10])
-        # in the plane of the three points, told in the paper's frame
-        back = np.linalg.inv(self.true_paper)
-        a, b, c = (back[:3, :3] @ np.asarray(point) + back[:3, 3] for point in (self.at, via, end))
-        if max(abs(a[2] - b[2]), abs(a[2] - c[2])) > 0.05:
-            self.run.acts.append(f"line {number}: a circle that is not level")
-        (x, y), (u, v) = (b - a)[:2], (c - a)[:2]
-        cross = x * v - y * u
-        if abs(cross) < 1e-6:
-            raise RefusedError(f"line {number}: three points of a circle on one line")
-        square_via, square_end = x * x + y * y, u * u + v * v
-        centre = a[:2] + np.array([v * square_via - y * square_end, x * square_end - u * square_via]) / (
-            2 * cross
-        )
-        self._leg(
-            Leg(
-                number,
-                "arc",
-                tuple(self.at),
-                tuple(end),
-                1e3 * float(found[10]),
-                tuple(centre),
-                1 if cross > 0 else -1,
-                1e3 * float(found[11]),
-                tilt_rad=tilt,
-                acceleration=float(found[9]),
-            )
-        )
+        via = self._place(number, found[1], found.groups()[1:4])
+        end = self._place(number, found[5], found.groups()[5:8])
+        acceleration, speed, cut = (float(found[k]) for k in (9, 10, 11))
+        self.circle(number, via, end, 1e3 * speed, acceleration, 1e3 * cut)

@@ -18,7 +18,9 @@ from . import places
 from .gcode import run_gcode
 from .jaka import run_jaka
 from .moves import Leg, Run, arc_points
+from .rapid import run_rapid
 from .urscript import run_urscript
+from .xarm import run_xarm
 
 OFF_MM = 0.1  # what the mark of a brush shows
 STEP_MM = 0.04  # of samples where the brush may touch: how exactly OFF_MM is known
@@ -28,6 +30,9 @@ ROUNDING_MM = 0.002  # two units of the last decimal of the coarsest dialect
 LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length tells
 SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
 MOST = 4000  # samples of one leg
+
+
+ROBOTS = {"urscript": run_urscript, "jaka": run_jaka, "rapid": run_rapid, "xarm": run_xarm}
 
 
 @dataclass
@@ -111,7 +116,7 @@ class Job:
         return tuple(places.moved(self.paper, low)[0])
 
     def interpret(self, text: str) -> Run:
-        if robot := {"urscript": run_urscript, "jaka": run_jaka}.get(self.language):
+        if robot := ROBOTS.get(self.language):
             return robot(text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell))
         dialect = "linuxcnc" if self.language == "linuxcnc" else "grbl"
         servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None

@@ -21,6 +21,8 @@ CELLS = {
     "grbl-servo": ("grbl-servo", ".nc"),
     "urscript": ("ur5e", ".script"),
     "jaka": ("jaka-zu3", ".jks"),
+    "rapid": ("irb120", ".mod"),
+    "xarm": ("xarm6", ".py"),
 }
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 

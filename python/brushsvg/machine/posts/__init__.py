@@ -14,6 +14,7 @@ class Post(NamedTuple):
 
     in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
     circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines.
+    line_end: as the controller's own files have it.
     """
 
     title: str
@@ -21,6 +22,7 @@ class Post(NamedTuple):
     write: Callable[[Program], Iterator[str]]
     in_robot_frame: bool = True
     circles_by: str = "centre"
+    line_end: str = "\n"
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -53,6 +55,18 @@ def _jaka(program: Program) -> Iterator[str]:
     return jaka(program)
 
 
+def _rapid(program: Program) -> Iterator[str]:
+    from .rapid import rapid
+
+    return rapid(program)
+
+
+def _xarm(program: Program) -> Iterator[str]:
+    from .xarm import xarm
+
+    return xarm(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -60,4 +74,6 @@ POSTS = {  # by the language a cell names
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
     "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
+    "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
+    "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
 }

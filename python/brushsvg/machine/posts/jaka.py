@@ -6,15 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cell import Blending, robot_from_paper
-from ..frames import rotation, rotation_deg
+from ..cell import Blending
 from ..motion import Move, Program, Wait, via
+from .script import Words, body, numbers, rounded_down, upright_deg
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
 SPEED_DECIMALS = 3
-RISE_MM_S = 50.0
 JAKA_END = "end: the brush is held up"
 
 
@@ -28,28 +27,18 @@ def jaka(program: Program) -> Iterator[str]:
     cell, decimals = program.cell, program.cell.decimals
     yield "".join(map(comment, program.header))
     yield "set_user_frame_id(0)\n"
-    yield f"tool = [{_numbers(cell.tool.tcp_mm, decimals)}, {_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
+    yield f"tool = [{numbers(cell.tool.tcp_mm, decimals)}, {numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
     yield "set_tool(tool)\n"
-    turned = _numbers(turned_deg(cell), DEGREE_DECIMALS)
+    turned = numbers(upright_deg(cell), DEGREE_DECIMALS)
     acceleration = number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
-    risen = False
-    for section in program.sections():
-        yield "\n" + comment(section.title)
-        for step in section.steps:
-            if isinstance(step, Wait):
-                yield _wait(step)
-                continue
-            if not risen:  # straight up before going anywhere
-                yield _rise(program.rise_mm, step.speed_mm_s, acceleration, decimals)
-                risen = True
-            yield from _lines(step, turned, acceleration, cell.blending, decimals)
+    words = Words(
+        comment,
+        lambda speed: _rise(program.rise_mm, speed, acceleration, decimals),
+        _wait,
+        lambda move: _lines(move, turned, acceleration, cell.blending, decimals),
+    )
+    yield from body(program, words)
     yield "\n" + comment(JAKA_END)
-
-
-def turned_deg(cell) -> np.ndarray:
-    """(3,) the tool in the robot's frame, its z into the paper: turned about the fixed x, then y, then z axis."""
-    down = np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, cell.tool.spin_deg))
-    return rotation_deg(robot_from_paper(cell)[:3, :3] @ down)
 
 
 def comment(text: str) -> str:
@@ -64,7 +53,7 @@ def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int)
         f"if(here[2] < {height}):\n"
         f"  rise = ({height} - here[2])\n"
         "  up = [0, 0, rise, 0, 0, 0]\n"
-        f"  movl(up, 1, {_speed(min(speed_mm_s, RISE_MM_S))}, {acceleration}, 0)\n"
+        f"  movl(up, 1, {_speed(speed_mm_s)}, {acceleration}, 0)\n"
         "end\n"
     )
 
@@ -92,9 +81,4 @@ def _wait(step: Wait) -> str:
 
 
 def _speed(speed_mm_s: float) -> str:
-    unit = 10.0**SPEED_DECIMALS
-    return number(max(np.floor(speed_mm_s * unit + 1e-6), 1) / unit, SPEED_DECIMALS)
-
-
-def _numbers(values, decimals: int) -> str:
-    return ", ".join(number(value, decimals) for value in values)
+    return rounded_down(speed_mm_s, SPEED_DECIMALS)

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..frames import frame_of_pose, rotation, rotation_vector
+from ..frames import frame_of_pose, rotation_vector
 from ..motion import Move, Program, Wait, via
+from .script import QUIET, Words, body, down
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -21,37 +22,34 @@ def urscript(program: Program) -> Iterator[str]:
     decimals = program.cell.decimals + 3
     tool = program.cell.tool
     tcp = frame_of_pose(np.array(tool.tcp_mm), tool.rotation_deg)
-    down = np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, tool.spin_deg))  # the tool's z into the paper
     acceleration = number(program.cell.speeds.acceleration_mm_s2 * M, 4)
     yield "def brushsvg():\n"
     yield "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
     yield f"  set_tcp({_pose(tcp, decimals)})\n"
     yield f"  paper = {_pose(program.robot_from_frame, decimals)}\n"
     yield "  def on_paper(x, y, z):\n"
-    yield f"    return pose_trans(paper, p[x, y, z, {_vector(down, decimals)}])\n"
+    yield f"    return pose_trans(paper, p[x, y, z, {_vector(down(tool.spin_deg), decimals)}])\n"
     yield "  end\n"
-    risen = False
-    for section in program.sections():
-        yield f"\n  # {plain(section.title, LINE_LIMIT - 4)}\n"
-        for step in section.steps:
-            if isinstance(step, Wait):
-                yield _wait(step)
-                continue
-            if not risen:  # straight up before going anywhere
-                yield from _rise(program.rise_mm, step.speed_mm_s, acceleration, decimals)
-                risen = True
-            yield from _lines(step, acceleration, decimals)
+    words = Words(
+        lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
+        lambda speed: _rise(program.rise_mm, speed, acceleration, decimals),
+        _wait,
+        lambda move: _lines(move, acceleration, decimals),
+    )
+    yield from body(program, words)
     yield "end\n"
     yield "brushsvg()\n"
 
 
-def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> Iterator[str]:
+def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
     height = number(height_mm * M, decimals)
-    yield "  here = pose_trans(pose_inv(paper), get_actual_tcp_pose())\n"
-    yield f"  if here[2] < {height}:\n"
-    yield f"    movel(pose_trans(paper, p[here[0], here[1], {height}, here[3], here[4], here[5]]), "
-    yield f"a={acceleration}, v={number(min(speed_mm_s, 50.0) * M, 4)})\n"
-    yield "  end\n"
+    return (
+        "  here = pose_trans(pose_inv(paper), get_actual_tcp_pose())\n"
+        f"  if here[2] < {height}:\n"
+        f"    movel(pose_trans(paper, p[here[0], here[1], {height}, here[3], here[4], here[5]]), "
+        f"a={acceleration}, v={number(speed_mm_s * M, 4)})\n"
+        "  end\n"
+    )
 
 
 def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
@@ -77,11 +75,8 @@ def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'  popup("{plain(step.message, 60).translate(_QUIET)}", "brushsvg", False, False, blocking=True)\n'
+        return f'  popup("{plain(step.message, 60).translate(QUIET)}", "brushsvg", False, False, blocking=True)\n'
     return f"  sleep({number(step.seconds, 3)})\n"
-
-
-_QUIET = {ord('"'): "'", ord("\\"): "/"}
 
 
 def _pose(frame: np.ndarray, decimals: int) -> str:

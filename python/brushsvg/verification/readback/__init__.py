@@ -69,13 +69,14 @@ class Readback:
     """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
     it first moves; rises_mm: heights to which it goes straight from wherever the tool is.
 
-    in_paper_frame: points are the paper's; else the robot's. paper: the pose that such a program sets, six numbers.
+    in_paper_frame: points are the paper's; else the robot's. blends_by_radius: each move says how far before its end
+    the next one may begin; else joint_mm holds for all corners.
     """
 
     sections: list[ReadSection] = field(default_factory=list)
     joint_mm: float = 0.0
     in_paper_frame: bool = False
-    paper: tuple[float, ...] = ()
+    blends_by_radius: bool = False
     acts: list[Act] = field(default_factory=list)
     modes: frozenset[str] | None = None
     rises_mm: list[float] = field(default_factory=list)
@@ -145,10 +146,14 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     if post is None or suffix not in post.extensions:
         speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
         raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}", code="program-format")
+    if post.line_end != "\n":
+        text = text.replace(post.line_end, "\n")
     if odd := re.search(r"[^\n -~]", text):
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
-        if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(("(", "#", "popup")):
+        if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
+            ("(", "#", "!", "popup", "TPWrite")
+        ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
                 code="line-unread",
@@ -177,10 +182,24 @@ def _urscript(text: str, cell: Cell) -> Readback:
     return read_urscript(text)
 
 
+def _rapid(text: str, cell: Cell) -> Readback:
+    from .rapid import read_rapid
+
+    return read_rapid(text)
+
+
+def _xarm(text: str, cell: Cell) -> Readback:
+    from .xarm import read_xarm
+
+    return read_xarm(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
     "grbl-servo": _gcode,
     "urscript": _urscript,
     "jaka": _jaka,
+    "rapid": _rapid,
+    "xarm": _xarm,
 }

@@ -30,7 +30,8 @@ _OTHER = re.compile(  # the frame around the moves
 
 def read_urscript(text: str) -> Readback:
     """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
-    out = Readback(in_paper_frame=True)
+    out = Readback(in_paper_frame=True, blends_by_radius=True)
+    has_paper = False
     lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     for number, line in lines:
         if line.startswith("# "):
@@ -60,7 +61,7 @@ def read_urscript(text: str) -> Readback:
             out.rises_mm.append(height_mm)
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
         elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
-            out.paper = tuple(float(value) for value in found[1].split(", ")) if found else out.paper
+            has_paper = has_paper or bool(found)
             if " = " in line and out.acts and out.acts[-1].text == line:
                 continue  # set twice, it is the same
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
@@ -69,7 +70,7 @@ def read_urscript(text: str) -> Readback:
             raise Error(
                 f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread"
             )
-    if not out.paper:
+    if not has_paper:
         raise Error("the line that sets the paper is missing", code="program-cut-short")
     code = [line for _, line in lines if not line.startswith("# ")]
     if code[-2:] != ["end", "brushsvg()"] or lines[-1][1] != code[-1]:

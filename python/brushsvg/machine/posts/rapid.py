@@ -1,0 +1,108 @@
+"""Moves -> RAPID (.mod) for ABB robots: millimetres, the paper as a work object, the brush's tip as the tool."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..frames import frame_of_pose, quaternion
+from ..motion import Move, Program, Wait, via
+from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down
+from .text import number, plain, rows
+
+LINE_LIMIT = 100
+TURN_DECIMALS = 7  # of quaternions: a tenth of a micrometre at a metre
+SPEED_DECIMALS = 3
+STRING_LIMIT = 60
+RAPID_END = "end: the brush is held up"
+BRUSH_KG = 0.5  # nobody has weighed it; a load of 0 would be refused
+USED = r"brush\WObj:=paper"
+
+_FUNCTIONS = """
+  FUNC speeddata mm_s(num speed)
+    RETURN [speed, 500, 5000, 1000];
+  ENDFUNC
+
+  FUNC zonedata within(num radius)
+    IF radius = 0 THEN
+      RETURN fine;
+    ENDIF
+    RETURN [FALSE, radius, radius, radius, 0.1, radius, 0.1];
+  ENDFUNC
+"""
+
+
+def rapid(program: Program) -> Iterator[str]:
+    """A module whose routine paint does all. The points are those of the work object paper: to teach it anew, only its
+    line has to change. Configurations are not asked for: the robot keeps the one in which it was put over the sheet."""
+    cell, decimals = program.cell, program.cell.decimals
+    acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
+    tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
+    load = f"[{BRUSH_KG}, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]"
+    upright = _turned(down(cell.tool.spin_deg))
+    paper = _pose(program.robot_from_frame, decimals)
+    yield "MODULE brushsvg\n"
+    yield "".join(map(comment, program.header))
+    yield f"  LOCAL PERS tooldata brush := [TRUE, {_pose(tool, decimals)}, {load}];\n"
+    yield (
+        f'  LOCAL PERS wobjdata paper := [FALSE, TRUE, "", {paper}, [[0, 0, 0], [1, 0, 0, 0]]];\n'
+        "  LOCAL VAR robtarget here;\n\n"
+        "  FUNC robtarget on_paper(num x, num y, num z)\n"
+        f"    RETURN [[x, y, z], [{upright}], [0, 0, 0, 0], [9E9, 9E9, 9E9, 9E9, 9E9, 9E9]];\n"
+        "  ENDFUNC\n"
+    )
+    yield _FUNCTIONS
+    yield "\n  PROC paint()\n    ConfL \\Off;\n"
+    yield f"    PathAccLim TRUE \\AccMax:={acceleration}, TRUE \\DecelMax:={acceleration};\n"
+    words = Words(
+        comment,
+        lambda speed: _rise(program.rise_mm, speed, decimals),
+        _wait,
+        lambda move: _lines(move, decimals),
+    )
+    yield from body(program, words)
+    yield "\n" + comment(RAPID_END) + "  ENDPROC\nENDMODULE\n"
+
+
+def comment(text: str) -> str:
+    return f"  ! {plain(text, LINE_LIMIT - 4)}\n"
+
+
+def _rise(height_mm: float, speed_mm_s: float, decimals: int) -> str:
+    height = number(height_mm, decimals)
+    return (
+        "    here := CRobT(\\Tool:=brush \\WObj:=paper);\n"
+        f"    IF here.trans.z < {height} THEN\n"
+        f"      here.trans.z := {height};\n"
+        f"      MoveL here, mm_s({rounded_down(speed_mm_s, SPEED_DECIMALS)}), fine, {USED};\n"
+        "    ENDIF\n"
+    )
+
+
+def _lines(move: Move, decimals: int) -> Iterator[str]:
+    speed = f"mm_s({rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
+    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
+    if move.arc is not None:
+        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        yield from rows(f"    MoveC {point}, {point}, {speed}, fine, {USED};", values, decimals)
+        return
+    if move.blends_mm is None:
+        yield from rows(f"    MoveL {point}, {speed}, fine, {USED};", move.points_mm, decimals)
+        return
+    values = np.column_stack([move.points_mm, blends_mm(move, decimals)])
+    yield from rows(f"    MoveL {point}, {speed}, within(%.{decimals}f), {USED};", values, decimals)
+
+
+def _wait(step: Wait) -> str:
+    if step.seconds is None:
+        return f'    TPWrite "{plain(step.message, STRING_LIMIT).translate(QUIET)}";\n    Stop;\n'
+    return f"    WaitTime \\InPos, {number(step.seconds, 3)};\n"
+
+
+def _pose(frame: np.ndarray, decimals: int) -> str:
+    return f"[[{numbers(frame[:3, 3], decimals)}], [{_turned(frame[:3, :3])}]]"
+
+
+def _turned(turned: np.ndarray) -> str:
+    return numbers(quaternion(turned), TURN_DECIMALS)

@@ -1,0 +1,105 @@
+"""Moves -> Python (.py) for UFACTORY xArm by the vendor's SDK: millimetres, degrees, points in the arm's base frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..motion import Move, Program, Wait
+from .script import QUIET, Words, blends_mm, body, numbers, rounded_down, upright_deg
+from .text import number, plain, rows
+
+LINE_LIMIT = 100
+DEGREE_DECIMALS = 4
+SPEED_DECIMALS = 3
+# of a blend: the SDK does not say whether a radius is the circle's, or how far before the corner it begins; for turns
+# of up to 100 degrees, where brushsvg blends, so much cuts a corner by no more than the tolerance in both readings
+BLENDED = 0.8
+XARM_END = "end: the brush is held up"
+
+BEFORE = """import sys
+
+from xarm.wrapper import XArmAPI
+"""
+FUNCTIONS = """
+
+def done(code):
+    if code != 0:
+        arm.set_state(4)
+        sys.exit(f"the arm answers {code} and was stopped")
+
+
+def go(x, y, z, speed, radius):
+    done(arm.set_position(x, y, z, *UPRIGHT, radius or None, speed, MOST, is_radian=False, wait=False))
+
+
+def arrive():
+    done(arm.set_position(wait=True))
+
+
+def rise(height, speed):
+    code, here = arm.get_position(is_radian=False)
+    done(code)
+    if here[2] < height:
+        done(arm.set_position(*here[:2], height, *here[3:], None, speed, MOST, is_radian=False, wait=True))
+
+
+def rest(seconds):
+    done(arm.set_pause_time(seconds))
+
+
+def stop(message):
+    arrive()
+    input(message + ", then press Enter ")
+
+
+arm = XArmAPI(sys.argv[1])
+done(arm.motion_enable(True))
+done(arm.set_world_offset([0, 0, 0, 0, 0, 0], is_radian=False))
+done(arm.set_tcp_offset(TOOL, is_radian=False))
+done(arm.set_mode(0))
+done(arm.set_state(0))
+"""
+AFTER = "arrive()\narm.disconnect()\n"
+
+
+def xarm(program: Program) -> Iterator[str]:
+    """A script for a computer beside the arm, which sends the moves one by one; the SDK waits while the arm's list of
+    them is full. Turns of the brush are lines: the SDK tells a circle by its share of a whole one, not by its end."""
+    cell, decimals = program.cell, program.cell.decimals
+    tool = numbers(cell.tool.tcp_mm, decimals), numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
+    yield "".join(map(comment, program.header))
+    yield BEFORE
+    yield f"\nUPRIGHT = ({numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
+    yield f"TOOL = [{tool[0]}, {tool[1]}]\n"
+    yield f"MOST = {rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
+    yield FUNCTIONS
+    words = Words(
+        comment,
+        lambda speed: f"rise({number(program.rise_mm, decimals)}, {rounded_down(speed, SPEED_DECIMALS)})\n",
+        _wait,
+        lambda move: _lines(move, decimals),
+    )
+    yield from body(program, words)
+    yield f"\n{AFTER}" + comment(XARM_END)
+
+
+def comment(text: str) -> str:
+    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+
+
+def _lines(move: Move, decimals: int) -> Iterator[str]:
+    speed = rounded_down(move.speed_mm_s, SPEED_DECIMALS)
+    point = f"go(%.{decimals}f, %.{decimals}f, %.{decimals}f, {speed}"
+    if move.blends_mm is None:
+        yield from rows(f"{point}, None)", move.points_mm, decimals)
+        return
+    values = np.column_stack([move.points_mm, blends_mm(move, decimals, BLENDED)])
+    yield from rows(f"{point}, %.{decimals}f)", values, decimals)
+
+
+def _wait(step: Wait) -> str:
+    if step.seconds is None:
+        return f'stop("{plain(step.message, 60).translate(QUIET)}")\n'
+    return f"rest({number(step.seconds, 3)})\n"

@@ -1,0 +1,177 @@
+"""Scripts of robot arms as brushsvg writes them, read back line by line: what a line is, its language says."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import Error
+from . import Act, Readback, Step, circle
+
+N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+LEANS_DEG = 0.5  # what no brush shows
+
+
+@dataclass(frozen=True)
+class Script:
+    """How a language is read.
+
+    remark: what a comment begins with; lines: kinds with their patterns, the first one that fits is taken.
+        move, circle: to x y z, circles through u v w, at speed and perhaps acceleration; beforehand `sets` may have
+        said each of them. blend: of a move; blended: of one that takes it from `sets`.
+        rise: straight up; wait: for seconds; most: an acceleration that holds for all moves; text: what else stands
+        there, perhaps with a height that the tool rises to.
+    again: texts that do nothing when they stand there twice; last: of the program, without blanks around them;
+    units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be; least: of `most`;
+    is_indented: whether blanks before a line mean something; any_case: whether large and small letters are the same.
+    """
+
+    remark: str
+    lines: tuple[tuple[str, re.Pattern], ...]
+    again: re.Pattern
+    last: tuple[str, ...]
+    units_mm: dict[str, float]
+    turned_deg: tuple[float, ...] = ()
+    least: float = 0.0
+    is_indented: bool = False
+    any_case: bool = False
+
+
+def place(names: str) -> str:
+    """The pattern of three numbers, each a group of that name."""
+    return ", ".join(f"(?P<{name}>{N})" for name in names)
+
+
+def read_script(text: str, script: Script, out: Readback) -> Readback:
+    """The program as steps and acts. Error with the line for what brushsvg does not write."""
+    reader = _Reader(script, out)
+    lines = [
+        (number, line.rstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
+    ]
+    for number, line in lines:
+        reader.line(number, line if script.is_indented else line.strip(" "))
+    said = [reader.spelled(line.strip(" ")) for _, line in lines]
+    last = [reader.spelled(line) for line in script.last]
+    said = [line for line in said if line in last or not line.startswith(script.remark)]
+    if said[-len(last) :] != last:
+        raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
+    return out
+
+
+class _Reader:
+    def __init__(self, script: Script, out: Readback):
+        self.script, self.out = script, out
+        self.held: dict[str, float] = {}
+
+    def line(self, number: int, line: str) -> None:
+        if line.lstrip(" ").startswith(self.script.remark):
+            self.out.comment(number, line.lstrip(" ")[len(self.script.remark) :])
+            return
+        line = self.spelled(line)
+        for kind, pattern in self.script.lines:
+            if found := pattern.fullmatch(line):
+                values = self._values(number, line, found)
+                if kind == "text" and found.groupdict().get("turned"):
+                    line = line[: found.start("turned")]  # which was looked at
+                getattr(self, f"_{kind}")(number, line, values)
+                return
+        raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
+
+    def spelled(self, line: str) -> str:
+        return line.lower() if self.script.any_case else line
+
+    def _values(self, number: int, line: str, found: re.Match) -> dict[str, float]:
+        """The numbers of a line by name, in mm and s."""
+        said = {name: text for name, text in found.groupdict().items() if text is not None}
+        if turned := said.pop("turned", ""):
+            self._stands(number, line, [float(value) for value in re.findall(N, turned)])
+        return {name: float(text) * self.script.units_mm.get(name, 1.0) for name, text in said.items()}
+
+    def _stands(self, number: int, line: str, found_deg: list[float]) -> None:
+        """The brush stands on the paper: whole turns are none."""
+        wanted_deg = np.round(self.script.turned_deg, 6) + 0.0
+        off_deg = np.abs((np.array(found_deg) - wanted_deg + 180.0) % 360.0 - 180.0).max()
+        if off_deg > LEANS_DEG:
+            wanted = ", ".join(f"{value:g}" for value in wanted_deg)
+            raise Error(
+                f"line {number}: {line[:60]!r} turns the tool {off_deg:.4g} degrees from {wanted}, "
+                "which sets the brush upright on the cell's paper",
+                code="tool-turned",
+            )
+
+    # Kinds of lines ----------------------------------------------------------------------------------
+
+    def _sets(self, number: int, line: str, values: dict) -> None:
+        self.held |= values
+
+    def _move(self, number: int, line: str, values: dict) -> None:
+        at_most, end = self._at_most(number, line, values), self._place(number, line, values, "xyz")
+        blend_mm = values.get("blend", 0.0)
+        if blend_mm < 0:
+            raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
+        self.out.joint_mm = max(self.out.joint_mm, blend_mm)
+        self.out.section().steps.append(Step(number, False, *end, at_most[0], blend_mm))
+        self.out.acts.append(Act(number, "move", "blends", end, at_most, (blend_mm,)))
+
+    def _blended(self, number: int, line: str, values: dict) -> None:
+        if "blend" not in self.held:
+            raise Error(
+                f"line {number}: {line[:60]!r} cuts a corner, and no line before says how far",
+                code="line-incomplete",
+            )
+        self._move(number, line, {**values, "blend": self.held["blend"]})
+
+    def _circle(self, number: int, line: str, values: dict) -> None:
+        at_most = self._at_most(number, line, values)
+        via, end = (self._place(number, line, values, names) for names in ("uvw", "xyz"))
+        circle(self.out, number, np.array(via), np.array(end), at_most[0])
+        self.out.acts.append(Act(number, "circle", "", end, at_most, via))
+
+    def _rise(self, number: int, line: str, values: dict) -> None:
+        self.out.rises_mm += [values["height"]] if "height" in values else []
+        height = f" {values['height']:.4f}" if "height" in values else ""
+        at_most = self._at_most(number, line, values)
+        act = Act(number, "text", f"rises{height}", (), at_most)
+        if (
+            not self.out.acts or self.out.acts[-1][1:] != act[1:]
+        ):  # twice, the second one finds the tool up there
+            self.out.acts.append(act)
+
+    def _wait(self, number: int, line: str, values: dict) -> None:
+        self.out.acts.append(Act(number, "wait", same=(values["seconds"],)))
+
+    def _most(self, number: int, line: str, values: dict) -> None:
+        if not min(values.values()) >= max(self.script.least, 1e-9):
+            raise Error(
+                f"line {number}: {line[:60]!r} leaves too little to move with", code="line-incomplete"
+            )
+        self.out.acts.append(Act(number, "text", "at most", (), tuple(values.values())))
+
+    def _text(self, number: int, line: str, values: dict) -> None:
+        self.out.rises_mm += [values["height"]] if "height" in values else []
+        acts = self.out.acts
+        before = next((act.text for act in reversed(acts) if not act.text.startswith("(")), None)
+        if before == line and self.script.again.match(line):
+            return
+        acts.insert(
+            0 if before is None else len(acts), Act(number, "text", line)
+        )  # remarks may stand before the first one
+
+    # What they say -----------------------------------------------------------------------------------
+
+    def _place(self, number: int, line: str, values: dict, names: str) -> tuple[float, ...]:
+        values = self.held | values
+        if not values.keys() >= set(names):
+            raise Error(
+                f"line {number}: {line[:60]!r} goes where no line before it says", code="line-incomplete"
+            )
+        return tuple(values[name] for name in names)
+
+    def _at_most(self, number: int, line: str, values: dict) -> tuple[float, ...]:
+        values = self.held | values
+        at_most = tuple(values[name] for name in ("speed", "acceleration") if name in values)
+        if "speed" not in values or not min(at_most) > 0:
+            raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration", code="line-incomplete")
+        return at_most

@@ -1,0 +1,43 @@
+"""Python for xArm as brushsvg writes it, read back."""
+
+from __future__ import annotations
+
+import re
+
+from ...machine.cell import Cell
+from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, XARM_END, upright_deg
+from . import Readback
+from .script import N, Script, place, read_script
+
+_FIXED = "|".join(
+    re.escape(line) for line in dict.fromkeys((BEFORE + FUNCTIONS + AFTER).splitlines()) if line
+)
+_LINES = tuple(
+    (kind, re.compile(pattern))
+    for kind, pattern in (
+        # a radius below 0 is none
+        (
+            "move",
+            rf"go\({place('xyz')}, (?P<speed>{N}), (?:(?P<blend>\d+\.?\d*|\.\d+)|-(?:\d+\.?\d*|\.\d+)|None)\)",
+        ),
+        ("wait", rf"rest\((?P<seconds>{N})\)"),
+        ("rise", rf"rise\((?P<height>{N}), (?P<speed>{N})\)"),
+        ("most", rf"MOST = (?P<most>{N})"),
+        ("text", rf"UPRIGHT = \((?P<turned>{N}, {N}, {N})\)|TOOL = \[{N}(?:, {N}){{5}}\]"),
+        ("text", rf"stop\(\"[^\"\\]*\"\)|{_FIXED}"),
+    )
+)
+
+
+def read_xarm(text: str, cell: Cell) -> Readback:
+    """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
+    script = Script(
+        remark="# ",
+        lines=_LINES,
+        again=re.compile(r"done\(arm\.|arm = |import |from |UPRIGHT = |TOOL = |arrive\(\)$|arm\.disc"),
+        last=(AFTER.splitlines()[-1], f"# {XARM_END}"),
+        units_mm={},
+        turned_deg=tuple(upright_deg(cell).tolist()),
+        is_indented=True,
+    )
+    return read_script(text, script, Readback(blends_by_radius=True))

@@ -1,0 +1,249 @@
+"""RAPID and Python for xArm: what an interpreter of the tests' own, made from the manual, does with our programs, and
+what `check` makes of them. It shares nothing with what writes and reads them."""
+
+import inspect
+import itertools
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnostics import refused
+from judge import places
+from judge.moves import Leg, Run
+from judge.table import Figures, measure
+from judge.verdict import ROBOTS
+from judge.works import make
+from judge.xarm import XArmAPI, executed
+from programs import LANGUAGES
+from test_urscript import ARC, STROKES, text_for
+
+from brushsvg.machine.cell import Blending, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.verification.readback import read_program
+
+GOLDEN = Path(__file__).parents[1] / "golden"
+NAMES = {"irb120": "rapid", "xarm6": "xarm"}
+CIRCLES = {"irb120"}  # what tells them
+SQUARE = Paper((-150.0, -450.0, 20.0))
+TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
+LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
+
+
+def on(name: str, paper: Paper):
+    return replace(find_cell(name), paper=paper)
+
+
+def run(text: str, cell, height_mm: float = 300.0) -> Run:
+    """What a program does from a place over the robot's table."""
+    spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
+    tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
+    return ROBOTS[cell.language](text, (-100.0, -400.0, height_mm), robot_from_paper(cell), spin, tool)
+
+
+def stub(cell) -> XArmAPI:
+    spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
+    tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
+    return XArmAPI((-100.0, -400.0, 300.0), robot_from_paper(cell), spin, tool)
+
+
+def sound(text: str, cell, **at) -> Run:
+    ran = run(text, cell, **at)
+    assert not ran.refused and not ran.acts, (ran.refused, ran.acts)
+    return ran
+
+
+def touched(ran: Run, cell) -> list[tuple[Leg, np.ndarray]]:
+    """The legs that end below the clearance, with their end in the paper's frame."""
+    back = np.linalg.inv(robot_from_paper(cell))
+    ends = [
+        (leg, places.moved(back, np.array([leg.end]))[0]) for leg in ran.legs if leg.kind in ("feed", "arc")
+    ]
+    return [(leg, end) for leg, end in ends if end[2] < cell.heights.clearance_mm - 2e-3]
+
+
+@pytest.mark.parametrize("paper", [SQUARE, TURNED, LEANING], ids=["square", "turned", "leaning"])
+@pytest.mark.parametrize("name", NAMES)
+def test_the_arm_goes_through_the_plans_poses(name, paper):
+    cell = on(name, paper)
+    rows = touched(sound(text_for(cell), cell), cell)
+    tells_circles = name in CIRCLES
+    arc = [ARC[0], ARC[8]] if tells_circles else ARC
+    wanted = [*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *arc, *STROKES["turn"][10:]]
+    away_mm = np.linalg.norm(np.array([end for _, end in rows]) - np.array(wanted), axis=1)
+    assert away_mm.max() < 1e-3
+    assert max(leg.speed_mm_s for leg, _ in rows) == 20.0
+    circles = [leg for leg, _ in rows if leg.kind == "arc"]
+    assert len(circles) == tells_circles
+    for leg in circles:
+        assert leg.centre == pytest.approx((20.0, 30.0), abs=2e-3) and leg.turn == -1
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_brush_stands_on_the_papers_normal(name):
+    cell = on(name, LEANING)
+    cell = replace(cell, tool=replace(cell.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=30.0))
+    assert max(leg.tilt_rad for leg in sound(text_for(cell), cell).legs) < 1e-5
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_corners_are_blended_within_reach_and_not_where_the_brush_turns_back(name):
+    cell = replace(on(name, SQUARE), blending=Blending(0.05, 2.0))
+    legs = [leg for leg, _ in touched(sound(text_for(cell), cell), cell)]
+    for leg, after in itertools.pairwise(legs):
+        into, out = np.subtract(leg.end, leg.start), np.subtract(after.end, after.start)
+        if into @ out < 0:
+            assert leg.cut_mm == 0
+        assert leg.cut_mm <= 0.45 * min(np.linalg.norm(into), np.linalg.norm(out)) + 1e-9
+        turn = np.arccos(np.clip(into @ out / np.linalg.norm(into) / np.linalg.norm(out), -1, 1))
+        assert leg.cut_mm * np.tan(turn / 4) <= 0.05
+    assert max(leg.cut_mm for leg in legs) > 0.1
+    cell = replace(cell, blending=Blending(0.0, 2.0))
+    assert max(leg.cut_mm for leg in sound(text_for(cell), cell).legs) == 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_brush_is_raised_before_it_goes_anywhere(name):
+    cell = on(name, SQUARE)
+    low, high = (sound(text_for(cell), cell, height_mm=height) for height in (21.0, 300.0))
+    assert low.legs[0].end == pytest.approx((-100, -400, 40)) and low.legs[0].speed_mm_s == 50
+    assert len(low.legs) == len(high.legs) + 1 and low.legs[1].end[2] == pytest.approx(40)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_paint_is_waited_for(name):
+    stations = (
+        Station("red", (120.0, 10.0), ("#ff0000",), depth_mm=5.0, hold_s=0.5),
+        Station('ha"n\\d', (120.0, 50.0), by_hand=True),
+    )
+    cell = replace(on(name, SQUARE), reload=Reload("layer"), stations=stations)
+    ran = sound(text_for(cell, colours=("#ff0000", "#ff0000", "#000000")), cell)
+    waits = [leg for leg in ran.legs if leg.kind in ("wait", "stop")]
+    assert [(leg.kind, leg.seconds) for leg in waits] == [("wait", 0.5), ("stop", 0.0)]
+    assert waits[0].end == pytest.approx((-150 + 120, -440, 15), abs=1e-3)
+    assert any("dip the brush: ha'n/d" in words for words, _ in ran.titles)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_golden(name):
+    golden = GOLDEN / f"two_strokes{LANGUAGES[name]}"
+    assert text_for(find_cell(name)).encode("ascii") == golden.read_bytes()
+
+
+@pytest.mark.parametrize("paper", [SQUARE, TURNED, LEANING], ids=["square", "turned", "leaning"])
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_written_is_read(name, paper):
+    cell = on(name, paper)
+    text = text_for(cell)
+    read = read_program(text, LANGUAGES[name], cell)
+    steps = np.array([step[2:5] for section in read.sections for step in section.steps])
+    frame = robot_from_paper(cell) if read.in_paper_frame else np.eye(4)
+    assert places.moved(frame, steps) == pytest.approx(np.array([leg.end for leg in sound(text, cell).legs]))
+    blanks = read_program(text.replace("\r\n", "  \n").replace("\n", " \n"), LANGUAGES[name], cell)
+    assert (repr(blanks.acts), repr(blanks.sections)) == (repr(read.acts), repr(read.sections))
+
+
+REFUSED = [
+    ("irb120", "MoveL on_paper(10.000", "MoveJ on_paper(10.000", "line-unread"),
+    ("irb120", "on_paper(10.000", "on_paper(10.000, 10.000", "line-unread"),
+    ("irb120", "brush\\WObj:=paper", "brush", "line-unread"),
+    ("irb120", "mm_s(100.000)", "v100", "line-unread"),
+    ("irb120", "mm_s(100.000)", "mm_s(0.000)", "line-incomplete speed"),
+    ("irb120", "within(0.039)", "within(-0.039)", "line-unread blend"),
+    ("irb120", "AccMax:=0.500", "AccMax:=0.050", "line-incomplete"),
+    ("irb120", "ENDMODULE", "", "program-cut-short"),
+    ("xarm6", "go(-140.000", "go(x=-140.000", "line-unread"),
+    ("xarm6", "go(-140.000", " go(-140.000", "line-unread"),
+    ("xarm6", "100.000, None", "0.000, None", "line-incomplete speed"),
+    ("xarm6", "wait=False", "wait=True", "line-unread"),
+    ("xarm6", ", 0.031)", ", radius=0.031)", "line-unread"),
+    ("xarm6", "arm.disconnect()\n", "", "program-cut-short"),
+]
+
+
+@pytest.mark.parametrize(("name", "old", "new", "said"), REFUSED)
+def test_what_the_reader_refuses(name, old, new, said):
+    text = text_for(find_cell(name))
+    assert old in text
+    with refused(said):
+        read_program(text.replace(old, new, 1), LANGUAGES[name], find_cell(name))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_dangerous_program_is_allowed(name, tmp_path):
+    """A sample; tests/integration has three hundred of each job."""
+    figures = Figures()
+    for job in ("two lines", "leaning"):
+        measure(make(job, NAMES[name], tmp_path / str(len(job))), 60, 5, figures)
+    assert figures.crashes == []
+    assert [case for case in figures.cases if case.verdict == "dangerous" and not case.refusals] == []
+    assert figures.of(NAMES[name], "dangerous") > 40 and figures.of(NAMES[name], "harmless") > 15
+
+
+BROKEN = [
+    ("irb120", "MoveL on_paper(", "MoveL on_papr("),
+    ("irb120", "mm_s(20.000), ", "mm_s(20.000) "),
+    ("irb120", "  ENDPROC\r\n", ""),
+    ("irb120", "[0.0000000, 1.0000000, ", "[0.0000000, 1.1000000, "),
+    ("irb120", "[TRUE, ", "["),
+    ("irb120", "VAR robtarget", "VAR robtaget"),
+    ("xarm6", "def done", "def dun"),
+    ("xarm6", "set_tcp_offset", "set_tool_offset"),
+    ("xarm6", "done(arm.set_state(0))", "done(arm.set_state(4))"),
+    ("xarm6", ", 20.000, 0.031)", ", 20.000)"),
+    ("xarm6", "    done(code)", "   done(code)"),
+    ("xarm6", "TOOL = [", "TOOL = [0, "),
+]
+
+
+@pytest.mark.parametrize(("name", "old", "new"), BROKEN)
+def test_the_interpreter_refuses_broken_programs(name, old, new):
+    text = text_for(find_cell(name))
+    assert old in text
+    assert run(text.replace(old, new, 1), find_cell(name)).refused
+
+
+@pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
+@pytest.mark.parametrize(
+    "broken", [None, ("MOST, is_radian", "MOST, in_radian"), ("set_mode(0)", "set_mode(0, 0, 0)")]
+)
+def test_every_call_is_one_of_the_vendors_sdk(broken):
+    from xarm.wrapper import XArmAPI
+
+    cell = replace(
+        on("xarm6", SQUARE), reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),)
+    )
+    arm = stub(cell)
+    text = text_for(cell)
+    calls = executed(text.replace(*broken) if broken else text, arm).calls
+    try:
+        for name, given, named in calls:
+            inspect.signature(getattr(XArmAPI, name)).bind(arm, *given, **named)
+            known = inspect.signature(getattr(XArmAPI, name)).parameters
+            assert set(named) <= set(known), "kwargs take anything"
+    except (TypeError, AssertionError):
+        assert broken
+    else:
+        assert not broken and len(calls) > 30
+
+
+def test_a_slower_robot_than_rapid_can_tell_is_refused():
+    text = write_cell(find_cell("irb120")).replace("acceleration_mm_s2 = 500.0", "acceleration_mm_s2 = 99.0")
+    with refused("out-of-range [100, 50000]"):
+        parse_cell(text)
+
+
+@pytest.mark.skipif(not find_spec("rapidchecker"), reason="rapidchecker is not installed")
+@pytest.mark.parametrize("broken", [None, *(pair[1:] for pair in BROKEN[1:3])])
+def test_rapidchecker_knows_the_grammar(tmp_path, broken):
+    cell = replace(
+        on("irb120", SQUARE), reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),)
+    )
+    text = text_for(cell).replace(*broken, 1) if broken else text_for(cell)
+    (tmp_path / "p.mod").write_text(text, newline="")
+    (tmp_path / "rapidchecker.toml").write_text("indentation_check = false\n")
+    done = subprocess.run([sys.executable, "-m", "rapidchecker", "p.mod"], cwd=tmp_path, capture_output=True)
+    assert (done.returncode == 0) == (broken is None), done.stdout
