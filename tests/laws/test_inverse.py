@@ -691,9 +691,17 @@ def test_a_squared_end_is_as_straight_as_its_cut(half_width, slope):
     np.testing.assert_array_equal(end_of_bar(half_width, slope, end="auto")[2], there)
 
 
+ROUND_CAP = [
+    (20, 18),
+    *((60 + 2 * np.sin(t), 20 - 2 * np.cos(t)) for t in np.linspace(0, np.pi, 40)),
+    (20, 22),
+]
+
+
 @pytest.mark.parametrize(
     ("half_width", "wanted"),
     [
+        (2.0, ROUND_CAP),
         (
             0.5,
             [(20, 19.5), (60.5, 19.5), (60.5, 20.5), (20, 20.5)],
