@@ -30,7 +30,8 @@ Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::Co
         throw brushsvg::Error("choice-unknown",
                               "compensation is none, constant, closed or refined, not \"" + method + "\"");
 #ifdef BRUSHSVG_FIT
-    const brushsvg::fit::RefineOptions refining{options.tolerance_mm, options.speed_mm_s, sheet_mm, options.start};
+    const brushsvg::fit::RefineOptions refining{options.tolerance_mm, options.speed_mm_s, sheet_mm, options.start,
+                                                options.end};
     return [&brush, refining](const brushsvg::Stroke& stroke) {
         return brushsvg::fit::refine(stroke, brush, refining).plan;
     };
@@ -74,13 +75,14 @@ too sharp for the lever.)")
         "compensate",
         [](const std::vector<Stroke>& strokes, const Brush& brush, std::optional<std::array<double, 2>> sheet,
            const std::string& method, double tolerance_mm, std::optional<double> lag_mm, double speed_mm_s,
-           const py::object& progress, bool few_poses, const std::string& start) {
+           const py::object& progress, bool few_poses, const std::string& start, const std::string& end) {
             CompensateOptions options;
             options.tolerance_mm = tolerance_mm;
             options.lag_mm = lag_mm;
             options.speed_mm_s = speed_mm_s;
             options.few_poses = few_poses;
             options.start = beginning_named(start, "");
+            options.end = ending_named(end, "");
             check(brush);
             if (sheet) check_sheet(*sheet);
             const std::array<double, 2> sheet_mm = sheet.value_or(std::array<double, 2>{0.0, 0.0});
@@ -105,6 +107,7 @@ too sharp for the lever.)")
         py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed",
         py::arg("tolerance_mm") = 0.05, py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0,
         py::arg("progress") = py::none(), py::arg("few_poses") = true, py::arg("start") = "exposed",
+        py::arg("end") = "lifted",
         R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
 
 sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
@@ -115,6 +118,8 @@ miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, 
 the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
 asks for. start: closed and refined, how strokes begin that do not say it themselves: "exposed", pointed; "hidden",
 round, set down inside the stroke, back to its beginning and turned over; "auto", what suits the drawn beginning better.
+end: the same of ends: "lifted", as the footprint is in front; "squared", a narrower mark goes on into one corner, along
+the cut and back into the other; "auto", what suits the drawn end better.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
     m.def("miss_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),

@@ -21,20 +21,22 @@ void bind_settings(py::module_& m) {
     py::class_<Settings>(m, "Settings",
                          R"(What a drawing says of an element to brushsvg itself; None where it says nothing.
 
-brush, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/drawings.md; kind: of a stroke of the calibration
+brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/drawings.md; kind: of a stroke of the calibration
 chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.)")
-        .def(py::init([](std::optional<std::string> brush, std::optional<std::string> kind, std::optional<int> order,
-                         std::optional<int> passes, std::optional<bool> reload, std::optional<bool> skip,
-                         std::optional<double> speed_mm_s, std::optional<std::string> start,
-                         std::optional<double> width_mm, std::string extra) {
-                 return Settings{std::move(brush), std::move(kind),  order,    passes,          reload, skip,
-                                 speed_mm_s,       std::move(start), width_mm, std::move(extra)};
+        .def(py::init([](std::optional<std::string> brush, std::optional<std::string> end,
+                         std::optional<std::string> kind, std::optional<int> order, std::optional<int> passes,
+                         std::optional<bool> reload, std::optional<bool> skip, std::optional<double> speed_mm_s,
+                         std::optional<std::string> start, std::optional<double> width_mm, std::string extra) {
+                 return Settings{
+                     std::move(brush), std::move(end),   std::move(kind), order,           passes, reload, skip,
+                     speed_mm_s,       std::move(start), width_mm,        std::move(extra)};
              }),
-             py::kw_only(), py::arg("brush") = py::none(), py::arg("kind") = py::none(), py::arg("order") = py::none(),
-             py::arg("passes") = py::none(), py::arg("reload") = py::none(), py::arg("skip") = py::none(),
-             py::arg("speed_mm_s") = py::none(), py::arg("start") = py::none(), py::arg("width_mm") = py::none(),
-             py::arg("extra") = "{}")
+             py::kw_only(), py::arg("brush") = py::none(), py::arg("end") = py::none(), py::arg("kind") = py::none(),
+             py::arg("order") = py::none(), py::arg("passes") = py::none(), py::arg("reload") = py::none(),
+             py::arg("skip") = py::none(), py::arg("speed_mm_s") = py::none(), py::arg("start") = py::none(),
+             py::arg("width_mm") = py::none(), py::arg("extra") = "{}")
         .def_readonly("brush", &Settings::brush)
+        .def_readonly("end", &Settings::end)
         .def_readonly("kind", &Settings::kind)
         .def_readonly("order", &Settings::order)
         .def_readonly("passes", &Settings::passes)

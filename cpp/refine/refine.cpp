@@ -93,6 +93,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     RefinedPass closed;
     CompensateOptions how{Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s};
     how.start = options.start;
+    how.end = options.end;
     closed.plan = compensate(stroke, brush, how);
     how.few_poses = false;  // poses that lie beside the path would be taken for its bends
     const Pass dense = compensate(stroke, brush, how).pass;

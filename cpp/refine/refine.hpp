@@ -16,6 +16,7 @@ struct RefineOptions {
     /// form's. Zero: anywhere.
     std::array<double, 2> sheet_mm{0.0, 0.0};
     Beginning start = Beginning::exposed;  ///< of the closed form; how a stroke begins stays
+    Ending end = Ending::lifted;           ///< and how it ends
     int iterations = 12;  ///< of the solver: forty win 0.0005 of overlap more and take half as long again
 };
 

@@ -10,11 +10,12 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
-#include "choose_beginning.hpp"
+#include "choose_ends.hpp"
 #include "closed_form.hpp"
 #include "dot.hpp"
 #include "middle_line.hpp"
 #include "refuse_unusable.hpp"
+#include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
 #include "tolerance.hpp"
@@ -127,7 +128,25 @@ Beginning beginning_named(const std::string& name, const std::string& where) {
     throw Error("choice-unknown", "a stroke's start is exposed, hidden or auto, not \"" + name + "\"", where);
 }
 
+Ending ending_named(const std::string& name, const std::string& where) {
+    for (const auto& [known, value] : kEndings)
+        if (name == known) return value;
+    throw Error("choice-unknown", "a stroke's end is lifted, squared or auto, not \"" + name + "\"", where);
+}
+
 namespace {
+
+/// The stroke with its end squared, where that is asked for and can be, or chosen.
+std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Stroke& lifted, const Brush& brush,
+                                          const CompensateOptions& options, Beginning start, double step_tolerance) {
+    const Ending end = stroke.settings.end ? ending_named(*stroke.settings.end, stroke.id) : options.end;
+    if (end == Ending::lifted) return {};
+    const std::optional<SquaredEnd> squared = squared_end(stroke, brush);
+    if (!squared || (end == Ending::automatic &&
+                     best_ending(stroke, lifted, squared->stroke, brush, start, step_tolerance) == Ending::lifted))
+        return {};
+    return squared->stroke;
+}
 
 CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
     check(stroke);
@@ -157,16 +176,18 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
-    const Stroke whole = up_to_its_end(stroke, brush);
-    const Line whole_line(whole, brush);
+    Stroke whole = up_to_its_end(stroke, brush);
     Beginning start = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
     const bool choose = start == Beginning::automatic;
-    if (choose) start = best_beginning(stroke, whole, brush, whole_line, step_tolerance);
+    if (choose) start = best_beginning(stroke, whole, brush, Line(whole, brush), step_tolerance);
     if (const std::optional<Dot> dot = dot_of(stroke, brush); dot && start == Beginning::hidden) {
         poses_of(*dot, brush).into(pass);
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
+    const std::optional<Stroke> squared = squared_where_asked(stroke, whole, brush, options, start, step_tolerance);
+    if (squared) whole = *squared;
+    const Line whole_line(whole, brush);
     // the plan is simulated before it is handed over; finer steps as long as they help
     if (options.few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {

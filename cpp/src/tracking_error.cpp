@@ -7,6 +7,7 @@
 #include "brushsvg/simulate.hpp"
 #include "dot.hpp"
 #include "nearest_on_polyline.hpp"
+#include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "tolerance.hpp"
 
@@ -18,13 +19,44 @@ using Eigen::Index;
 /// miss there slipped through.
 constexpr double kLookEveryMm = 0.1;
 
-TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
-    check(stroke);
-    require_tolerance(tolerance_mm, stroke.id);
-    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
-    const Ring widest = is_dot(marks) ? marks.contact_mm : widest_points(marks, brush);
-    // a blunt front goes beyond the path's end, and on its way back to a hidden beginning beyond that
-    const MiddlePolyline line = flatten(up_to_its_end(stroke, brush), std::min(0.005, 0.05 * tolerance_mm));
+namespace {
+
+/// Where the way of a squared end lies: there the mark is judged and not its middle, which swings in corners.
+struct Surroundings {
+    Eigen::Vector2d middle_mm;
+    double radius_mm;
+    double distance(const Eigen::Vector2d& point) const {
+        return std::max(0.0, (point - middle_mm).norm() - radius_mm);
+    }
+};
+
+/// Whether a mark was last led to where a squared end's way ends, and not to the drawn path's end.
+bool ends_squared(const PassMarks& marks, const Ring& widest, const SquaredEnd& squared) {
+    constexpr double kThere = 0.25;
+    std::size_t end = marks.taut.size();
+    while (end > 0 && !marks.taut[end - 1]) --end;
+    if (end == 0) return false;
+    const Eigen::Vector2d last = widest.row(Index(end) - 1).transpose();
+    const Cubics& way = squared.stroke.middle_mm;
+    const Eigen::Vector2d there = way.row(way.rows() - 1).tail<2>().transpose();
+    return (last - there).norm() < kThere * (last - squared.end_mm).norm();
+}
+
+/// The last row that comes as near to a place as any.
+std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const Eigen::Vector2d& place_mm) {
+    constexpr double kHair = 0.01;
+    if (begin == end) return end;
+    const Eigen::VectorXd away =
+        (rows.middleRows(Index(begin), Index(end - begin)).rowwise() - place_mm.transpose()).rowwise().norm();
+    std::size_t last = end - 1;
+    while (away[Index(last - begin)] > away.minCoeff() + kHair) --last;
+    return last;
+}
+
+TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
+                                const std::optional<SquaredEnd>& squared = {}) {
+    const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
+    // on its way back to a hidden beginning a blunt front goes beyond the path's
     MiddlePolyline longer(line.rows() + 1, 4);
     longer << line.row(0), line;
     if (line.rows() > 1) longer.row(0).head<2>() -= line(0, 3) * (line.row(1) - line.row(0)).head<2>().normalized();
@@ -56,10 +88,31 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
         look(begin, turn.first, before_turn);
         begin = turn.last;
     }
+    if (squared) {
+        const std::size_t leaves = last_at(widest, begin, end, squared->leaves_mm);
+        Surroundings surroundings{squared->end_mm, squared->reach_mm};
+        look(leaves, end, surroundings);
+        end = leaves;
+    }
     look(begin, end, nearest);
     miss.mean_mm = travelled > 0.0 ? miss.mean_mm / travelled : miss.largest_mm;
     miss.within_tolerance = miss.largest_mm <= tolerance_mm;
     return miss;
+}
+
+}  // namespace
+
+TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
+    check(stroke);
+    require_tolerance(tolerance_mm, stroke.id);
+    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
+    const Ring widest = is_dot(marks) ? marks.contact_mm : widest_points(marks, brush);
+    // a blunt front goes beyond the path's end
+    const TrackingError miss = tracking_error_of(marks, widest, up_to_its_end(stroke, brush), tolerance_mm);
+    if (miss.within_tolerance) return miss;
+    const std::optional<SquaredEnd> squared = squared_end(stroke, brush);
+    if (!squared || !ends_squared(marks, widest, *squared)) return miss;
+    return tracking_error_of(marks, widest, stroke, tolerance_mm, squared);
 }
 
 }  // namespace brushsvg

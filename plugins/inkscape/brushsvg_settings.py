@@ -18,11 +18,17 @@ OWN = {  # what brushsvg does where the document says nothing
     "brush": "round-6",
     "compensation": "closed",
     "start": "auto",
+    "end": "auto",
     "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6",
     "wide": "auto",
     "tolerance": "0.05mm",
 }
-NAMES = {"start": "beginnings", "cell": "machine", "wide": "letters wider than the brush"}  # in the dialog
+NAMES = {
+    "start": "beginnings",
+    "end": "ends",
+    "cell": "machine",
+    "wide": "letters wider than the brush",
+}  # in the dialog
 KEEP, TAKE_BACK = ("", "keep"), "default"
 TOLERANCE_MM = (1e-5, 10.0)
 

@@ -33,6 +33,7 @@ def choices(command):
         ),
         click.option("--tolerance", type=click.FloatRange(1e-5, 10), default=0.05, help="mm; default: 0.05"),
         click.option("--start", type=click.Choice(("exposed", "hidden", "auto")), default="auto"),
+        click.option("--end", type=click.Choice(("lifted", "squared", "auto")), default="auto"),
         click.option(
             "--width", type=vpype_cli.LengthType(), help="of all marks; default: the layers' pen widths"
         ),
@@ -44,9 +45,9 @@ def choices(command):
 @click.command()
 @choices
 @vpype_cli.global_processor
-def brush(document, brush_name, compensation, tolerance, start, width):
+def brush(document, brush_name, compensation, tolerance, start, end, width):
     """Replace lines by the outlines of the marks that a brush paints along them."""
-    done, found = _compensated(document, brush_name, compensation, tolerance, start, width)
+    done, found = _compensated(document, brush_name, compensation, tolerance, start, end, width)
     marks = brushsvg.simulate(done.plan, found)
     brushsvg.trace_outlines(marks, found)
     height_mm = done.plan.sheet_mm[1]
@@ -67,9 +68,9 @@ def brush(document, brush_name, compensation, tolerance, start, width):
 @click.option("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
 @choices
 @vpype_cli.global_processor
-def brushwrite(document, output, cell, brush_name, compensation, tolerance, start, width):
+def brushwrite(document, output, cell, brush_name, compensation, tolerance, start, end, width):
     """Write the robot program (or plan.json) with which a brush paints the lines."""
-    done, found = _compensated(document, brush_name, compensation, tolerance, start, width)
+    done, found = _compensated(document, brush_name, compensation, tolerance, start, end, width)
     try:
         machine = brushsvg.find_cell(cell) if cell else brushsvg.find_cell()
         brushsvg.write_program(output, done.plan, found, cell=machine)
@@ -78,7 +79,7 @@ def brushwrite(document, output, cell, brush_name, compensation, tolerance, star
     return document
 
 
-def _compensated(document, brush_name, compensation, tolerance_mm, start, width_px):
+def _compensated(document, brush_name, compensation, tolerance_mm, start, end, width_px):
     """The plan that paints the document's lines, and the brush. Warnings go to stderr."""
     try:
         found = brushsvg.find_brush(brush_name)
@@ -87,7 +88,9 @@ def _compensated(document, brush_name, compensation, tolerance_mm, start, width_
             path.write_text(_svg(document, width_px), encoding="utf-8")
             drawing = brushsvg.read_drawing(path)
         strokes, notices = brushsvg.strokes(drawing)
-        done = brushsvg.compensate(strokes, found, drawing.sheet_mm, compensation, tolerance_mm, start=start)
+        done = brushsvg.compensate(
+            strokes, found, drawing.sheet_mm, compensation, tolerance_mm, start=start, end=end
+        )
     except brushsvg.Error as refused:
         raise _sentence(refused) from None
     for where, sentence in (*drawing.notices, *notices, *done.warnings):

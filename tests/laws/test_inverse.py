@@ -506,8 +506,8 @@ def test_compensation_turns_with_the_sheet():
 # Beginnings ---------------------------------------------------------------------------------------
 
 
-def painted_region(poses):
-    """The mark by the slow reference: footprints placed along its events and between them, swept."""
+def painted_region(poses, per_pose=40, from_x=-np.inf):
+    """The mark by the slow reference: footprints placed along its events and between them, swept. from_x: of P."""
     reference = oracle.Reference(poses, LAG)
     dragged = [
         (d, np.asarray(each.outline_mm))
@@ -516,12 +516,12 @@ def painted_region(poses):
     outlines = []
     heading = None
     for pose in np.unique(
-        np.concatenate([np.linspace(0, len(poses) - 1, 40 * len(poses)), reference.events()])
+        np.concatenate([np.linspace(0, len(poses) - 1, per_pose * len(poses)), reference.events()])
     ):
         contact, now, _, pull = reference.at(pose)
         heading = now if np.isfinite(now) else heading
         depth = float(np.interp(pose, np.arange(len(poses)), -poses[:, 2]))
-        if heading is None or depth <= 0.0 or not np.isfinite(contact).all():
+        if heading is None or depth <= 0.0 or not np.isfinite(contact).all() or contact[0] < from_x:
             continue
         shape = oracle.footprint_at(dragged, [], depth, pull)
         outlines.append(oracle.placed(shape, contact, heading, 0.52 * depth))
@@ -650,3 +650,76 @@ def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
     with pytest.raises(Error) as refused:
         core.compensate([wrong], ROUND, (99.0, 99.0))
     assert (refused.value.where, refused.value.code) == ("s", "choice-unknown")
+
+
+# Ends ---------------------------------------------------------------------------------------------
+
+
+def cut_bar(half_width, slope):
+    """A bar whose end is cut half a width beyond its path's, and so much farther back on its left."""
+    x, aside = 40 + half_width, slope * half_width
+    low, high = 20 - half_width, 20 + half_width
+    return [(20.0, low), (x + aside, low), (x - aside, high), (20.0, high)]
+
+
+def end_of_bar(half_width, slope, **options):
+    """Overlap of mark and bar in its end, the greatest distance of paint beyond the bar there, and the poses."""
+    import shapely
+
+    stroke = stroke_of(line((20, 20), (40, 20)), [(0.0, half_width)])
+    stroke.wanted_mm = [np.array(cut_bar(half_width, slope))]
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
+    poses = np.asarray(found.plan.passes[0].poses_mm)
+    assert found.misses[0].within_tolerance
+    assert core.miss_of(found.plan.passes[0], stroke, ROUND).largest_mm == found.misses[0].largest_mm
+    assert poses[0, 2] == poses[-1, 2] == 0.0
+    assert (poses[1:-1, 2] < 0.0).all()  # one touch
+    wanted = shapely.Polygon(cut_bar(half_width, slope))
+    near = shapely.box(40 - half_width, 0, 100, 40)
+    here, meant = painted_region(poses, 10, 40 - 3 * half_width) & near, wanted & near
+    beyond = shapely.hausdorff_distance(here | meant, meant)
+    return (here & meant).area / (here | meant).area, beyond, poses
+
+
+@pytest.mark.parametrize(("half_width", "slope"), [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3)])
+def test_a_squared_end_is_as_straight_as_its_cut(half_width, slope):
+    lifted, _, _ = end_of_bar(half_width, slope)
+    squared, beyond, there = end_of_bar(half_width, slope, end="squared")
+    assert lifted < 0.9 - 0.05 * abs(slope)
+    assert squared > 0.94
+    assert beyond < 0.05 + 0.1 * half_width
+    np.testing.assert_array_equal(end_of_bar(half_width, slope, end="auto")[2], there)
+
+
+ROUND_CAP = [
+    (20, 18),
+    *((60 + 2 * np.sin(t), 20 - 2 * np.cos(t)) for t in np.linspace(0, np.pi, 40)),
+    (20, 22),
+]
+
+
+@pytest.mark.parametrize(
+    ("half_width", "wanted"),
+    [
+        (2.0, ROUND_CAP),
+        (
+            0.5,
+            [(20, 19.5), (60.5, 19.5), (60.5, 20.5), (20, 20.5)],
+        ),  # finer than what can be led into a corner
+        (2.0, [(20, 18), (58, 18), (62, 20), (58, 22), (20, 22)]),  # pointed
+        (2.0, [(20, 18), (62, 18), (60, 20), (62, 22), (20, 22)]),  # a swallow's tail
+        (2.0, [(20, 18), (70, 18), (70, 22), (20, 22)]),  # goes on in another stroke
+    ],
+)
+def test_what_is_no_cut_is_lifted(half_width, wanted):
+    stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
+    stroke.wanted_mm = [np.array(wanted, float)]
+    plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("lifted", "squared")]
+    np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
+
+
+def test_round_caps_are_lifted_where_ends_are_chosen():
+    middle, half_width = line((20, 20), (60, 20)), [(0.0, 2.0)]
+    lifted = poses_of(middle, half_width)
+    np.testing.assert_array_equal(poses_of(middle, half_width, end="auto"), lifted)
+    assert len(poses_of(middle, half_width, end="squared")) > len(lifted)

@@ -69,6 +69,38 @@ def test_beginnings_are_said_of_the_job_and_of_strokes(desk, capsys):
     assert poses(of_one, "--start", "hidden") == {"a": exposed["a"], "b": hidden["b"]}
 
 
+BAR = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm" viewBox="0 0 60 40">'
+    '<path id="a" d="M10 10h30v4h-30z"/><path id="b" d="M10 24h30v4h-30z"/></svg>'
+)
+
+
+def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
+    def poses(text, *flags):
+        (desk / "s.svg").write_text(text)
+        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
+
+    lifted, squared = poses(BAR, "--end", "lifted"), poses(BAR, "--end", "squared")
+    assert all(len(squared[name]) > len(lifted[name]) for name in "ab")
+    assert poses(BAR) == squared  # what suits a straight cut
+    said = BAR.replace("<svg ", '<svg data-brushsvg-end="lifted" ')
+    assert poses(said) == lifted
+    assert poses(said, "--end", "squared") == squared
+    of_one = BAR.replace('id="a"', 'id="a" data-brushsvg-end="lifted"')
+    assert poses(of_one) == {"a": lifted["a"], "b": squared["b"]}
+
+
+def test_a_program_tells_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
+    (desk / "d.svg").write_text(BAR)
+    assert main(["convert", "d.svg", "d.ngc", "--end", "lifted", "--start", "exposed"]) == 0
+    text = (desk / "d.ngc").read_text()
+    assert "(compensation: closed, tolerance 0.05 mm, start exposed, end lifted)" in text
+    assert main(["check", "d.ngc", "d.svg"]) == 0
+    (desk / "d.ngc").write_text(text.replace(", end lifted)", ")"))
+    assert main(["check", "d.ngc", "d.svg"]) == 1
+
+
 def test_a_program_tells_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
     assert main(["convert", "d.svg", "d.ngc", "--start", "exposed"]) == 0
     text = (desk / "d.ngc").read_text()

@@ -20,10 +20,9 @@ BARS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="90mm" vi
 def works(tmp_path, text, **how):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(text)
-    # hidden, a round beginning leaves nothing to refine
-    return [
-        prepare(drawing, Options(compensation=each, start="exposed", **how)) for each in ("closed", "refined")
-    ]
+    # hidden and squared, beginnings and ends leave nothing to refine
+    plain = {"start": "exposed", "end": "lifted"}
+    return [prepare(drawing, Options(compensation=each, **plain, **how)) for each in ("closed", "refined")]
 
 
 def overlap(work, number):

@@ -7,6 +7,7 @@ from brushsvg import Error, Pass, Plan, Settings, _core, find_brush, write_plan
 
 ALL = {
     "brush": "b",
+    "end": "squared",
     "kind": "arc",
     "order": -3,
     "passes": 2,
@@ -17,7 +18,7 @@ ALL = {
     "width_mm": 0.1,
 }
 WRITTEN = (
-    '{"brush":"b","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,'
+    '{"brush":"b","end":"squared","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,'
     '"start":"hidden","width_mm":0.1}'
 )
 

@@ -32,6 +32,17 @@ inline constexpr std::array<std::pair<std::string_view, Beginning>, 3> kBeginnin
 /// Error for another word.
 Beginning beginning_named(const std::string& name, const std::string& where);
 
+/// How a stroke ends, in closed form. A stroke's own setting `end` says it by the same words.
+enum class Ending {
+    lifted,     ///< while the patch rests: as the footprint is in front
+    squared,    ///< a narrower mark goes on into one corner, along the cut and back into the other: straight or slanted
+    automatic,  ///< squared where the mark lies better on the wanted one there for it, by more than can hardly be seen
+};
+inline constexpr std::array<std::pair<std::string_view, Ending>, 3> kEndings{
+    {{"lifted", Ending::lifted}, {"squared", Ending::squared}, {"auto", Ending::automatic}}};
+/// Error for another word.
+Ending ending_named(const std::string& name, const std::string& where);
+
 struct CompensateOptions {
     Compensation method = Compensation::closed;
     double tolerance_mm = 0.05;            ///< of the widest point from the middle line, between poses too
@@ -39,6 +50,7 @@ struct CompensateOptions {
     double speed_mm_s = 20.0;              ///< capped by the brush's own limit
     bool few_poses = true;                 ///< closed only: no more than the tolerance asks for, see thin_out.hpp
     Beginning start = Beginning::exposed;  ///< closed only; where one cannot be hidden inside the stroke it is exposed
+    Ending end = Ending::lifted;           ///< closed only; where there is no cut, or no room, it is lifted
 };
 
 struct CompensatedPass {

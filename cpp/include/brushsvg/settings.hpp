@@ -9,6 +9,7 @@ namespace brushsvg {
 /// does not say is empty.
 struct Settings {
     std::optional<std::string> brush;
+    std::optional<std::string> end;   ///< of the stroke: lifted, squared, auto
     std::optional<std::string> kind;  ///< of a stroke of the calibration chart
     std::optional<int> order;
     std::optional<int> passes;  ///< how often it is painted
@@ -24,6 +25,7 @@ struct Settings {
 template <class OneSettings, class Each>
 void each_setting(OneSettings& settings, Each&& each) {
     each("brush", settings.brush);
+    each("end", settings.end);
     each("kind", settings.kind);
     each("order", settings.order);
     each("passes", settings.passes);

@@ -23,6 +23,7 @@ _AT_NODE = 0.02  # of a cubic: a width as near to a node as this is the node's
 _BETA = 0.1  # nearly straight between widths
 _SETTINGS = {
     "brush": "brush",
+    "end": "end",
     "order": "order",
     "passes": "passes",
     "reload": "reload",

@@ -59,6 +59,7 @@ def _quick_trial(brush, options: Options):
             few_poses=False,
             sheet_mm=None,
             start=options.start,
+            end=options.end,
         )
         return _core.simulate(done.plan, brush).passes, wanted
 

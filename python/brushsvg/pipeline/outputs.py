@@ -28,7 +28,8 @@ def notes(work: Work) -> tuple[str, ...]:
     options = work.options
     lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
     start = f", start {options.start}" if options.start != Options.start else ""
-    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}"
+    end = f", end {options.end}" if options.end != Options.end else ""
+    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
     damaged = sum(notice.damaged for notice in work.notices)
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     return (made, count) if work.strokes is not None else (count,)

@@ -42,6 +42,7 @@ class Options:
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "auto"
+    end: str = "auto"  # the same: "lifted", "squared", "auto"
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
@@ -161,15 +162,17 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
             options.speed_mm_s,
             progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
             start=options.start,
+            end=options.end,
         )
 
     return compensated
 
 
 def _begun_within_reach(painted: list, brush, plan, compensated, options: Options) -> list:
-    """The strokes, those exposed that choose how they begin, cannot be run as they chose, and can exposed: a hidden
-    beginning is landed on the far side, from where the tool may not be, and its round front may be wider than what is
-    wanted. The list itself where there are none."""
+    """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
+    or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its round
+    front may be wider than what is wanted; at a squared end the tool runs aside. The list itself where there are none.
+    """
 
     def astray(of) -> set[str]:
         loads = in_loads(of, brush, options.cell)
@@ -177,18 +180,26 @@ def _begun_within_reach(painted: list, brush, plan, compensated, options: Option
         problems += off_sheet(_core.simulate(of, brush), brush, of.sheet_mm)
         return {problem.where for problem in problems}
 
-    choosing = {stroke.id for stroke in painted if (stroke.settings.start or options.start) == "auto"}
-    tried = choosing & astray(plan) if choosing else set()
-    exposed = [_exposed(stroke) for stroke in painted if stroke.id in tried]
-    fits = tried - astray(compensated(exposed).plan) if exposed else set()
-    if not fits:
-        return painted
-    by_name = {stroke.id: stroke for stroke in exposed}
-    return [by_name[stroke.id] if stroke.id in fits else stroke for stroke in painted]
+    choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
+    left = {stroke.id for stroke in choosing} & astray(plan) if choosing else set()
+    found = {}
+    for plain in ({"end": "lifted"}, {"end": "lifted", "start": "exposed"}):
+        tried = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
+        fits = tried.keys() - astray(compensated(list(tried.values())).plan) if tried else set()
+        found |= {name: tried[name] for name in fits}
+        left -= fits
+    return [found.get(stroke.id, stroke) for stroke in painted] if found else painted
 
 
-def _exposed(stroke):
-    return stroke.replaced(settings=stroke.settings.replaced(start="exposed"))
+def _ends(stroke, options: Options) -> tuple[str, str]:
+    return stroke.settings.start or options.start, stroke.settings.end or options.end
+
+
+def _plain(stroke, options: Options, plain: dict[str, str]):
+    """The stroke as it is told to begin and end, where it would choose."""
+    said = {name: getattr(stroke.settings, name) or getattr(options, name) for name in plain}
+    chosen = {name: plain[name] for name, value in said.items() if value == "auto"}
+    return stroke.replaced(settings=stroke.settings.replaced(**chosen))
 
 
 def _forbidden(brush, options: Options):

@@ -12,7 +12,9 @@ _TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corne
 
 def trial_mark(strokes: list, brush) -> list[np.ndarray]:
     """Rings of the mark of strokes in closed form, each begun as suits it; Error where they cannot be painted."""
-    plan = _core.compensate(strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, start="auto").plan
+    plan = _core.compensate(
+        strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, start="auto", end="auto"
+    ).plan
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
     return marks.outline_mm

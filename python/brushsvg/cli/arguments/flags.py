@@ -97,6 +97,12 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         choices=("exposed", "hidden", "auto"),
         help="of strokes: pointed, round (set down inside, moved back, turned over), or what suits each; default: auto",
     )
+    add(
+        "--end",
+        choices=("lifted", "squared", "auto"),
+        help="of strokes: as the footprint is in front, drawn along the cut from corner to corner, or what suits each; "
+        "default: auto",
+    )
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
 
 

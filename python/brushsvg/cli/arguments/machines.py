@@ -97,6 +97,7 @@ def add_check(commands) -> None:
         compensation=None,
         tolerance=None,
         start=None,
+        end=None,
     )
 
 

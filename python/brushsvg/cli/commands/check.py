@@ -180,6 +180,7 @@ def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
             tolerance=made.tolerance_mm,
             lag=made.lag_mm,
             start=made.start,
+            end=made.end,
             z_offset=made.z_offset_mm,
             wide=wide,
         )

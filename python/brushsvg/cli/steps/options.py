@@ -40,6 +40,7 @@ class Choices:
     lag: float | None
     tolerance: float | None
     start: str | None
+    end: str | None
     z_offset: float | None
 
 
@@ -103,6 +104,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance)
         or preparation.Options.tolerance_mm,
         start=chosen.start or preparation.Options.start,
+        end=chosen.end or preparation.Options.end,
         paths_as=chosen.paths_as,
         wide=chosen.wide or preparation.Options.wide,
         corners=chosen.corners or preparation.Options.corners,

@@ -21,7 +21,8 @@ LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "o
 
 def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> preparation.Work:
     if suffix_of(chosen.input) == ".json":
-        for flag in (*LAYOUT_FLAGS, "wide", "corners", "join", "compensation", "lag", "tolerance", "start"):
+        made = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
+        for flag in (*LAYOUT_FLAGS, *made):
             if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None:
                 sentence = f"--{flag} has no effect on a plan, whose poses are fixed"
                 warn(chosen.input, [Notice("", sentence, code="flag-without-effect", about=flag)])

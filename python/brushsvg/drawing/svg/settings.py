@@ -19,8 +19,11 @@ def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dic
 
 
 def document_settings(attributes: dict[str, str]) -> dict:
-    """What the root element says of the whole job: brush, cell, compensation, start, tolerance, wide; what is valid."""
-    settings, _ = _read(attributes, _OF_THE_DOCUMENT | {name: _KNOWN[name] for name in ("brush", "start")})
+    """What the root element says of the whole job, as far as it is valid: brush, start and end, and what concerns the
+    document."""
+    settings, _ = _read(
+        attributes, _OF_THE_DOCUMENT | {name: _KNOWN[name] for name in ("brush", *_OF_JOB_ON_ROOT)}
+    )
     return settings
 
 
@@ -105,6 +108,7 @@ _KNOWN = {
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
     "start": ("start", _one_of("exposed", "hidden", "auto")),
+    "end": ("end", _one_of("lifted", "squared", "auto")),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),
@@ -112,4 +116,4 @@ _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "tolerance": ("tolerance", _tolerance_mm),
     "wide": ("wide", _one_of("auto", "clamp", "passes", "refuse")),
 }
-_OF_JOB_ON_ROOT = {"start"}  # of a stroke elsewhere; here a flag counts more
+_OF_JOB_ON_ROOT = {"start", "end"}  # of a stroke elsewhere; here a flag counts more

@@ -28,6 +28,7 @@ class Made:
     tolerance_mm: float | None
     lag_mm: float | None
     start: str | None = None
+    end: str | None = None
     strokes: int = 0
     notes: tuple[str, ...] = ()
     border_mm: tuple[float, ...] | None = None
@@ -49,9 +50,11 @@ def made(text: str) -> Made:
     border = _said(header, "border", r"(\S+) to (\S+) mm, (\S+) to (\S+) mm", (-1e5, 1e6))
     heights = _said(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
-    told = r"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?(?:, start (?:exposed|hidden|auto))?"
+    ends = r"(?:, start (?:exposed|hidden|auto))?(?:, end (?:lifted|squared|auto))?"
+    told = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
     tolerance = _said(header, "compensation", told, (1e-5, 10.0))
-    start = re.search(r", start (exposed|hidden|auto)$", header.get("compensation", ""))
+    start = re.search(r", start (exposed|hidden|auto)(?:, end \w+)?$", header.get("compensation", ""))
+    end = re.search(r", end (lifted|squared|auto)$", header.get("compensation", ""))
     has_lag = ", lag " in header.get("compensation", "")
     lag = _said(header, "compensation", r".*, lag (\S+) mm.*", (0.0, 1000.0)) if has_lag else None
     if how is None:
@@ -72,6 +75,7 @@ def made(text: str) -> Made:
         tolerance_mm=tolerance[0] if tolerance else None,
         lag_mm=lag[0] if lag else None,
         start=start[1] if start else None,
+        end=end[1] if end else None,
         strokes=int(strokes[1]) if strokes else 0,
         notes=tuple(
             f"{word}: {header[word]}" for word in ("compensation", "warnings", "order") if word in header

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "brushsvg/coverage.hpp"
+
+namespace brushsvg {
+
+/// Rings [mm] along which half of the pixels is painted, outer ones counter-clockwise, holes clockwise. Beyond its
+/// window a picture is blank.
+Rings half_painted(const Coverage& picture, const Window& window, double px_per_mm);
+
+}  // namespace brushsvg
