@@ -19,7 +19,8 @@ OWN = {  # what brushsvg does where the document says nothing
     "compensation": "closed",
     "start": "auto",
     "end": "auto",
-    "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6",
+    "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, "
+    "for Python xarm6, for KRL kr6-r900",
     "wide": "auto",
     "tolerance": "0.05mm",
 }

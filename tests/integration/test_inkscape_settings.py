@@ -9,7 +9,10 @@ from plugin import SOURCE, sentence
 from brushsvg.machine.cell_file import DEFAULT_CELL
 from brushsvg.pipeline.preparation import DEFAULT_BRUSH, Options
 
-MACHINES = f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6"
+MACHINES = (
+    f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6, "
+    "for KRL kr6-r900"
+)
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
 
 

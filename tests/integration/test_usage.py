@@ -112,6 +112,8 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".script": ("--cell", "ur5e"),
             ".jks": ("--cell", "jaka-zu3"),
             ".mod": ("--cell", "irb120"),
+            ".py": ("--cell", "xarm6"),
+            ".src": ("--cell", "kr6-r900"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -131,6 +133,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.jks",
             "made.mod",
             "made.py",
+            "made.src",
             "page.pdf",
             "page.svg",
             "seen.png",

@@ -28,6 +28,7 @@ LANGUAGES = {
     "jaka-zu3": ".jks",
     "irb120": ".mod",
     "xarm6": ".py",
+    "kr6-r900": ".src",
 }
 SHEET = (400.0, 400.0)
 
@@ -102,14 +103,15 @@ def gcode_moves(text, cell):
             yield bool(codes) and word == "0", tuple(at), feed / 60, visit
 
 
-def urscript_moves(text):
+def moves_on_paper(text, remark, speed, unit_mm=1.0):
+    """Of languages whose places are on_paper(x, y, z)."""
     visit = False
     for line in text.splitlines():
-        if line.startswith("  # "):
-            visit = line.startswith("  # paint")
-        speed = re.search(r"v=([\d.]+)", line)
+        if line.startswith(remark):
+            visit = line.startswith(f"{remark}paint")
+        said = re.search(speed, line)
         for point in re.findall(r"on_paper\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)", line):
-            yield False, tuple(1e3 * float(value) for value in point), 1e3 * float(speed[1]), visit
+            yield False, tuple(unit_mm * float(value) for value in point), unit_mm * float(said[1]), visit
 
 
 def jaka_moves(text):
@@ -124,16 +126,6 @@ def jaka_moves(text):
             yield from ((False, places[name], float(move[2]), visit) for name in names)
 
 
-def rapid_moves(text):
-    visit = False
-    for line in text.splitlines():
-        if line.startswith("  ! "):
-            visit = line.startswith("  ! paint")
-        speed = re.search(r"mm_s\(([\d.]+)\)", line)
-        for point in re.findall(r"on_paper\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)", line):
-            yield False, tuple(map(float, point)), float(speed[1]), visit
-
-
 def xarm_moves(text):
     visit = False
     for line in text.splitlines():
@@ -144,8 +136,26 @@ def xarm_moves(text):
             yield False, tuple(point), speed, visit
 
 
-ROBOTS = {"ur5e": urscript_moves, "jaka-zu3": jaka_moves, "irb120": rapid_moves, "xarm6": xarm_moves}
-ON_PAPER = ("ur5e", "irb120")  # whose points are the paper's
+def krl_moves(text):
+    visit, speed = False, 0.0
+    for line in text.splitlines():
+        if line.startswith("; "):
+            visit = line.startswith("; paint")
+        if said := re.fullmatch(r"\$VEL\.CP = ([\d.]+)", line):
+            speed = 1e3 * float(said[1])
+        if line.startswith(("LIN {", "CIRC {")):
+            for point in re.findall(r"\{X (-?[\d.]+), Y (-?[\d.]+), Z (-?[\d.]+), ", line):
+                yield False, tuple(map(float, point)), speed, visit
+
+
+ROBOTS = {
+    "ur5e": lambda text: moves_on_paper(text, "  # ", r"v=([\d.]+)", 1e3),
+    "jaka-zu3": jaka_moves,
+    "irb120": lambda text: moves_on_paper(text, "  ! ", r"mm_s\(([\d.]+)\)"),
+    "xarm6": xarm_moves,
+    "kr6-r900": krl_moves,
+}
+ON_PAPER = ("ur5e", "irb120", "kr6-r900")  # whose points are the paper's
 
 
 def in_paper_frame(moves, cell, name, z_offset):

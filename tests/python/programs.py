@@ -15,6 +15,7 @@ LANGUAGES = {
     "jaka-zu3": ".jks",
     "irb120": ".mod",
     "xarm6": ".py",
+    "kr6-r900": ".src",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

@@ -199,7 +199,7 @@ TABLES = {
     "machine": Machine,
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
-NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(("urscript", "jaka", "rapid", "xarm"), "tool")
+NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(("urscript", "jaka", "rapid", "xarm", "krl"), "tool")
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 RELOADS = ("length", "stroke", "layer")
 

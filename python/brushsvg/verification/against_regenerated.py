@@ -320,13 +320,15 @@ class _Alike:
             return least - unit <= value <= most + 2 * unit
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
-        tilts = 3 if wanted.startswith(("set_tcp", "return", "paper")) else 0
-        tilted_rad = PAPER_TILTED_RAD if wanted.startswith("paper") else TILTED_RAD
+        in_degrees = wanted.startswith(("$tool", "tool = [", "TOOL = ["))
+        tilts = 3 if in_degrees or wanted.startswith(("set_tcp", "return", "paper")) else 0
+        tilted = PAPER_TILTED_RAD if wanted.startswith("paper") else TILTED_RAD
+        tilted = math.degrees(tilted) if in_degrees else tilted
         numbers = list(zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True))
         return all(
             abs(float(x) - float(y))
             <= (
-                tilted_rad
+                tilted
                 if k >= len(numbers) - tilts
                 else DIGITS * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
             )

@@ -142,6 +142,52 @@ SCRIPTS = {
         ),
         after=2,
     ),
+    "krl": Script(
+        remark=";",
+        moves=r"LIN |CIRC |\$VEL|\$APO",
+        words=(
+            *(
+                ("LIN", "PTP"),
+                ("CIRC", "LIN"),
+                ("LIN", "lin"),
+                (" C_DIS", ""),
+                ("} ", "} C_DIS "),
+                ("X ", "Y "),
+            ),
+            *(
+                ("here.Z", "here.Y"),
+                ("<", ">"),
+                ("$VEL", "$ACC"),
+                ("$APO", "$VEL"),
+                ("A ", "B "),
+                ("CDIS", "CPTP"),
+            ),
+        ),
+        modes=(
+            *(
+                ("$BASE", "$TOOL"),
+                ("$TOOL", "$BASE"),
+                ("#INITMOV", "#TOOL"),
+                ("E6POS", "E6AXIS"),
+                ("$POS_ACT", "$NULLFRAME"),
+            ),
+            *(("$AXIS_ACT", "HOME"), ("DEF ", "DEFFCT ")),
+        ),
+        offsets=r"^\$(?:TOOL|BASE)|here\.Z",
+        shifts=(-100, -1, 1, 0.2, 0.01),
+        more=(
+            "EXIT",
+            "WAIT SEC 0.5",
+            "$OUT[1]=TRUE",
+            "HALT",
+            "$OV_PRO=100",
+            "$VEL.CP = 2",
+            "$APO.CDIS = 5",
+            "RETURN",
+        ),
+        says="$FLAG[1]={}",
+        rates=(r"(\$VEL\.CP = )(\d+\.\d+)", r"(\$APO\.CDIS = )(\d+\.\d+)", r"(\$ACC\.CP = )(\d+\.\d+)"),
+    ),
 }
 
 
@@ -163,7 +209,7 @@ class Page:
         return line.startswith(self.remark)
 
     def _acts(self, k: int) -> bool:
-        return not self.lines[k].startswith(("def ", "MODULE "))
+        return not self.lines[k].startswith(("def ", "MODULE ", "&", "DEF "))
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""

@@ -17,6 +17,7 @@ import numpy as np
 from . import places
 from .gcode import run_gcode
 from .jaka import run_jaka
+from .krl import run_krl
 from .moves import Leg, Run, arc_points
 from .rapid import run_rapid
 from .urscript import run_urscript
@@ -32,7 +33,7 @@ SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
 MOST = 4000  # samples of one leg
 
 
-ROBOTS = {"urscript": run_urscript, "jaka": run_jaka, "rapid": run_rapid, "xarm": run_xarm}
+ROBOTS = {"urscript": run_urscript, "jaka": run_jaka, "rapid": run_rapid, "xarm": run_xarm, "krl": run_krl}
 
 
 @dataclass

@@ -23,6 +23,7 @@ CELLS = {
     "jaka": ("jaka-zu3", ".jks"),
     "rapid": ("irb120", ".mod"),
     "xarm": ("xarm6", ".py"),
+    "krl": ("kr6-r900", ".src"),
 }
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 

@@ -67,6 +67,12 @@ def _xarm(program: Program) -> Iterator[str]:
     return xarm(program)
 
 
+def _krl(program: Program) -> Iterator[str]:
+    from .krl import krl
+
+    return krl(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -76,4 +82,5 @@ POSTS = {  # by the language a cell names
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
     "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
+    "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
 }

@@ -152,7 +152,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", "popup", "TPWrite")
+            ("(", "#", "!", ";", "popup", "TPWrite")
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
@@ -194,6 +194,12 @@ def _xarm(text: str, cell: Cell) -> Readback:
     return read_xarm(text, cell)
 
 
+def _krl(text: str, cell: Cell) -> Readback:
+    from .krl import read_krl
+
+    return read_krl(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -202,4 +208,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "jaka": _jaka,
     "rapid": _rapid,
     "xarm": _xarm,
+    "krl": _krl,
 }

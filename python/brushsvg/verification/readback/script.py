@@ -25,7 +25,8 @@ class Script:
         there, perhaps with a height that the tool rises to.
     again: texts that do nothing when they stand there twice; last: of the program, without blanks around them;
     units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be; least: of `most`;
-    is_indented: whether blanks before a line mean something; any_case: whether large and small letters are the same.
+    sets_after: the text before which nothing may be set; is_indented: whether blanks before a line mean something;
+    any_case: whether large and small letters are the same.
     """
 
     remark: str
@@ -34,6 +35,7 @@ class Script:
     last: tuple[str, ...]
     units_mm: dict[str, float]
     turned_deg: tuple[float, ...] = ()
+    sets_after: str = ""
     least: float = 0.0
     is_indented: bool = False
     any_case: bool = False
@@ -64,10 +66,12 @@ class _Reader:
     def __init__(self, script: Script, out: Readback):
         self.script, self.out = script, out
         self.held: dict[str, float] = {}
+        self.is_ready = not script.sets_after
+        self.in_block = False  # which may not be run
 
     def line(self, number: int, line: str) -> None:
         if line.lstrip(" ").startswith(self.script.remark):
-            self.out.comment(number, line.lstrip(" ")[len(self.script.remark) :])
+            self._comment(number, line.lstrip(" ")[len(self.script.remark) :])
             return
         line = self.spelled(line)
         for kind, pattern in self.script.lines:
@@ -78,6 +82,12 @@ class _Reader:
                 getattr(self, f"_{kind}")(number, line, values)
                 return
         raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
+
+    def _comment(self, number: int, text: str) -> None:
+        acts, before = self.out.acts, len(self.out.acts)
+        self.out.comment(number, text)
+        if 0 < before < len(acts) and acts[before - 1].text.startswith("here"):
+            acts.insert(before - 1, acts.pop())  # a title changes nothing of what stands before it
 
     def spelled(self, line: str) -> str:
         return line.lower() if self.script.any_case else line
@@ -104,6 +114,8 @@ class _Reader:
     # Kinds of lines ----------------------------------------------------------------------------------
 
     def _sets(self, number: int, line: str, values: dict) -> None:
+        if self.in_block or not self.is_ready:
+            raise Error(f"line {number}: {line[:60]!r} has no place here", code="line-unread")
         self.held |= values
 
     def _move(self, number: int, line: str, values: dict) -> None:
@@ -133,10 +145,11 @@ class _Reader:
         self.out.rises_mm += [values["height"]] if "height" in values else []
         height = f" {values['height']:.4f}" if "height" in values else ""
         at_most = self._at_most(number, line, values)
-        act = Act(number, "text", f"rises{height}", (), at_most)
-        if (
-            not self.out.acts or self.out.acts[-1][1:] != act[1:]
-        ):  # twice, the second one finds the tool up there
+        self._act(Act(number, "text", f"rises{height}", (), at_most))
+
+    def _act(self, act: Act) -> None:
+        """What does nothing more when it stands there twice."""
+        if not self.out.acts or self.out.acts[-1][1:] != act[1:]:
             self.out.acts.append(act)
 
     def _wait(self, number: int, line: str, values: dict) -> None:
@@ -147,10 +160,12 @@ class _Reader:
             raise Error(
                 f"line {number}: {line[:60]!r} leaves too little to move with", code="line-incomplete"
             )
-        self.out.acts.append(Act(number, "text", "at most", (), tuple(values.values())))
+        self._act(Act(number, "text", "at most", (), tuple(values.values())))
 
     def _text(self, number: int, line: str, values: dict) -> None:
         self.out.rises_mm += [values["height"]] if "height" in values else []
+        self.is_ready = self.is_ready or line == self.script.sets_after
+        self.in_block = line.startswith("if") or (self.in_block and line not in ("end", "endif"))
         acts = self.out.acts
         before = next((act.text for act in reversed(acts) if not act.text.startswith("(")), None)
         if before == line and self.script.again.match(line):

@@ -1,0 +1,87 @@
+"""Moves -> KRL (.src) for KUKA robots: millimetres, degrees, the paper as BASE, the brush's tip as TOOL."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..frames import frame_of_pose, rotation_deg
+from ..motion import Move, Program, Wait, via
+from .script import Words, blends_mm, body, down, numbers, rounded_down
+from .text import number, plain, rows
+
+LINE_LIMIT = 100
+DEGREE_DECIMALS = 5
+SPEED_DECIMALS = 6  # of m/s
+KRL_END = "end: the brush is held up"
+
+
+def krl(program: Program) -> Iterator[str]:
+    """One .src without a .dat: all points stand in it. They are those of the BASE: to teach the paper anew, only its
+    line has to change. The first move goes to where the robot is, as a first one must be PTP."""
+    cell, decimals = program.cell, program.cell.decimals
+    acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
+    tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
+    yield "DEF brushsvg()\n"
+    yield "".join(map(comment, program.header))
+    yield "DECL E6POS here\nBAS(#INITMOV, 0)\n"
+    yield f"$TOOL = {_frame(tool, decimals)}\n$BASE = {_frame(program.robot_from_frame, decimals)}\n"
+    yield f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
+    turned = _angles(rotation_deg(down(cell.tool.spin_deg)))
+    words = Words(
+        comment,
+        lambda speed: _rise(number(program.rise_mm, decimals), speed),
+        _wait,
+        lambda move: _lines(move, turned, decimals),
+    )
+    yield from body(program, words)
+    yield "\n" + comment(KRL_END) + "END\n"
+
+
+def comment(text: str) -> str:
+    return f"; {plain(text, LINE_LIMIT - 2)}\n"
+
+
+def _rise(height: str, speed_mm_s: float) -> str:
+    return (
+        f"here = $POS_ACT\n{_speed(speed_mm_s)}"
+        f"IF here.Z < {height} THEN\n  here.Z = {height}\n  LIN here\nENDIF\n"
+    )
+
+
+def _lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
+    yield _speed(move.speed_mm_s)
+    point = f"{{X %.{decimals}f, Y %.{decimals}f, Z %.{decimals}f, {turned}}}"
+    if move.arc is not None:
+        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        yield from rows(f"CIRC {point}, {point}", values, decimals)
+        return
+    blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
+    values, is_blended = np.column_stack([blends, move.points_mm]), blends > 0
+    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
+        if is_blended[run[0]]:
+            yield from rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
+        else:
+            yield from rows(f"LIN {point}", values[run, 1:], decimals)
+
+
+def _wait(step: Wait) -> str:
+    if step.seconds is None:
+        return comment(f"stop: {step.message}") + "HALT\n"
+    return f"WAIT SEC {number(step.seconds, 3)}\n"
+
+
+def _speed(speed_mm_s: float) -> str:
+    return f"$VEL.CP = {rounded_down(speed_mm_s / 1e3, SPEED_DECIMALS)}\n"
+
+
+def _frame(frame: np.ndarray, decimals: int) -> str:
+    x, y, z = numbers(frame[:3, 3], decimals).split(", ")
+    return f"{{X {x}, Y {y}, Z {z}, {_angles(rotation_deg(frame[:3, :3]))}}}"
+
+
+def _angles(about_xyz_deg: np.ndarray) -> str:
+    """A turns about z, then B about the new y, then C about the newest x: the same as fixed x, y, z backwards."""
+    a, b, c = numbers(about_xyz_deg[::-1], DEGREE_DECIMALS).split(", ")
+    return f"A {a}, B {b}, C {c}"
