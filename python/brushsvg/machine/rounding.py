@@ -97,8 +97,8 @@ def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: fl
 
 
 def _parts(arc, poses: np.ndarray, least_mm: float) -> Iterator:
-    """A circle whose end is its beginning, or rounded may be, would be none at all, and one that goes on beyond it would
-    lose a turn: both in parts."""
+    """A circle whose end is its beginning, or rounded may be, would be none at all, and one that goes on beyond it
+    would lose a turn: both in parts."""
     spokes = poses[arc.first : arc.last + 1, :2] - arc.centre_mm
     steps = np.diff(np.arctan2(spokes[:, 1], spokes[:, 0])) * arc.direction
     turned = np.cumsum([0.0, *((steps + BACK_RAD) % tau - BACK_RAD)])
