@@ -11,7 +11,7 @@ from programs import LANGUAGES, RUNNABLE, call
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.cell import Machine
+from brushsvg.machine.cell import Machine, Reload, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.pipeline import preparation
 from brushsvg.verification import simulate_program
@@ -167,3 +167,78 @@ def test_a_servo_that_leans_is_refused():
 def test_the_table_is_written_as_it_is_read():
     cell = replace(find_cell("linuxcnc-3axis"), machine=LEANS)
     assert parse_cell(write_cell(cell)) == cell
+
+
+HIGH = Machine(scale=(1.02, 0.98), skew=0.01, height_mm=4.0, tilt_mm_per_mm=(0.01, 0.02))
+LOW = Machine(height_mm=-3.0, tilt_mm_per_mm=(-0.01, 0.0))
+INK = Station("ink", (-20.0, 10.0), surface_mm=-1.0, depth_mm=2.0, rim_mm=3.0)
+
+
+def with_paint(machine, name="linuxcnc-3axis", safe_mm=5.0):
+    cell = cell_with(machine, name)
+    heights = replace(cell.heights, safe_mm=safe_mm, clearance_mm=1.0)
+    space = replace(cell.workspace, box_mm=(), reach_mm=())
+    return replace(
+        cell, name="mine", heights=heights, workspace=space, reload=Reload("stroke"), stations=(INK,)
+    )
+
+
+def over_the_paper(told, machine):
+    return told[:, 2] - machine.height_mm - told[:, :2] @ np.array(machine.tilt_mm_per_mm)
+
+
+@pytest.mark.parametrize("machine", [HIGH, LOW])
+def test_between_strokes_and_paint_nothing_goes_below_the_safe_height(desk, machine):
+    """Over paper that is 4 mm higher than it was taught, the tool came from the paint 1 mm above it."""
+    work, cell = preparation.prepare("two.svg"), with_paint(machine)
+    text = "".join(writer.encode(".ngc", work.plan, work.brush, "two", (), cell))
+    told = told_places(text)
+    (rise,) = re.findall(r"(?m)^G0 Z(\S+)$", text.split("(paint:")[0])
+    sideways = np.hypot(*np.diff(told[:, :2], axis=0).T) > 1e-6
+    over = over_the_paper(told, machine)
+    travels = [k for k in np.flatnonzero(sideways) if min(over[k], over[k + 1]) > 0.5]
+    assert len(travels) == 3, "and one from nobody knows where"
+    for k in travels:
+        assert min(over[k : k + 2]) > 5.0 - 2e-3 and min(told[k : k + 2, 2]) > 5.0 - 2e-3
+    corners = np.array([(x, y, float(rise)) for x in (-30, 150) for y in (-30, 100)])
+    assert over_the_paper(corners, machine).min() > 5.0 - 2e-3
+
+
+@pytest.mark.parametrize("machine", [Machine(height_mm=0.4), Machine(height_mm=-0.4)])
+@pytest.mark.parametrize("name", ["grbl-servo", "linuxcnc-3axis", "ur5e"])
+def test_check_allows_visits_on_a_machine_whose_paper_lies_higher(desk, capsys, name, machine):
+    suffix, safe_mm = LANGUAGES[name], 4.5
+    cell = replace(with_paint(machine, name, safe_mm), blending=find_cell(name).blending)
+    (desk / "mine.toml").write_text(write_cell(cell))
+    assert call(capsys, "convert", "two.svg", "two" + suffix, "--cell", "mine.toml")[0] == 0
+    status, out, err = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "mine.toml")
+    assert status == 0 and RUNNABLE in out, err
+
+
+@pytest.mark.parametrize("machine", [HIGH, LOW])
+def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk, capsys, machine):
+    (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
+    assert call(capsys, "border", "two.svg", "border.ngc", "--cell", "mine.toml")[0] == 0
+    text = (desk / "border.ngc").read_text()
+    told = told_places(text)
+    assert over_the_paper(told, machine).min() > 5.0 - 2e-3 and told[:, 2].min() > 5.0 - 2e-3
+    x = machine.scale[0] * told[:, 0] + machine.skew * told[:, 1]
+    ((left, right),) = re.findall(r"\(border: (\S+) to (\S+) mm,", text)
+    assert (x.min(), x.max()) == pytest.approx((float(left), float(right)), abs=2e-3)
+    assert call(capsys, "check", "border.ngc", "two.svg", "--cell", "mine.toml")[0] == 0
+
+
+@pytest.mark.parametrize("machine", [HIGH, LOW, LEANS])
+def test_heights_tell_how_much_higher_the_paper_lies_than_is_known(desk, capsys, machine):
+    """What the first stroke to paint says is what `convert --z-offset` takes, which adds it to height_mm."""
+    (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
+    assert call(capsys, "height", "height.ngc", "--cell", "mine.toml")[0] == 0
+    text = (desk / "height.ngc").read_text()
+    sections = re.findall(r"first to paint means --z-offset (-?[\d.]+)\)\n((?:.+\n)+)", text)
+    assert len(sections) > 10
+    for said, lines in sections:
+        told = told_places(lines)
+        over = over_the_paper(told, machine)
+        assert np.isclose(over, float(said), atol=2e-3).sum() == 2 and over.min() > float(said) - 2e-3
+        assert over[[0, -1]].min() > 5.0 - 2e-3
+    assert call(capsys, "check", "height.ngc", "--cell", "mine.toml")[0] == 0

@@ -229,6 +229,22 @@ def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
     assert sum(line.strip().startswith(word) for line in text.splitlines()) == 2
 
 
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("degrees", [361.0, 371.4, 540.0, 800.0])
+@pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
+def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees, turn):
+    """A small closed triangle was turned by 371.4 degrees: told in one line, it ran 11.4 degrees, or the other way."""
+    on = arc((50, 40), 9.47, 72.19, 72.19 + turn * degrees, 67)
+    poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
+    told, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
+    text, said = found_by_check(poses, [told], cell)
+    assert said is None
+    read = simulate_program.run(read_program(text, LANGUAGES[name], cell), BRUSH, cell, SHEET_MM)
+    x, y = np.transpose([pose[:2] for pose in read.plan.passes[0].poses_mm if pose[2] < -1.99])
+    turned = np.diff(np.unwrap(np.arctan2(y - 40, x - 50))[:-1]).sum()
+    assert np.degrees(turned) == pytest.approx(turn * degrees, abs=0.1)
+
+
 @pytest.mark.parametrize("at", [100, 180, 190, 250])
 @pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
 def test_a_circle_whose_named_pose_lies_half_way_round_or_farther_is_read(name, at):

@@ -41,6 +41,15 @@ def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     return np.column_stack([place, z])
 
 
+def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
+    """(n,) what to tell the machine at places (n, 2) that it is told, so that the tool is at least so high over the
+    paper, and over what stands as it was taught, such as vessels."""
+    rises_mm = np.zeros(len(told_mm))
+    if machine is not None:
+        rises_mm = np.maximum(machine.height_mm + told_mm @ machine.tilt_mm_per_mm, 0.0)
+    return height_mm + rises_mm
+
+
 def _axes(machine: Machine) -> np.ndarray:
     return np.array([[machine.scale[0], machine.skew], [0.0, machine.scale[1]]])
 

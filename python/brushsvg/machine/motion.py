@@ -10,6 +10,7 @@ import numpy as np
 
 from ..geometry import polylines
 from .cell import Cell
+from .distortion import told_high_mm
 from .frames import moved
 
 SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
@@ -85,8 +86,9 @@ def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
     """The height, in the frame that the paper's frame is given in, of the safe height's highest place [mm]."""
     margin = cell.workspace.margin_mm
     x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
-    corners = np.array([(a, b, cell.heights.safe_mm) for a in x for b in y])
-    return float(moved(frame, corners)[:, 2].max())
+    corners = np.array([(a, b) for a in x for b in y])
+    heights = told_high_mm(corners, cell.heights.safe_mm, cell.machine)
+    return float(moved(frame, np.column_stack([corners, heights]))[:, 2].max())
 
 
 def in_robot_frame(program: Program) -> Program:

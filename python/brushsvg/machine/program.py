@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
-from .distortion import told_mm, true_mm
+from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, rise_over
 from .paint_reload import PlanInLoads, visits
@@ -133,14 +133,20 @@ def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JO
 
     made = cache(lambda: tuple(sections()))
     is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_AT_ONCE
-    rise_mm = rise_over(cell, loads.sheet_mm, frame)
+    rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
     walk = (lambda: iter(made())) if is_little else sections
-    return Program((), cell, frame, walk, cell.heights.safe_mm, rise_mm, touching_mm_s(brush, cell))
+    return Program((), cell, frame, walk, *rises_mm, touching_mm_s(brush, cell))
 
 
 def over(point, height_mm: float) -> np.ndarray:
     """(1, 3) the place above a point."""
     return np.array([[point[0], point[1], height_mm]], dtype=float)
+
+
+def safely_over(told_mm, cell: Cell) -> np.ndarray:
+    """(1, 3) the place at safe height above one that the machine is told."""
+    (height_mm,) = told_high_mm(np.array([told_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine)
+    return over(told_mm, height_mm)
 
 
 def approach_mm_s(brush, cell: Cell) -> float:
@@ -157,8 +163,8 @@ def names_of_stations(cell: Cell) -> dict[Station, str]:
 def visit(station: Station, brush, cell: Cell) -> Section:
     """To the paint and back up to safe height; a person does the rest where the station is served by hand."""
     name = names_of_stations(cell).get(station, station.name)
-    safe, speeds = cell.heights.safe_mm, cell.speeds
-    steps = [Move("travel", over(station.place_mm, safe), speeds.travel_mm_s)]
+    speeds = cell.speeds
+    steps = [Move("travel", safely_over(station.place_mm, cell), speeds.travel_mm_s)]
     if station.by_hand:
         return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
     # a vessel may stand lower than the paper, under which nothing is fast
@@ -177,7 +183,7 @@ def visit(station: Station, brush, cell: Cell) -> Section:
         last = station.wipe_mm[-1]
         if last[2] < rim:
             steps.append(Move("dip", over(last, rim), press_mm_s))
-    steps.append(Move("retract", over(last, safe), speeds.travel_mm_s))
+    steps.append(Move("retract", safely_over(last, cell), speeds.travel_mm_s))
     return Section(f"paint: {name}", tuple(steps))
 
 
@@ -194,12 +200,12 @@ def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
     # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
     press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
     return (
-        Move("travel", above(start, heights.safe_mm), speeds.travel_mm_s),
+        Move("travel", safely_over(above(start, 0.0)[0], cell), speeds.travel_mm_s),
         Move("approach", above(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
         *_painting(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
         Move("lift", above(end, heights.clearance_mm), press_mm_s),
-        Move("retract", above(end, heights.safe_mm), speeds.travel_mm_s),
+        Move("retract", safely_over(above(end, 0.0)[0], cell), speeds.travel_mm_s),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import dist
+from math import ceil, dist, tau
 
 import numpy as np
 
@@ -79,30 +79,44 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
 
 
 def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> Iterator:
-    """The arcs that are told as circles: those that come back to where they began in two halves, and none where no more
-    than a tiny move would lead to it or away from it."""
+    """The arcs that are told as circles: those that come back to where they began or beyond in parts, and none where no
+    more than a tiny move would lead to it or away from it."""
 
     def is_tiny(first: int, last: int) -> bool:
         return first != last and dist(poses[first], poses[last]) < least_mm
 
     done = 0
     for arc in arcs:
-        for half in _halves(arc, poses, CIRCLE_UNITS * unit_mm):
-            if not _is_told(poses[half.first : half.last + 1, :2], circles_by, CIRCLE_UNITS * unit_mm):
+        for part in _parts(arc, poses, CIRCLE_UNITS * unit_mm):
+            if not _is_told(poses[part.first : part.last + 1, :2], circles_by, CIRCLE_UNITS * unit_mm):
                 continue
-            if is_tiny(done, half.first) or is_tiny(half.last, len(poses) - 1):
+            if is_tiny(done, part.first) or is_tiny(part.last, len(poses) - 1):
                 continue
-            yield half
-            done = half.last
+            yield part
+            done = part.last
 
 
-def _halves(arc, poses: np.ndarray, least_mm: float) -> list:
-    """A circle whose end is its beginning, or rounded may be, would be none at all."""
-    if arc.last - arc.first < 2 or dist(poses[arc.first, :2], poses[arc.last, :2]) >= least_mm:
-        return [arc]
-    middle = (arc.first + arc.last) // 2
-    ends = ((arc.first, middle), (middle, arc.last))
-    return [_core.Arc(*each, arc.centre_mm, arc.direction) for each in ends]
+def _parts(arc, poses: np.ndarray, least_mm: float) -> Iterator:
+    """A circle whose end is its beginning, or rounded may be, would be none at all, and one that goes on beyond it
+    would lose a turn: both in parts."""
+    spokes = poses[arc.first : arc.last + 1, :2] - arc.centre_mm
+    steps = np.diff(np.arctan2(spokes[:, 1], spokes[:, 0])) * arc.direction
+    turned = np.cumsum([0.0, *((steps + BACK_RAD) % tau - BACK_RAD)])
+    first, ends = 0, dist(poses[arc.first, :2], poses[arc.last, :2])
+    if turned[-1] >= tau or ends < least_mm:
+        share = turned[-1] / max(2, ceil(turned[-1] / PART_RAD)) - 1e-6
+        for row in range(1, len(turned) - 1):
+            if turned[row] - turned[first] >= share or turned[row + 1] - turned[first] > MOST_RAD:
+                yield _core.Arc(arc.first + first, arc.first + row, arc.centre_mm, arc.direction)
+                first = row
+    yield _core.Arc(arc.first + first, arc.last, arc.centre_mm, arc.direction)
+
+
+BACK_RAD = 1.0  # rounding may turn tiny steps of a circle back by less
+PART_RAD, MOST_RAD = (
+    3.5,
+    5.0,
+)  # of a circle in parts: two of a little more than all round; no part is all round
 
 
 def _is_told(on: np.ndarray, circles_by: str, least_mm: float) -> bool:

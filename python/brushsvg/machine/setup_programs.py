@@ -9,8 +9,9 @@ import numpy as np
 
 from ..errors import Error
 from .cell import Cell, robot_from_paper
+from .distortion import told_mm
 from .motion import Move, Program, Section, Wait, rise_over
-from .program import approach_mm_s, astray_in, over
+from .program import approach_mm_s, astray_in, over, safely_over
 from .workspace_limits import touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
@@ -34,11 +35,9 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     Error when it leaves the workspace.
     """
     left, bottom, right, top = around_mm
-    height = cell.heights.safe_mm
-    corners = np.array(
-        [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)], dtype=float
-    )
-    path = np.column_stack([corners, np.full(len(corners), height)])
+    corners = ((left, bottom), (right, bottom), (right, top), (left, top), (left, bottom))
+    told = np.vstack([told_mm(over(corner, 0.0), cell.machine) for corner in corners])
+    path = np.vstack([safely_over(corner, cell) for corner in told])
 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
@@ -50,11 +49,7 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
         ]
         yield Section("border of the job, at safe height", (start, *steps))
 
-    frame = robot_from_paper(cell, z_offset_mm)
-    made = Program(
-        (), cell, frame, sections, height, rise_over(cell, sheet_mm, frame), touching_mm_s(brush, cell)
-    )
-    return _refuse_astray(made, sheet_mm)
+    return _unless_astray(sections, brush, cell, sheet_mm, z_offset_mm)
 
 
 def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
@@ -83,15 +78,17 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
     steps = []
     for number, (height, (x, y)) in enumerate(zip(heights, starts, strict=True)):
         length = STROKE_MM * (LONGER if number % LONG_EVERY == 0 else 1.0)
-        first, last = np.array([[x, y, height]]), np.array([[x + length, y, height]])
+        ends = (x, y), (x + length, y)
+        first, last = (told_mm(over(end, height), cell.machine) for end in ends)
+        down, up = (told_mm(over(end, clearance), cell.machine) for end in ends)
         steps.append(
             (
-                Move("travel", over(first[0], safe), speeds.travel_mm_s),
-                Move("approach", over(first[0], clearance), approach_mm_s(brush, cell)),
+                Move("travel", safely_over(down[0], cell), speeds.travel_mm_s),
+                Move("approach", down, approach_mm_s(brush, cell)),
                 Move("land", first, press),
                 Move("paint", last, speed),
-                Move("lift", over(last[0], clearance), press),
-                Move("retract", over(last[0], safe), speeds.travel_mm_s),
+                Move("lift", up, press),
+                Move("retract", safely_over(up[0], cell), speeds.travel_mm_s),
             )
         )
 
@@ -101,11 +98,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
                 f"stroke {number} of {len(heights)}: first to paint means --z-offset {height:.2f}", each
             )
 
-    frame = robot_from_paper(cell)
-    made = Program(
-        (), cell, frame, sections, safe, rise_over(cell, sheet_mm, frame), touching_mm_s(brush, cell)
-    )
-    return _refuse_astray(made, sheet_mm)
+    return _unless_astray(sections, brush, cell, sheet_mm)
 
 
 def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
@@ -134,7 +127,10 @@ def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
     return [(LANE_MM + pitch * (k // rows), height - LANE_MM * (1 + k % rows)) for k in range(count)]
 
 
-def _refuse_astray(made: Program, sheet_mm) -> Program:
+def _unless_astray(sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+    frame = robot_from_paper(cell, z_offset_mm)
+    rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
+    made = Program((), cell, frame, sections, *rises_mm, touching_mm_s(brush, cell))
     for notice in astray_in(made, sheet_mm):
         raise Error(notice.sentence, code=notice.code)
     return made

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import Notice
 from ..machine.cell import Cell
+from ..machine.distortion import true_mm
 from ..machine.header_lines import border_header, height_header
 from ..machine.motion import Program, duration_s
 from ..machine.program import Job
@@ -57,9 +58,10 @@ def _looked(
     problems: Problems = []
     for section, track, said in sections:
         problems += [replace(each, where=section.title) for each in said]
-        at = int(np.argmin(track.points[:, 2])) if len(track.points) else None
-        if at is not None and track.points[at, 2] < lowest_mm - slack_mm(cell):
-            line, height_mm = section.steps[track.step[at]].line, track.points[at, 2]
+        heights = true_mm(track.points, cell.machine)[:, 2]
+        at = int(np.argmin(heights)) if len(heights) else None
+        if at is not None and heights[at] < lowest_mm - slack_mm(cell):
+            line, height_mm = section.steps[track.step[at]].line, heights[at]
             sentence = f"line {line}: height {height_mm:.2f} mm is below the {what}, {lowest_mm:g} mm"
             problems.append(Notice(section.title, sentence, code="too-low"))
     if changed := differing_line(text, read, again, cell):
