@@ -80,7 +80,7 @@ def test_a_pen_of_one_width_is_not_asked(brush):
 
 
 def overlap(strokes, shape, brush) -> float:
-    marks = _core.simulate(_core.compensate(strokes, brush, (200, 200), start="auto").plan, brush)
+    marks = _core.simulate(_core.compensate(strokes, brush, (200, 200), start="auto", end="auto").plan, brush)
     _core.trace_outlines(marks, brush)
     return _core.overlap(marks.outline_mm, shape)
 
