@@ -407,6 +407,11 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.json --from-stroke 2",
         "convert a.svg out.json --z-offset 0.3",
         "chart out.json --z-offset 0.3",
+        "convert a.svg out.ngc --width=--",
+        "convert a.svg out.ngc --select=--",
+        "height out.ngc --from=--",
+        "chart out.ngc --noise=--",
+        "calibrate m.csv -o out.json --machine=--",
     ],
 )
 def test_wrong_usage(desk, capsys, words):

@@ -22,6 +22,12 @@ class _Parser(argparse.ArgumentParser):
         # A prefix of a flag is no flag: it would change its meaning as flags are added.
         super().__init__(allow_abbrev=False, **settings)
 
+    def _get_values(self, action, arg_strings):
+        # argparse drops "--" wherever it stands: --width=-- would become an empty list
+        if action.option_strings and "--" in arg_strings:
+            raise argparse.ArgumentError(action, "'--' is no value")
+        return super()._get_values(action, arg_strings)
+
     def print_help(self, file=None) -> None:
         tell(self.format_help())
 
