@@ -13,9 +13,9 @@ namespace {
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
 constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush comes, above any error of the paper's height
 constexpr double kLeastRingMm2 = 0.2;  // specks
-// Looks at instants in a whole fit, for each place and point there is. Marks of a brush take one to three thousand;
+// Looks at instants in a whole fit, for each place and point there is. Marks of a brush take two to ten thousand;
 // those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
-constexpr double kMostLooks = 4e6, kMostLooksEach = 5e3;
+constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
 // And of one mark: about as many as a sheet of fifty strokes takes. 9 m of jumps to and fro, painted as a brush would,
 // took ten times as many, and a minute.
 constexpr double kMostLooksOfOne = 2e8;

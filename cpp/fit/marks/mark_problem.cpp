@@ -1,7 +1,11 @@
 #include "mark_problem.hpp"
 
+#include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -14,15 +18,80 @@ constexpr int kMoves = 3;
 // with 5 it is known a tenth less well than with 3.
 constexpr double kSlim = 3.0;
 
-// Where a step is to win less than this, half of chi-square, unknowns move by less than their standard deviations.
-// There the loss leaps by as much and back wherever a point's nearest edge is another one, which says nothing of the
-// step.
-constexpr double kWithinNoise = 0.5, kLeap = 1.0;
-constexpr double kLeastShare = 1e-3;  // of what a step is to win that it must win elsewhere
-constexpr double kContracts = 0.5;    // of the step before: where steps within the noise are longer they have ended
-constexpr int kMostRefused = 6;       // steps within the noise, of one descent
-constexpr double kStiff = 1e-2;       // what damps less hardly shortens a step that went too far
-constexpr double kFirstDamping = 1e-4, kLeastDamping = 1e-12, kMostDamping = 1e12;
+/// One mark for the solver: residuals whose squares add up to the loss, as they were evaluated last.
+class MarkCost : public ceres::CostFunction {
+ public:
+    MarkCost(const MarkProblem& at, Index mark, const std::vector<bool>& held, bool displaced)
+        : at_(at), mark_(mark), held_(held), displaced_(displaced) {
+        set_num_residuals(int(at.model.points(mark)));
+        *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
+    }
+    /// Always with derivatives: without them ties between edges are broken otherwise, and the loss is another one.
+    void evaluate() {
+        const Index n = num_residuals(), size = at_.model.layout().size();
+        const Weighing& weighing = at_.weighing;
+        const VectorXd& says = at_.says[std::size_t(mark_)];
+        VectorXd distance;
+        residuals_.resize(n);
+        by_shared_.setZero(n, size);
+        by_own_.setZero(n, 2);
+        is_painted_ = at_.model.distances(mark_, at_.shared.data(), at_.own[std::size_t(mark_)].data(), distance,
+                                          &by_shared_, &by_own_);
+        if (!is_painted_) return;
+        const double share = 1.0 / std::sqrt(weighing.repeats);
+        for (Index k = 0; k < n; ++k) {
+            const double z = distance[k] / weighing.noise_mm;
+            const Cost c = cost(weighing.loss, z);
+            const double root = std::sqrt(c.rho), weight = share * says[k];
+            const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing.noise_mm * weight;
+            residuals_[k] = std::copysign(root, z) * weight;
+            by_shared_.row(k) *= rate;
+            by_own_.row(k) *= displaced_ ? rate : 0.0;
+        }
+        for (Index i = 0; i < size; ++i)
+            if (held_[std::size_t(i)]) by_shared_.col(i).setZero();
+    }
+    bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+        if (!is_painted_) return false;
+        std::copy_n(residuals_.data(), residuals_.size(), residuals);
+        if (jacobians && jacobians[0]) std::copy_n(by_shared_.data(), by_shared_.size(), jacobians[0]);
+        if (jacobians && jacobians[1]) std::copy_n(by_own_.data(), by_own_.size(), jacobians[1]);
+        return true;
+    }
+
+ private:
+    const MarkProblem& at_;
+    Index mark_;
+    const std::vector<bool>& held_;
+    bool displaced_, is_painted_ = false;
+    VectorXd residuals_;
+    RowMajor by_shared_, by_own_;
+};
+
+/// All marks at the point that is being tried, once, on all processors, before Ceres asks for them one by one.
+class MarkCosts : public ceres::EvaluationCallback {
+ public:
+    explicit MarkCosts(const MarkProblem& at) : at_(at) {}
+    void PrepareForEvaluation(bool, bool) override {
+        std::vector<double> shared(at_.shared.begin(), at_.shared.end());
+        if (shared == shared_at_ && at_.own == own_at_) return;
+        shared_at_ = std::move(shared);
+        own_at_ = at_.own;
+        at_.model.for_each([&](Index mark) { all[std::size_t(mark)]->evaluate(); });
+    }
+    std::vector<std::unique_ptr<MarkCost>> all;
+
+ private:
+    const MarkProblem& at_;
+    std::vector<double> shared_at_;
+    std::vector<Eigen::Vector2d> own_at_;
+};
+
+std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd& sigma) {
+    ceres::Matrix weight = ceres::Matrix::Zero(value.size(), value.size());
+    for (Index i = 0; i < value.size(); ++i) weight(i, i) = sigma[i] == 0.0 ? 1.0 : 1.0 / sigma[i];
+    return std::make_unique<ceres::NormalPrior>(weight, value);
+}
 
 double machine_sigma(const MarkOptions& options, int number) {
     if (number < MachineAt::scale) return options.lean_mm_per_mm;
@@ -118,101 +187,47 @@ void MarkProblem::find_displaced() {
     });
 }
 
-std::optional<LossNear> MarkProblem::near() const {
-    const Index g = shared.size();
-    std::vector<LossNear> parts(own.size());
-    std::vector<char> is_painted(own.size());  // of its own byte each, for all processors
-    model.for_each([&](Index i) { is_painted[std::size_t(i)] = near_of(i, parts[std::size_t(i)]); });
-    if (std::find(is_painted.begin(), is_painted.end(), 0) != is_painted.end()) return std::nullopt;
-    LossNear out{0.0, VectorXd::Zero(g), MatrixXd::Zero(g, g), {}};
-    const double known = displacement_mm_ > 0.0 ? 1.0 / (displacement_mm_ * displacement_mm_) : 1.0;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        out.loss += parts[i].loss + 0.5 * known * own[i].squaredNorm();
-        out.slope += parts[i].slope;
-        out.bend += parts[i].bend;
-        LossNear::Own& mine = parts[i].own.front();
-        mine.slope += known * own[i];
-        mine.bend.diagonal().array() += known;
-        out.own.push_back(std::move(mine));
-    }
-    for (Index i = 0; i < g; ++i) {
-        const Prior& prior = priors_[std::size_t(i)];
-        if (prior.sigma == 0.0) continue;
-        const double weight = 1.0 / (prior.sigma * prior.sigma), off = shared[i] - prior.value;
-        out.loss += 0.5 * weight * off * off;
-        out.slope[i] += weight * off;
-        out.bend(i, i) += weight;
-    }
-    return out;
-}
-
-bool MarkProblem::near_of(Index mark, LossNear& out) const {
-    const Index n = model.points(mark), g = shared.size();
-    RowMajor by = RowMajor::Zero(n, g + 2), by_shared = RowMajor::Zero(n, g), by_own = RowMajor::Zero(n, 2);
-    VectorXd distance, pull(n);
-    if (!model.distances(mark, shared.data(), own[std::size_t(mark)].data(), distance, &by_shared, &by_own))
-        return false;
-    const VectorXd& says = this->says[std::size_t(mark)];
-    const double share = 1.0 / std::sqrt(weighing.repeats);
-    out.loss = 0.0;
-    for (Index k = 0; k < n; ++k) {  // rows of residuals whose squares add up to the loss
-        const double z = distance[k] / weighing.noise_mm;
-        const Cost c = cost(weighing.loss, z);
-        const double root = std::sqrt(c.rho), weight = share * says[k];
-        const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing.noise_mm * weight;
-        pull[k] = std::copysign(root, z) * weight;
-        out.loss += 0.5 * pull[k] * pull[k];
-        by.row(k).head(g) = rate * by_shared.row(k);
-        if (displacement_mm_ > 0.0) by.row(k).tail<2>() = rate * by_own.row(k);
-    }
-    const VectorXd slope = by.transpose() * pull;
-    MatrixXd bend = MatrixXd::Zero(g + 2, g + 2);
-    bend.selfadjointView<Eigen::Lower>().rankUpdate(by.transpose());
-    bend.triangularView<Eigen::StrictlyUpper>() = bend.transpose();
-    out.slope = slope.head(g);
-    out.bend = bend.topLeftCorner(g, g);
-    out.own = {{slope.tail<2>(), bend.bottomRightCorner<2, 2>(), bend.topRightCorner(g, 2)}};
-    return true;
-}
-
-void MarkProblem::move_by(const MarkStep& step) {
-    shared += step.shared;
-    for (std::size_t i = 0; i < own.size(); ++i) own[i] += step.own[i];
-}
-
 bool MarkProblem::solve(int most_iterations, double tolerance) {
-    std::optional<LossNear> here = near();
-    if (!here) return false;
-    const VectorXd least = model.least();
-    double damping = kFirstDamping, stiffer = 2.0, before = INFINITY;
-    int refused = 0;
-    for (int i = 0; i < most_iterations; ++i) {
-        ++iterations;
-        const MarkStep step = step_to_least(*here, shared, least, held_, damping);
-        const bool is_within_noise = step.gain < kWithinNoise && damping <= kFirstDamping;
-        if (!(step.gain > tolerance * here->loss) || (is_within_noise && step.gain > kContracts * before)) return true;
-        const VectorXd shared_before = shared;
-        const std::vector<Eigen::Vector2d> own_before = own;
-        move_by(step);
-        std::optional<LossNear> there = near();
-        const double won = there ? here->loss - there->loss : -INFINITY;
-        if (won > kLeastShare * step.gain || (is_within_noise && won > -kLeap)) {
-            const double good = std::min(1.0, won / step.gain);
-            damping = std::max(kLeastDamping, damping * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * good - 1.0, 3)));
-            if (is_within_noise) damping = std::min(damping, kFirstDamping);
-            stiffer = 2.0;
-            before = is_within_noise ? step.gain : INFINITY;
-            here = std::move(there);
-            continue;
-        }
-        shared = shared_before;
-        own = own_before;
-        if (step.gain < kWithinNoise && ++refused > kMostRefused) return true;
-        damping = std::max(damping, kStiff) * stiffer;
-        stiffer *= 2.0;
-        if (damping > kMostDamping) return true;
+    MarkCosts costs(*this);
+    std::vector<std::unique_ptr<ceres::CostFunction>> priors;
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.evaluation_callback = &costs;
+    ceres::Problem problem(options);
+    ceres::Solver::Options solver;
+    auto order = std::make_shared<ceres::ParameterBlockOrdering>();
+    const bool displaced = displacement_mm_ > 0.0;
+    for (Index i = 0; i < model.marks(); ++i) {
+        double* mine = own[std::size_t(i)].data();
+        costs.all.push_back(std::make_unique<MarkCost>(*this, i, held_, displaced));
+        problem.AddResidualBlock(costs.all.back().get(), nullptr, shared.data(), mine);
+        priors.push_back(prior(VectorXd::Zero(2), VectorXd::Constant(2, displacement_mm_)));
+        problem.AddResidualBlock(priors.back().get(), nullptr, mine);
+        order->AddElementToGroup(mine, 0);
     }
-    return false;
+    VectorXd value(shared.size()), sigma(shared.size());
+    for (Index i = 0; i < shared.size(); ++i) {
+        value[i] = priors_[std::size_t(i)].value;
+        sigma[i] = priors_[std::size_t(i)].sigma;
+    }
+    priors.push_back(prior(value, sigma));
+    problem.AddResidualBlock(priors.back().get(), nullptr, shared.data());
+    order->AddElementToGroup(shared.data(), 1);
+    const VectorXd least = model.least();
+    for (Index i = 0; i < shared.size(); ++i)
+        if (least[i] > -1e5) problem.SetParameterLowerBound(shared.data(), int(i), least[i]);
+    solver.linear_solver_type = ceres::DENSE_SCHUR;
+    solver.linear_solver_ordering = order;
+    solver.logging_type = ceres::SILENT;
+    solver.max_num_iterations = most_iterations;
+    solver.max_num_consecutive_invalid_steps = 20;
+    solver.max_num_line_search_step_size_iterations = 0;
+    solver.use_nonmonotonic_steps = true;
+    solver.function_tolerance = tolerance;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    iterations += int(summary.iterations.size());
+    return summary.IsSolutionUsable() && summary.termination_type == ceres::CONVERGENCE;
 }
 
 VectorXd MarkProblem::known() const {

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "mark_loss.hpp"
 #include "mark_model.hpp"
-#include "mark_step.hpp"
 
 namespace brushsvg::fit {
 
@@ -27,8 +25,7 @@ class MarkProblem {
     void leave_slim_aside();
     /// Half the loss of all marks; infinite where there is no prediction.
     double loss() const;
-    /// By Levenberg and Marquardt. tolerance: ends when a step is to lower the loss by less than this share of it, or
-    /// when steps within the noise come no nearer. Whether it ended so.
+    /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
     bool solve(int most_iterations, double tolerance);
     /// Information that the priors add, for every shared unknown and then for both displacements of every mark.
     VectorXd known() const;
@@ -43,10 +40,6 @@ class MarkProblem {
  private:
     /// Half the loss of one mark at a displacement, without its prior; infinite where there is no prediction.
     double loss_of(Index mark, const Eigen::Vector2d& displacement) const;
-    /// The loss and how it changes, with its priors; nothing where there is no prediction.
-    std::optional<LossNear> near() const;
-    bool near_of(Index mark, LossNear& out) const;
-    void move_by(const MarkStep& step);
 
     double displacement_mm_;
     std::vector<Prior> priors_;
