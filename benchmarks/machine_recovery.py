@@ -23,8 +23,6 @@ from brushsvg.cli.arguments import values
 
 painter = truth_recovery.painter
 
-PARTS = ("lean", "axes", "tilt", "backlash")
-
 
 def random_machine(rng, parts) -> dict[str, np.ndarray]:
     """As large as machines are: lean 0.3 mm per mm, 1 % of scale and skew, 1 mm of tilt over a sheet."""
@@ -34,7 +32,7 @@ def random_machine(rng, parts) -> dict[str, np.ndarray]:
         "tilt": rng.normal(0, 0.005, 2),
         "backlash": np.abs(rng.normal(0, 0.2, 2)),
     }
-    return {part: drawn[part] * (part in parts) for part in PARTS}
+    return {part: drawn[part] * (part in parts) for part in machine_found.PARTS}
 
 
 def with_play(strokes, backlash: np.ndarray) -> list:

@@ -127,6 +127,22 @@ def test_an_exact_machine_is_found_to_be_exact():
     )
 
 
+@pytest.mark.parametrize("seed", [5, 6])
+def test_no_lean_is_known_no_better_than_some(seed):
+    """A brush that is pressed on the spot points to wherever a lean of micrometres takes the tool: of such a lean the
+    marks seem to tell everything, of none at all another thing."""
+    _, upright = painted_by(seed, ())
+    _, leaning = painted_by(seed, ("lean",))
+    known = {}
+    for truth, painted in ((0.0, upright), (1.0, leaning)):
+        made = calibrate_marks(painted, "b", options=options_for(("lean",)))
+        found = machine_found.numbers(made.fit, made.covariance, made.expected)
+        for one, true in zip(found, np.array(LEAN) * truth, strict=True):
+            assert abs(one.value - true) < 2 * one.half, one
+        known[truth] = np.array([one.half for one in found])
+    assert np.all(known[0.0] > 0.4 * known[1.0]), known
+
+
 def test_a_machine_runs_circles_by_their_chords():
     """Half a circle through three poses: its chords alone would be another stroke."""
     poses = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, -2.0], [20.0, -10.0, -2.0], [30.0, 0.0, -2.0]])

@@ -9,6 +9,9 @@
 namespace brushsvg::fit {
 namespace {
 
+// A brush that is pressed on the spot by a machine that leans points along a lever of micrometres, and turns right
+// round where the lean changes by as little: derivatives that hold no farther than that would make the lean as sure.
+constexpr double kLeverMm = 0.3;
 constexpr double kNearMm = 0.5;     // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
 constexpr int kStraighter = 3;      // times that a way out is made square to the edge
 constexpr double kSquare = 0.9999;  // cosine above which it is
@@ -166,11 +169,15 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
                         const VectorXd& shared, Eigen::Ref<Eigen::RowVectorXd> out) const {
     const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
     const double nu = normal.dot(u), nl = normal.dot(left);
-    ByLag left_by;
-    left_by << -now.heading_by.row(1), now.heading_by.row(0);
+    ByLag heading_by = now.heading_by, left_by;
+    if (headings_doubted_ && std::isfinite(now.loose_lever_mm)) {
+        const double lever2 = now.loose_lever_mm * now.loose_lever_mm;
+        heading_by.rightCols<kMachine>() *= lever2 / (lever2 + kLeverMm * kLeverMm);
+    }
+    left_by << -heading_by.row(1), heading_by.row(0);
     // the edge moves outwards by normal dy: the distance falls by it
     const Eigen::Matrix<double, 1, kWays> moved =
-        normal.transpose() * (now.contact_by + (edge.x - now.gap) * now.heading_by + edge.y * left_by);
+        normal.transpose() * (now.contact_by + (edge.x - now.gap) * heading_by + edge.y * left_by);
     out.head(layout_.lag) = -moved.head(layout_.lag);
     // x and y of the edge per half width
     const double along = edge.by_widest * shared[layout_.widest()] + edge.by_front * shared[layout_.front()];

@@ -117,14 +117,11 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
 /// Whether it converged. How sure the distances are is found on the way, wild ones lose their say.
 bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
            const MarkOptions& options) {
-    if (from)
-        at.begin(*from);
-    else
-        start(at, marks, options);
+    start(at, from, marks, options);
     bool converged = false;
     constexpr double kLast = 1e-7;
-    for (const auto& [loss, tolerance] : {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::cauchy, 1e-5},
-                                          std::pair{Loss::tukey, 1e-6}, std::pair{Loss::tukey, kLast}}) {
+    for (const auto& [loss, tolerance] :
+         {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-5}, std::pair{Loss::tukey, kLast}}) {
         at.weighing.loss = loss;
         converged = at.solve(options.most_iterations, tolerance);
         at.weighing = weighed(at);
@@ -137,9 +134,10 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
 /// Strokes that land on a slope from height 0 begin the farther on the lower the paper lies, and where they did if it
 /// lies higher: of a height found just below 0 the marks tell less than its own derivatives say. There it is the mean
 /// of both sides' covariances, by how likely the paper lies above.
-MatrixXd covariance_at_touch(const MarkProblem& fit) {
+MatrixXd covariance_at_touch(MarkProblem fit) {
     constexpr double kAboveMm = 1e-3, kUnlikely = 1e-3;
     const int height = fit.model.layout().height();
+    fit.model.doubt_headings();
     MatrixXd out = covariance(fit);
     if (fit.shared[height] > 0.0) return out;
     const double above = 0.5 * std::erfc(-fit.shared[height] / std::sqrt(2.0 * out(height, height)));

@@ -13,7 +13,7 @@ namespace {
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
 constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush comes, above any error of the paper's height
 constexpr double kLeastRingMm2 = 0.2;  // specks
-// Looks at instants in a whole fit, for each place and point there is. Marks of a brush take five to fifteen thousand;
+// Looks at instants in a whole fit, for each place and point there is. Marks of a brush take two to ten thousand;
 // those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
 constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
 // And of one mark: about as many as a sheet of fifty strokes takes. 9 m of jumps to and fro, painted as a brush would,
@@ -73,12 +73,12 @@ bool has_machine(const MarkOptions& options) {
            options.backlash_mm > 0.0;
 }
 
-std::vector<double> close_places(const Poses& poses) {
+std::vector<double> close_places(const Poses& poses, double coarse) {
     std::vector<double> out{0.0};
     for (Index i = 0; i + 1 < poses.rows(); ++i) {
         const Eigen::RowVector3d by = poses.row(i + 1) - poses.row(i);
-        const int parts =
-            std::max(1, int(std::ceil(std::max(by.head<2>().norm() / kStepMm, std::abs(by[2]) / kPressMm))));
+        const double most = std::max(by.head<2>().norm() / kStepMm, std::abs(by[2]) / kPressMm);
+        const int parts = std::max(1, int(std::ceil(most / coarse)));
         for (int k = 1; k <= parts; ++k) out.push_back(double(i) + double(k) / parts);
     }
     return out;
@@ -112,9 +112,10 @@ void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
 
 }  // namespace
 
-MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options)
+MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
     : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms, has_machine(options) ? kMachine : 0},
       deepest_(options.deepest_mm),
+      coarse_(coarse),
       round_tail_(options.round_tail) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
@@ -132,7 +133,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
             to_chords(painted.poses_mm, painted.arcs);
             painted.travel = travel_of(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
         }
-        painted.at = close_places(painted.poses_mm);
+        painted.at = close_places(painted.poses_mm, coarse_);
         std::vector<double> xy;
         for (const Ring& ring : mark.outline_mm) {
             if (std::abs(signed_area(ring)) < kLeastRingMm2) continue;
@@ -243,7 +244,7 @@ Machine MarkModel::machine(const VectorXd& shared) const {
 bool MarkModel::follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const {
     const MachineHere machine{machine_numbers(shared), centre_, painted.travel};
     return out.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_laws ? &lag_powers_ : nullptr,
-                      shared[layout_.height()], deepest_, layout_.machine_numbers > 0 ? &machine : nullptr);
+                      shared[layout_.height()], deepest_, layout_.machine_numbers > 0 ? &machine : nullptr, coarse_);
 }
 
 Poses MarkModel::run(Index mark, const VectorXd& shared) const {

@@ -35,7 +35,8 @@ struct Layout {
 
 class MarkModel {
  public:
-    MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options);
+    /// coarse: so many times as far apart as they should be are the instants at which the brush is looked at.
+    MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
     const Layout& layout() const { return layout_; }
     Index marks() const { return Index(painted_.size()); }
@@ -55,6 +56,9 @@ class MarkModel {
     Machine machine(const VectorXd& shared) const;
     /// A mark's poses as they were told, as the machine ran them.
     Poses run(Index mark, const VectorXd& shared) const;
+
+    /// From now on derivatives say little of what the machine does to the heading of a loose brush on a short lever.
+    void doubt_headings() { headings_doubted_ = true; }
 
     /// work(mark) for every mark, on all processors. Throws Error where these marks have taken so many looks that no
     /// brush paints them: it names the one that took most.
@@ -97,8 +101,8 @@ class MarkModel {
     std::vector<Painted> painted_;
     mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it
     Layout layout_;
-    double deepest_;
-    bool round_tail_;
+    double deepest_, coarse_;
+    bool round_tail_, headings_doubted_ = false;
     MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
     Eigen::Vector2d centre_;
 };

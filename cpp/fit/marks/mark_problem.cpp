@@ -26,38 +26,34 @@ class MarkCost : public ceres::CostFunction {
         set_num_residuals(int(at.model.points(mark)));
         *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
-    void evaluate(bool slopes) {
+    /// Always with derivatives: without them ties between edges are broken otherwise, and the loss is another one.
+    void evaluate() {
         const Index n = num_residuals(), size = at_.model.layout().size();
         const Weighing& weighing = at_.weighing;
         const VectorXd& says = at_.says[std::size_t(mark_)];
-        VectorXd& residuals = slopes ? beside_slopes_ : alone_;
         VectorXd distance;
-        residuals.resize(n);
-        if (slopes) {
-            by_shared_.setZero(n, size);
-            by_own_.setZero(n, 2);
-        }
+        residuals_.resize(n);
+        by_shared_.setZero(n, size);
+        by_own_.setZero(n, 2);
         is_painted_ = at_.model.distances(mark_, at_.shared.data(), at_.own[std::size_t(mark_)].data(), distance,
-                                          slopes ? &by_shared_ : nullptr, slopes ? &by_own_ : nullptr);
+                                          &by_shared_, &by_own_);
         if (!is_painted_) return;
         const double share = 1.0 / std::sqrt(weighing.repeats);
         for (Index k = 0; k < n; ++k) {
             const double z = distance[k] / weighing.noise_mm;
             const Cost c = cost(weighing.loss, z);
-            const double root = std::sqrt(c.rho);
-            residuals[k] = std::copysign(root, z) * share * says[k];
-            if (!slopes) continue;
-            const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing.noise_mm * share * says[k];
+            const double root = std::sqrt(c.rho), weight = share * says[k];
+            const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing.noise_mm * weight;
+            residuals_[k] = std::copysign(root, z) * weight;
             by_shared_.row(k) *= rate;
             by_own_.row(k) *= displaced_ ? rate : 0.0;
         }
-        for (Index i = 0; slopes && i < size; ++i)
+        for (Index i = 0; i < size; ++i)
             if (held_[std::size_t(i)]) by_shared_.col(i).setZero();
     }
     bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
         if (!is_painted_) return false;
-        const VectorXd& found = jacobians ? beside_slopes_ : alone_;
-        std::copy_n(found.data(), found.size(), residuals);
+        std::copy_n(residuals_.data(), residuals_.size(), residuals);
         if (jacobians && jacobians[0]) std::copy_n(by_shared_.data(), by_shared_.size(), jacobians[0]);
         if (jacobians && jacobians[1]) std::copy_n(by_own_.data(), by_own_.size(), jacobians[1]);
         return true;
@@ -68,30 +64,27 @@ class MarkCost : public ceres::CostFunction {
     Index mark_;
     const std::vector<bool>& held_;
     bool displaced_, is_painted_ = false;
-    VectorXd alone_, beside_slopes_;  ///< residuals; they round otherwise where slopes are asked for
+    VectorXd residuals_;
     RowMajor by_shared_, by_own_;
 };
 
-/// All marks at the point that is being tried, on all processors, before Ceres asks for them one by one: most points
-/// three times, because of the bounds.
+/// All marks at the point that is being tried, once, on all processors, before Ceres asks for them one by one.
 class MarkCosts : public ceres::EvaluationCallback {
  public:
     explicit MarkCosts(const MarkProblem& at) : at_(at) {}
-    void PrepareForEvaluation(bool slopes, bool) override {
-        const std::vector<double> shared(at_.shared.begin(), at_.shared.end());
-        if (shared != shared_at_ || at_.own != own_at_) alone_ = beside_slopes_ = false;
-        shared_at_ = shared;
+    void PrepareForEvaluation(bool, bool) override {
+        std::vector<double> shared(at_.shared.begin(), at_.shared.end());
+        if (shared == shared_at_ && at_.own == own_at_) return;
+        shared_at_ = std::move(shared);
         own_at_ = at_.own;
-        if (std::exchange(slopes ? beside_slopes_ : alone_, true)) return;
-        at_.model.for_each([&](Index mark) { all[std::size_t(mark)]->evaluate(slopes); });
+        at_.model.for_each([&](Index mark) { all[std::size_t(mark)]->evaluate(); });
     }
     std::vector<std::unique_ptr<MarkCost>> all;
 
  private:
     const MarkProblem& at_;
-    std::vector<double> shared_at_;  ///< where all have been evaluated, without slopes or with them
+    std::vector<double> shared_at_;
     std::vector<Eigen::Vector2d> own_at_;
-    bool alone_ = false, beside_slopes_ = false;
 };
 
 std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd& sigma) {
@@ -108,8 +101,8 @@ double machine_sigma(const MarkOptions& options, int number) {
 
 }  // namespace
 
-MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options)
-    : model(marks, options), displacement_mm_(options.displacement_mm) {
+MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
+    : model(marks, options, coarse), displacement_mm_(options.displacement_mm) {
     const Layout& at = model.layout();
     priors_.assign(std::size_t(at.size()), {0.0, INFINITY});
     priors_[std::size_t(at.widest())] = options.widest_per_half;
@@ -228,6 +221,8 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     solver.logging_type = ceres::SILENT;
     solver.max_num_iterations = most_iterations;
     solver.max_num_consecutive_invalid_steps = 20;
+    solver.max_num_line_search_step_size_iterations = 0;
+    solver.use_nonmonotonic_steps = true;
     solver.function_tolerance = tolerance;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);

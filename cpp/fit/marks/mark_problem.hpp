@@ -10,7 +10,8 @@ namespace brushsvg::fit {
 /// The whole least-squares problem at one place: unknowns that all marks share, and a displacement for each mark.
 class MarkProblem {
  public:
-    MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options);
+    /// coarse: as in MarkModel.
+    MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
     /// To these laws; the footprint's shape and the height as known beforehand, no displacements.
     void begin(const MarkLaws& laws);

@@ -4,13 +4,15 @@
 #include <cmath>
 
 #include "brushsvg/error.hpp"
+#include "noise_covariance.hpp"
 
 namespace brushsvg::fit {
 namespace {
 
 constexpr std::size_t kFollowed = 4;
-constexpr double kSparse = 3.0;      // points that starts are compared on lie so many times as far apart
-constexpr double kTolerance = 1e-4;  // the noise is not known yet
+// On the way to where the marks lie, points lie so many times as far apart, and instants.
+constexpr double kSparse = 3.0, kCoarse = 2.5;
+constexpr double kTolerance = 1e-3;  // the noise is not known yet
 
 /// Half width per depth from the marks' areas: what is painted, over how far it was painted.
 double width_rate(const std::vector<PaintedMark>& marks) {
@@ -45,39 +47,57 @@ std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOp
     return out;
 }
 
-}  // namespace
-
-void start(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    MarkOptions sparse = options;
-    sparse.spacing_mm *= kSparse;
-    MarkProblem tried(marks, sparse);
-    tried.hold_shape(true);
+/// To the best of starts with lags of many lengths, each followed a little.
+void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    at.hold_shape(true);
     std::vector<std::pair<double, MarkLaws>> from;
     for (const MarkLaws& laws : starts(marks, options)) {
-        tried.begin(laws);
-        const double loss = tried.loss();
+        at.begin(laws);
+        const double loss = at.loss();
         if (std::isfinite(loss)) from.emplace_back(loss, laws);
     }
     std::stable_sort(from.begin(), from.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     double best = INFINITY;
+    VectorXd shared;
+    std::vector<Eigen::Vector2d> own;
     for (std::size_t i = 0; i < std::min(kFollowed, from.size()); ++i) {
-        tried.begin(from[i].second);
-        tried.solve(8, kTolerance);
-        const double now = tried.loss();
+        at.begin(from[i].second);
+        at.solve(8, kTolerance);
+        const double now = at.loss();
         if (!(now < best)) continue;
         best = now;
-        at.shared = tried.shared;
-        at.own = tried.own;
+        shared = at.shared;
+        own = at.own;
     }
     if (!std::isfinite(best))
         throw Error(
             "fit-failed",
             "no lag that was tried predicts these marks: are plan and marks those of one sheet, and is there no pose "
             "above the paper as it was taught?");
-    at.iterations += tried.iterations;
-    at.hold_shape(true);
-    at.solve(options.most_iterations, kTolerance);
+    at.shared = shared;
+    at.own = own;
     at.hold_shape(false);
+}
+
+}  // namespace
+
+void start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
+           const MarkOptions& options) {
+    MarkOptions sparse = options;
+    sparse.spacing_mm *= kSparse;
+    MarkProblem tried(marks, sparse, kCoarse);
+    if (from)
+        tried.begin(*from);
+    else
+        try_lags(tried, marks, options);
+    tried.solve(options.most_iterations, kTolerance);
+    tried.weighing = weighed(tried);
+    tried.find_displaced();
+    at.shared = tried.shared;
+    at.own = tried.own;
+    at.iterations += tried.iterations;
+    at.weighing.noise_mm = tried.weighing.noise_mm;
+    at.weighing = weighed(at);
 }
 
 }  // namespace brushsvg::fit

@@ -21,8 +21,10 @@ constexpr std::size_t kMostInstants = 5000, kMostPerPlace = 10;
 constexpr std::uint64_t kLooksPerStep = 20;  // what it costs to follow a pass to the next instant, in looks at one
 constexpr double kLeastCosine = 0.05;        // between a footprint's own normal and that of a line that touches it
 
-using Jet = ceres::Jet<double, kMostTerms + 1>;  // the lag's unknowns and the height
-using MachineJet = ceres::Jet<double, kWays>;    // and the machine
+// The lag's unknowns and the height, and the machine: even numbers, which processors take two at a time.
+constexpr int even(int n) { return n + n % 2; }
+using Jet = ceres::Jet<double, even(kMostTerms + 1)>;
+using MachineJet = ceres::Jet<double, even(kWays)>;
 
 double at_depth(const std::vector<double>& c, double d) {
     double y = 0.0;
@@ -40,7 +42,8 @@ void put(const Vec2<ceres::Jet<double, N>>& from, Eigen::Vector2d& value, ByLag&
     by.setZero();
     for (int i = 0; i < 2; ++i) {
         value[i] = from[i].a;
-        by.row(i).head<N>() = from[i].v.transpose();
+        constexpr int n = std::min(N, kWays);
+        by.row(i).head<n>() = from[i].v.template head<n>().transpose();
     }
 }
 void put(const Vec2<double>& from, Eigen::Vector2d& value, ByLag& by) {
@@ -50,7 +53,8 @@ void put(const Vec2<double>& from, Eigen::Vector2d& value, ByLag& by) {
 template <int N, class Row>
 void put_by(const ceres::Jet<double, N>& depth, Row& by) {
     by.setZero();
-    by.template head<N - kMostTerms>() = depth.v.template tail<N - kMostTerms>().transpose();
+    constexpr int n = std::min(N, kWays) - kMostTerms;
+    by.template head<n>() = depth.v.template segment<n>(kMostTerms).transpose();
 }
 template <class Row>
 void put_by(double, Row& by) {
@@ -94,7 +98,8 @@ std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double
 
 bool Footprints::follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at,
                         const MarkLaws& laws, const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm,
-                        const MachineHere* machine) {
+                        const MachineHere* machine, double coarse) {
+    apart_ = coarse * kApartMm;
     if (!machine && lag_by)
         return follow_on<Jet>(ToldWay<Jet>{poses, arcs, Jet(height_mm, kMostTerms)}, at, laws, lag_by, deepest_mm);
     if (!machine) return follow_on<double>(ToldWay<double>{poses, arcs, height_mm}, at, laws, lag_by, deepest_mm);
@@ -141,7 +146,7 @@ std::vector<double> Footprints::closer(const std::vector<double>& at) const {
         if (row + 1 >= rows_.size() || k + 1 >= at.size() || rows_[row].place != at[k] ||
             rows_[row + 1].place != at[k + 1])
             continue;
-        const int parts = std::min(kMostParts, int(std::ceil((gone_[row + 1] - gone_[row]) / kApartMm)));
+        const int parts = std::min(kMostParts, int(std::ceil((gone_[row + 1] - gone_[row]) / apart_)));
         for (int i = 1; i < parts; ++i) out.push_back(at[k] + (at[k + 1] - at[k]) * i / parts);
     }
     return out;
@@ -159,6 +164,10 @@ void Footprints::walk(const std::vector<T>& lag, const Way& way, const std::vect
         put(row.state.contact, now.contact, now.contact_by);
         put(row.state.heading, now.heading, now.heading_by);
         now.heading_known = row.state.heading_known || row.state.taut;
+        Eigen::Vector2d tcp;
+        ByLag unused;
+        put(row.tcp, tcp, unused);
+        now.loose_lever_mm = row.state.taut ? INFINITY : (tcp - now.contact).norm();
         now.place = at[k];
         now.depth = d;
         put_by(row.depth, now.depth_by);
@@ -203,10 +212,28 @@ void Footprints::enclose() {
     }
 }
 
+std::size_t Footprints::downhill(const Eigen::Vector2d& x, std::size_t row) const {
+    const auto least = [&](std::size_t i) {
+        ++looks_;
+        const Eigen::Vector2d here = rows_[i].in_frame(x);
+        return least_distance(rows_[i].drop, here.x(), here.y());
+    };
+    double now = least(row);
+    for (const std::size_t by : {std::size_t(1), std::size_t(-1)})
+        for (bool is_nearer = true; is_nearer && row + by < rows_.size();) {
+            const double next = least(row + by);
+            is_nearer = next < now;
+            if (!is_nearer) break;
+            now = next;
+            row += by;
+        }
+    return row;
+}
+
 NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) const {
     // Between instants a distance changes by no more than the footprint moves: where it is so much too long, so many
     // instants are passed over.
-    const std::size_t begin = row;
+    const std::size_t begin = row = downhill(x, row);
     const Eigen::Vector2d first = rows_[begin].in_frame(x);
     NearestEdge best = nearest_edge(rows_[begin].drop, first.x(), first.y());
     const auto look = [&](std::size_t i) {
@@ -241,7 +268,7 @@ SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const Nea
         if (other >= rows_.size()) continue;
         // farther apart only where the brush was in the air in between
         const double moved = std::abs(gone_[other] - gone_[row]);
-        if (!(moved > 1e-9) || moved > 4.0 * kApartMm) continue;
+        if (!(moved > 1e-9) || moved > 4.0 * apart_) continue;
         const Instant& there = rows_[other];
         NearestEdge touched = own, beyond = there.farthest(normal);
         Eigen::Vector2d n = normal, a = from, b = there.place_of(beyond);
@@ -282,7 +309,7 @@ Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) co
 
 double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
     // Where footprints lie this near one after the other they count as side by side: more than instants are apart.
-    constexpr double kGapMm = 0.5;
+    const double gap = 2.0 * apart_;
     struct Part {
         Span span;
         std::size_t row;
@@ -305,7 +332,7 @@ double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out,
     std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.span.from < b.span.from; });
     double far = 0.0;
     for (const Part& part : parts) {
-        if (part.span.from > far + kGapMm) break;
+        if (part.span.from > far + gap) break;
         if (part.span.to <= far) continue;
         far = part.span.to;
         last = part.row;

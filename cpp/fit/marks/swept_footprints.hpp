@@ -29,6 +29,7 @@ struct Instant {
     Eigen::Matrix<double, 1, 1 + kMachine> depth_by;  ///< by the height and the machine
     ByLag contact_by, heading_by;
     bool heading_known;
+    double loose_lever_mm;  ///< from where a loose brush touches to the TCP, along which it points; taut: infinite
 
     /// x from the tip, its first coordinate along the heading.
     Eigen::Vector2d in_frame(const Eigen::Vector2d& x) const {
@@ -60,10 +61,12 @@ class Footprints {
  public:
     /// Follows a pass, which begins and ends in the air; `at`: poses, fractional in between, and more are put in where
     /// the footprint turns quickly. lag_by: derivatives of the lag's coefficients by its unknowns, or nullptr for
-    /// places alone. machine: that runs the pass, or nullptr for one that does as it is told. False where these laws
+    /// places alone. machine: that runs the pass, or nullptr for one that does as it is told. coarse: so many times
+    /// as far apart as they should be may instants lie. False where these laws
     /// paint nothing, and where it takes more instants than any brush does.
     bool follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at, const MarkLaws& laws,
-                const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm, const MachineHere* machine);
+                const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm, const MachineHere* machine,
+                double coarse);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
     /// What looking for a point's nearest instant costs at most, for a checkpoint.
     int effort() const { return 5 + int(rows_.size() / 100); }
@@ -89,6 +92,8 @@ class Footprints {
     bool follow_on(const Way& way, const std::vector<double>& at, const MarkLaws& laws, const Eigen::MatrixXd* lag_by,
                    double deepest_mm);
     void enclose();
+    /// From an instant on to neighbours as long as they come nearer to x, or x lies deeper in them.
+    std::size_t downhill(const Eigen::Vector2d& x, std::size_t row) const;
     /// Those places, and more between instants whose footprints lie too far apart; as many where there are none.
     std::vector<double> closer(const std::vector<double>& at) const;
 
@@ -96,6 +101,7 @@ class Footprints {
     /// Round each footprint; gone: no point of the footprint has moved farther than this since the first instant.
     std::vector<Eigen::Vector2d> middle_;
     std::vector<double> radius_, gone_;
+    double apart_ = 0.0;  ///< most that a point of the footprint moves from one instant to the next [mm]
     mutable std::uint64_t looks_ = 0;
 };
 

@@ -63,16 +63,13 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
         ("backlash", "backlash in x", machine.backlash_mm[0], "mm"),
         ("backlash", "backlash in y", machine.backlash_mm[1], "mm"),
     )
-    first = len(covariance) - NUMBERS
+    first = len(covariance) - len(rows)
     halves = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(covariance)[first:], 0.0))
     return [
         Number(part, name, value, float(half), unit)
         for (part, name, value, unit), half in zip(rows, halves, strict=False)
         if part in parts
     ]
-
-
-NUMBERS = 9  # of a machine in a fit, backlash in x and y the last
 
 
 def told(found: list[Number]) -> list[str]:

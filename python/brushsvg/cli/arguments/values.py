@@ -43,14 +43,13 @@ def words(text: str) -> str:
     return text
 
 
-MACHINE_PARTS = ("lean", "axes", "tilt", "backlash")
-
-
 def machine_parts(text: str) -> tuple[str, ...]:
+    from ...calibration.machine_found import PARTS
+
     parts = [part.strip() for part in text.split(",")]
-    if not set(parts) <= set(MACHINE_PARTS):
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not some of {','.join(MACHINE_PARTS)}")
-    return tuple(part for part in MACHINE_PARTS if part in parts)
+    if not set(parts) <= set(PARTS):
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not some of {','.join(PARTS)}")
+    return tuple(part for part in PARTS if part in parts)
 
 
 def height(text: str) -> float:
