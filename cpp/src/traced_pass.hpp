@@ -13,8 +13,8 @@ namespace brushsvg {
 /// How the edges of a mark go on at one instant: the ways of both ends of the widest section, left and right of the
 /// heading, per mm of the TCP's.
 struct Edges {
-    std::array<Eigen::Vector2d, 2> way;
-    std::array<bool, 2> shows;  ///< goes ahead; an inner edge that turns back paints over its own mark
+    std::array<Eigen::Vector2d, 2> way{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+    std::array<bool, 2> shows{};  ///< goes ahead; an inner edge that turns back paints over its own mark
 };
 
 /// Of a taut brush whose TCP goes along a direction, deeper by so much per mm.
