@@ -1,6 +1,7 @@
 #include "brushsvg/compensate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -73,13 +74,20 @@ double median_depth(const Stroke& stroke, const Brush& brush) {
     return depths[100];
 }
 
-void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnings) {
-    double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+/// From the least depth to the greatest.
+using Depths = std::array<double, 2>;
+
+Depths depths_of_widths(const Stroke& stroke, const Brush& brush) {
+    Depths found{std::numeric_limits<double>::infinity(), 0.0};
     for (const WidthKnot& knot : stroke.half_width) {
         const double depth = brush.depth_for_half_width(knot.half_width_mm, stroke.id);
-        least = std::min(least, depth);
-        greatest = std::max(greatest, depth);
+        found = {std::min(found[0], depth), std::max(found[1], depth)};
     }
+    return found;
+}
+
+void warn(const Depths& depths, const std::string& stroke, const Brush& brush, std::vector<Warning>& warnings) {
+    const auto [least, greatest] = depths;
     double lo = brush.depth_range_mm[0], hi = brush.depth_range_mm[1];
     for (const Profile* profile : {&brush.lag, &brush.tip_gap, &brush.tip_to_widest, &brush.half_width}) {
         if (!profile->calibrated_mm) continue;
@@ -90,7 +98,7 @@ void warn(const Stroke& stroke, const Brush& brush, std::vector<Warning>& warnin
     char text[200];
     std::snprintf(text, sizeof text, "depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
                   least < lo - 1e-9 ? least : greatest, lo, hi);
-    warnings.push_back(Warning{"depth-not-measured", stroke.id, text + brush.name + " was measured"});
+    warnings.push_back(Warning{"depth-not-measured", stroke, text + brush.name + " was measured"});
 }
 
 constexpr double kLongestLagMm = 1000.0;  // no brush is longer
@@ -159,7 +167,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
     const Line line(stroke, brush);
     CompensatedPass result;
-    warn(stroke, brush, result.warnings);
+    const Depths depths = depths_of_widths(stroke, brush);  // refuses a width that the brush cannot paint
     Pass& pass = result.pass;
     pass.stroke = stroke.id;
     pass.speed_mm_s = std::min(options.speed_mm_s, brush.max_speed_mm_s);
@@ -169,6 +177,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
 
     double step_tolerance = 0.5 * options.tolerance_mm;
     if (options.method != Compensation::closed) {
+        warn(depths, stroke.id, brush, result.warnings);
         double r0 = 0.0;
         if (options.method == Compensation::constant)
             r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
@@ -181,10 +190,13 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     const bool choose = start == Beginning::automatic;
     if (choose) start = best_beginning(stroke, whole, brush, Line(whole, brush), step_tolerance);
     if (const std::optional<Dot> dot = dot_of(stroke, brush); dot && start == Beginning::hidden) {
+        const auto [least, greatest] = std::minmax(dot->from_depth_mm, dot->to_depth_mm);
+        warn({least, greatest}, stroke.id, brush, result.warnings);
         poses_of(*dot, brush).into(pass);
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
+    warn(depths, stroke.id, brush, result.warnings);
     const std::optional<Stroke> squared = squared_where_asked(stroke, whole, brush, options, start, step_tolerance);
     if (squared) whole = *squared;
     const Line whole_line(whole, brush);

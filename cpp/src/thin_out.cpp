@@ -126,7 +126,7 @@ class Walk {
         Vector3d to;  ///< x, y, depth
         LagState<double> state;
         std::optional<Circle> circle;  ///< none: straight
-        Edges edges;                   ///< at its end
+        Edges edges;                   ///< at its end; of one that is not near, nothing is known
         bool near = false;             ///< the mark is where it was
         double corner = 0.0;           ///< of the edges, as a share of what it may be
 

@@ -282,6 +282,32 @@ TEST_CASE("what the brush cannot paint is refused, what it was not measured for 
 
 namespace {
 
+/// A dot of this half width, and how deep its plan goes.
+std::pair<CompensatedPass, double> dot_of_half_width(double half_width_mm, Beginning start) {
+    CompensateOptions options;
+    options.start = start;
+    const Stroke stroke = stroke_of(polyline({V(20, 20), V(20, 20)}), {{0.0, half_width_mm}});
+    CompensatedPass found = compensate(stroke, shipped("round-6"), options);
+    const double depth_mm = -found.pass.poses_mm.col(2).minCoeff();
+    return {found, depth_mm};
+}
+
+}  // namespace
+
+TEST_CASE("a dot that is turned on the spot is warned of by its own depth, not by that of a line as wide") {
+    int less = 0;
+    for (const Beginning start : {Beginning::hidden, Beginning::automatic, Beginning::exposed})
+        for (double half_mm = 0.3; half_mm <= 4.2; half_mm += 0.02) {
+            const auto [found, depth_mm] = dot_of_half_width(half_mm, start);
+            const bool as_line = shipped("round-6").depth_for_half_width(half_mm, "") < 1.0;
+            less += depth_mm < 0.999 && !as_line;
+            CHECK_MESSAGE(found.warnings.size() == (depth_mm < 0.999), half_mm, " ", depth_mm);
+        }
+    CHECK(less > 3);
+}
+
+namespace {
+
 /// A hook: the line runs back in itself at its end, where the lengths of its parts do not add up to its own.
 Stroke hook() {
     Cubics middle(1, 8);

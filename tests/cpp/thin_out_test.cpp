@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <random>
 
 #include "brushsvg/compensate.hpp"
@@ -11,6 +12,7 @@
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
 #include "round6.hpp"
+#include "traced_pass.hpp"
 
 using namespace brushsvg;
 using V = Eigen::Vector2d;
@@ -149,4 +151,15 @@ TEST_CASE("nothing to thin out is no fault") {
     CHECK(drawn.poses_mm.rows() < 60);
     for (Eigen::Index i = 0; i < drawn.poses_mm.rows(); ++i)
         CHECK(std::abs(drawn.poses_mm.row(i).head<2>().norm() - 40.0) < 0.05);
+}
+
+TEST_CASE("edges of which nothing is known show nothing, whatever lay where they are") {
+    // where no move kept their direction, they were what the memory held: plans differed from run to run
+    alignas(Edges) volatile unsigned char memory[sizeof(Edges)];
+    for (volatile unsigned char& byte : memory) byte = 0x3f;
+    const Edges* edges = new (const_cast<unsigned char*>(memory)) Edges;
+    for (const int side : {0, 1}) {
+        CHECK(!edges->shows[side]);
+        CHECK(edges->way[side].norm() == 0.0);
+    }
 }

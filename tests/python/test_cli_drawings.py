@@ -291,3 +291,22 @@ def test_ends_at_less_depth_than_was_measured_are_said_once(desk, capsys):
     _, told = plan(desk, capsys, drawing="drops.svg")
     hair, ends = (each for each in told if each.code in ("depth-not-measured", "ends-not-measured"))
     assert agrees(hair, "depth-not-measured", "hair") and agrees(ends, "ends-not-measured 5 1 round-6")
+
+
+def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
+    """It is pressed less than a line as wide: at 0.87 mm, where the line is at 1.0."""
+    dots = "".join(
+        f'<path d="M{x} 30h0.01" stroke-width="{w}"/>' for x, w in ((20, 1.02), (40, 1.2), (60, 3))
+    )
+    (desk / "dots.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+        f'<g stroke="#000" stroke-linecap="round">{dots}</g></svg>'
+    )
+    for start, count in (("hidden", 1), ("exposed", 0)):
+        passes, told = plan(desk, capsys, "--start", start, drawing="dots.svg")
+        thin = [each for each in told if each.code == "depth-not-measured"]
+        depths = [-min(z for _, _, z in each["poses_mm"]) for each in passes]
+        assert [each.where for each in thin] == [
+            each["stroke"] for each, d in zip(passes, depths, strict=True) if d < 1.0
+        ]
+        assert len(thin) == count and "ends-not-measured" not in {each.code for each in told}

@@ -119,7 +119,7 @@ def prepare(
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _with_speeds(plan, strokes)
-    told = _widths(painted, brush, done.warnings, options.layout.width_mm is None)
+    told = _widths(painted, done, brush, options.layout.width_mm is None)
     notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
@@ -230,21 +230,24 @@ def _sorted_out(painted, wanted, step):
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
-def _widths(painted, brush, warnings, may_advise: bool) -> list[Notice]:
+def _widths(painted, done, brush, may_advise: bool) -> list[Notice]:
     """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
     that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them."""
     advice = "--width MM gives all strokes one width" if may_advise else ""
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
-    thin = {stroke.id: stroke for stroke in painted if measured and _thins_out(stroke, brush, *measured)}
-    is_end = [each.code == "depth-not-measured" and each.where in thin for each in warnings]
+    pairs = zip(painted, done.plan.passes, strict=True)
+    thin = {
+        stroke.id: stroke for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)
+    }
+    is_end = [each.code == "depth-not-measured" and each.where in thin for each in done.warnings]
     told = [
         replace(each, advice=advice) if each.code == "depth-not-measured" else each
-        for each, end in zip(warnings, is_end, strict=True)
+        for each, end in zip(done.warnings, is_end, strict=True)
         if not end
     ]
-    ends = [thin[each.where] for each, end in zip(warnings, is_end, strict=True) if end]
+    ends = [thin[each.where] for each, end in zip(done.warnings, is_end, strict=True) if end]
     if ends:
         least = min(half for stroke in ends for _, half in stroke.half_width)
         count = "1 stroke begins or ends" if len(ends) == 1 else f"{len(ends)} strokes begin or end"
@@ -256,8 +259,11 @@ def _widths(painted, brush, warnings, may_advise: bool) -> list[Notice]:
     return told
 
 
-def _thins_out(stroke, brush, least_mm: float, greatest_mm: float) -> bool:
-    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide."""
+def _thins_out(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
+    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide. run: its
+    pass; a dot, which is turned round on the spot, is pressed less than a line as wide."""
+    if -np.asarray(run.poses_mm)[:, 2].min() < least_mm:
+        return False
     half = max(half for _, half in stroke.half_width)
     if stroke.closed or brush.depth_for_half_width(half, stroke.id) > greatest_mm:
         return False
