@@ -1,4 +1,4 @@
-"""Draws docs/ends.png: how strokes begin and end, exposed above and hidden below.
+"""Draws docs/ends.png: how strokes begin, exposed and hidden, and below how they end, lifted and squared.
 
 Grey is painted and wanted, red wanted and not painted, blue painted and not wanted; the tool's path on the paper is
 green. Needs nothing but the package.
@@ -12,10 +12,11 @@ import cv2
 import numpy as np
 
 from brushsvg import _core, find_brush
+from brushsvg.machine.arc_chords import with_chords
 
 PX_PER_MM = 24.0
 SIZE_MM = (26.0, 13.0)
-AT_MM = (7.5, 6.5)  # of the paths' first points, from the lower left of a cell
+AT_MM = (7.5, 6.5)  # of the ends that are looked at, from the lower left of a cell
 COLOURS = {"both": (0xB8, 0xB4, 0xB0), "wanted": (0x3C, 0x46, 0xD0), "painted": (0xD0, 0x80, 0x40)}  # BGR
 PATH = (0x50, 0x90, 0x30)
 
@@ -26,22 +27,23 @@ def bar(half_mm: float, slant: float = 0.0) -> np.ndarray:
     return np.column_stack([x, [-y, -y, y, y]])
 
 
-def strokes() -> list:
-    """The path with its round caps, cut straight, cut slanted, and bent."""
+def strokes(ending: bool) -> list:
+    """The path with its round caps, cut straight, cut slanted, and bent; it ends or begins where it is looked at."""
     straight = np.array([[0.0, 0, 10, 0, 20, 0, 34, 0]])
     bent = np.array([[0.0, -4, 5, -4, 12, -2, 14, 12]])
     made = [(straight, None), (straight, bar(2.0)), (straight, bar(2.0, 0.5)), (bent, None)]
     out = []
     for middle, outline in made:
-        stroke = _core.Stroke("s", middle, half_width=[(0.0, 2.0)])
+        path = np.hstack([middle[:, 2 * k : 2 * k + 2] for k in (3, 2, 1, 0)]) if ending else middle
+        stroke = _core.Stroke("s", path, half_width=[(0.0, 2.0)])
         if outline is not None:
             stroke.wanted_mm = [outline]
         out.append(stroke)
     return out
 
 
-def cell(stroke, brush, start: str) -> np.ndarray:
-    plan = _core.compensate([stroke], brush, SIZE_MM, start=start).plan
+def cell(stroke, brush, **how: str) -> np.ndarray:
+    plan = _core.compensate([stroke], brush, SIZE_MM, **how).plan
     marks = _core.simulate(plan, brush)
     window = (-AT_MM[0], -AT_MM[1], *SIZE_MM)
     paint = _core.coverage(marks, brush, window, PX_PER_MM)[..., None]
@@ -53,7 +55,7 @@ def cell(stroke, brush, start: str) -> np.ndarray:
         (np.maximum(paint - meant, 0), "painted"),
     ):
         image += share * (np.array(COLOURS[name]) - 255.0)
-    points = (plan.passes[0].poses_mm[:, :2] - window[:2]) * PX_PER_MM
+    points = (with_chords(plan.passes[0]).poses_mm[:, :2] - window[:2]) * PX_PER_MM
     points[:, 1] = image.shape[0] - points[:, 1]
     drawn = np.ascontiguousarray(image.round().astype(np.uint8))
     cv2.polylines(drawn, [points.round().astype(np.int32)], False, PATH, 1, cv2.LINE_AA)
@@ -62,7 +64,10 @@ def cell(stroke, brush, start: str) -> np.ndarray:
 
 def main() -> None:
     brush = find_brush("round-6")
-    rows = [np.hstack([cell(each, brush, start) for each in strokes()]) for start in ("exposed", "hidden")]
+    rows = [
+        np.hstack([cell(each, brush, **{name: how}) for each in strokes(name == "end")])
+        for name, how in (("start", "exposed"), ("start", "hidden"), ("end", "lifted"), ("end", "squared"))
+    ]
     small = cv2.resize(np.vstack(rows), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "ends.png"), small)
 
