@@ -79,7 +79,7 @@ def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
 def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int, tuple], set[int]]:
     """For each stroke to paint in passes (these, what they should become, how in words); and the strokes of which
     passes would paint more, if they were asked for."""
-    from .choose_filling import fillings  # with shapely, which is slow to load
+    from .fillings import fillings  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
     fillable: set[int] = set()

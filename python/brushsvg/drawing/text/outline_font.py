@@ -15,7 +15,7 @@ from fontTools.ttLib import TTFont
 
 from ...errors import Error
 from ..design import Notice, SubPath
-from .placed_glyphs import Placed, Setting
+from .setting import Placed, Setting
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
 _NOTICE = "its letters are outlines, which become strokes as filled shapes do"

@@ -10,7 +10,7 @@ from ...errors import Error
 from ...geometry.cubics import extremes
 from ..design import SubPath
 from ..svg.path_to_cubics import LARGEST_MM
-from .placed_glyphs import Placed, Setting
+from .setting import Placed, Setting
 
 _MARGIN_MM = 20  # as around a drawing without a sheet of its own
 _CUBICS = 2_000_000  # a book page has a hundredth of it; beyond, the document alone takes 100 MB

@@ -13,7 +13,7 @@ from ..design import Notice, SubPath
 from ..svg.path_data import numbers, parse_path, snippet
 from ..svg.path_to_cubics import trace
 from ..svg.xml import parse_xml
-from .placed_glyphs import Placed, Setting
+from .setting import Placed, Setting
 
 _LIGATURE = (
     32  # characters; no script joins more, and each place in the text is tried at every length there is
