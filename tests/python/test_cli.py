@@ -412,6 +412,9 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "height out.ngc --from=--",
         "chart out.ngc --noise=--",
         "calibrate m.csv -o out.json --machine=--",
+        "animate a.svg out.html --speed=\u0661",
+        "animate a.svg out.html --speed=1_0",
+        "calibrate p.jpg --chart c.json -o out.json --dpi=6_00",
     ],
 )
 def test_wrong_usage(desk, capsys, words):

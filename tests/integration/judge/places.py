@@ -65,6 +65,26 @@ def moved(by: np.ndarray, points: np.ndarray) -> np.ndarray:
     return points @ by[:3, :3].T + by[:3, 3]
 
 
+def true_of(told: np.ndarray, machine: dict | None) -> np.ndarray:
+    """(n, 3) where a machine takes the tool that is told to go there, in the paper's frame, from a cell's table."""
+    if not machine or not len(told):
+        return told
+    along, across = machine.get("scale", (1.0, 1.0))
+    tilts, lean = machine.get("tilt_mm_per_mm", (0.0, 0.0)), machine.get("lean_mm_per_mm", (0.0, 0.0))
+    x, y, z = told.T
+    z = z - machine.get("height_mm", 0.0) - tilts[0] * x - tilts[1] * y
+    pressed = np.maximum(-z, 0.0)
+    x, y = along * x + machine.get("skew", 0.0) * y + lean[0] * pressed, across * y + lean[1] * pressed
+    return np.column_stack([x, y, z])
+
+
+def told_in_air(place, height: float, machine: dict | None) -> np.ndarray:
+    """(3,) what such a machine is told so that the tool is over a place: there it leans nowhere."""
+    along, across = (machine or {}).get("scale", (1.0, 1.0))
+    y = place[1] / across
+    return np.array([(place[0] - (machine or {}).get("skew", 0.0) * y) / along, y, height])
+
+
 def angle_rad(one: np.ndarray, other: np.ndarray) -> float:
     """Between two rotations."""
     return 2 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / math.sqrt(8)))

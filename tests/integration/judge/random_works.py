@@ -9,7 +9,7 @@ import numpy as np
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.calibration.from_widths import new_brush
-from brushsvg.machine.cell import Blending, Paper, Reload, Servo, Station
+from brushsvg.machine.cell import Blending, Machine, Paper, Reload, Servo, Station
 from brushsvg.machine.cell_file import find_cell
 
 from .verdict import ROBOTS
@@ -100,7 +100,28 @@ def random_cell(random, dialect: str):
         cell = _with_a_clip(random, cell)
     if random.random() < 0.5:
         cell = _with_paint(random, cell)
-    return cell
+    (apart,) = random.spawn(1)  # so that all else is as it is on machines that go where they are told to
+    return replace(cell, machine=_machine(apart, dialect)) if apart.random() < 0.5 else cell
+
+
+def _machine(random, dialect: str) -> Machine:
+    """One that goes elsewhere: little, or as far as a cell may say; of a servo, no depth hangs on it."""
+    much, is_servo = random.random() < 0.3, dialect == "grbl-servo"
+
+    def pair(little: float, large: float) -> tuple:
+        return tuple((random.uniform(-1, 1, 2) * (large if much else little)).tolist())
+
+    found = Machine()
+    if random.random() < 0.5 and not is_servo:
+        found = replace(found, lean_mm_per_mm=pair(0.4, 1.4))
+    if random.random() < 0.5:
+        found = replace(found, scale=tuple(1 + off for off in pair(0.01, 0.09)), skew=pair(0.01, 0.09)[0])
+    elif random.random() < 0.5:
+        found = replace(found, scale=(1 + pair(0.02, 0.09)[0],) * 2)  # circles stay round
+    if random.random() < 0.5:
+        found = replace(found, height_mm=pair(0.4, 2.0)[0])
+        found = found if is_servo else replace(found, tilt_mm_per_mm=pair(0.005, 0.03))
+    return found
 
 
 ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper that lies about the robot

@@ -60,6 +60,10 @@ class Job:
         return self.cell["language"]
 
     @cached_property
+    def machine(self) -> dict | None:
+        return self.cell.get("machine")
+
+    @cached_property
     def servo_mm(self) -> tuple[float, float]:
         """Of a servo: the height of one value at most, and the step; else nothing."""
         servo = self.cell.get("servo")
@@ -106,15 +110,15 @@ class Job:
             ]
             if station.get("by_hand"):
                 way = [(x, y, safe), (x, y, safe)]
-            ways.append(np.array(way, dtype=float))
+            # told as it stands in the cell, on a machine that may lean: bent where it meets the paper
+            ways.append(places.true_of(_sampled(np.array(way, dtype=float)), self.machine))
         return ways
 
     @cached_property
     def start(self) -> tuple:
         """Where the tool is before: over the end of the job, low, so that a missing rise is seen."""
-        x, y, _ = self.plan["passes"][-1]["poses_mm"][-1]
-        low = np.array([[x, y, self.cell["heights"]["safe_mm"] / 2]])
-        return tuple(places.moved(self.paper, low)[0])
+        end, height = self.plan["passes"][-1]["poses_mm"][-1], self.cell["heights"]["safe_mm"] / 2
+        return tuple(places.moved(self.paper, places.told_in_air(end, height, self.machine)[None])[0])
 
     def interpret(self, text: str) -> Run:
         if robot := ROBOTS.get(self.language):
@@ -151,8 +155,9 @@ def _sampled(points: np.ndarray) -> np.ndarray:
 
 @dataclass
 class Way:
-    """A run in the paper's frame. starts, ends (n, 3), speeds (n,) of its legs, circles as chords; leg: which leg each
-    belongs to; samples (m, 3) with the row that each belongs to; touches: of the samples, those of each touch."""
+    """A run in the paper's frame, as the machine goes. starts, ends (n, 3), speeds (n,) of its legs, circles as chords;
+    leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are told; touches: of
+    the samples, those of each touch."""
 
     run: Run
     starts: np.ndarray
@@ -160,6 +165,7 @@ class Way:
     leg: np.ndarray
     samples: np.ndarray
     row: np.ndarray
+    told: np.ndarray
     touches: list[np.ndarray] = field(default_factory=list)
 
 
@@ -187,18 +193,20 @@ def way_of(run: Run, job: Job) -> Way:
         parts.append((starts[done:], ends[done:], owner[done:]))
         starts, ends, owner = (np.concatenate(each) for each in zip(*parts, strict=True))
     if not len(starts):
-        return Way(run, starts, ends, owner, starts, owner)
+        return Way(run, starts, ends, owner, starts, owner, starts)
     steps = ends - starts
-    low = np.minimum(starts[:, 2], ends[:, 2]) < 1.0
+    true_starts, true_ends = (places.true_of(each, job.machine) for each in (starts, ends))
+    low = np.minimum(true_starts[:, 2], true_ends[:, 2]) < 1.0
     counts = np.ceil(np.linalg.norm(steps, axis=1) / np.where(low, STEP_MM, AIR_STEP_MM))
     counts = np.clip(counts, 1, MOST).astype(int)
     row = np.repeat(np.arange(len(steps)), counts)
     part = (np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[row]
-    samples = starts[row] + steps[row] * part[:, None]
+    told = starts[row] + steps[row] * part[:, None]
+    samples = places.true_of(told, job.machine)
     on = samples[:, 2] <= job.touch_mm
     edges = np.flatnonzero(np.diff(np.r_[False, on, False].astype(int)))
     touches = [samples[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)]
-    return Way(run, starts, ends, owner, samples, row, touches)
+    return Way(run, true_starts, true_ends, owner, samples, row, told, touches)
 
 
 # Limits -----------------------------------------------------------------------------------------------
@@ -212,9 +220,11 @@ def broken(way: Way, job: Job) -> list[str]:
 
 
 def _beyond(way: Way, job: Job):
-    cell, points = job.cell, way.samples[1:]
+    cell, points = job.cell, way.told[1:]
     if not len(points):
         return
+    # how low, of the strokes as they are painted and of vessels as they stand
+    heights = points[:, 2] if job.machine is None else np.maximum(points[:, 2], way.samples[1:, 2])
     workspace = cell["workspace"]
     slack = SLACK_MM + job.servo_mm[0] / 2
     margin = np.array([workspace["margin_mm"]] * 2) + SLACK_MM
@@ -223,9 +233,8 @@ def _beyond(way: Way, job: Job):
     )
     if over.max() > 0:
         yield f"{over.max():.3f} mm beyond the sheet's margin, line {_line(way, over.argmax() + 1)}"
-    least = points[:, 2].min()
-    if least < cell["heights"]["lowest_mm"] - slack:
-        yield f"height {least:.3f} mm, line {_line(way, points[:, 2].argmin() + 1)}"
+    if heights.min() < cell["heights"]["lowest_mm"] - slack:
+        yield f"height {heights.min():.3f} mm, line {_line(way, heights.argmin() + 1)}"
     robot = places.moved(job.paper, points)
     if box := workspace.get("box_mm"):
         over = np.maximum(np.array(box[0]) - robot, robot - np.array(box[1])).max(axis=1)
@@ -279,7 +288,7 @@ def _jumps(way: Way, job: Job):
             now += leg.seconds
         elif leg.kind != "stop":
             now += float(np.linalg.norm(np.subtract(leg.end, leg.start))) / max(leg.speed_mm_s, 1e-9)
-    heights, times = np.array(heights), np.array(times)
+    heights, times = np.array(heights) - (job.machine or {}).get("height_mm", 0.0), np.array(times)
     for apart in (1, 3, 5, 7):
         rise = heights[apart:] - heights[:-apart]
         allowed = 2 * step + value + SLACK_MM + job.fastest_mm_s * 1.1 * (times[apart:] - times[:-apart])

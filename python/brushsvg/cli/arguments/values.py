@@ -67,9 +67,11 @@ def count(text: str) -> int:
 
 
 def share(text: str) -> float:
+    from ...units import number
+
     try:
-        value = float(text)
-    except ValueError:
+        value = number(text)
+    except Error:
         value = -1.0
     if not 0.0 <= value <= 1.0:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is outside the range [0, 1]")
@@ -104,9 +106,11 @@ def scale(text: str) -> float:
 
 
 def speed(text: str) -> float:
+    from ...units import number
+
     try:
-        value = float(text)
-    except ValueError:
+        value = number(text)
+    except Error:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a factor; write for example 5") from None
     if not 0.1 <= value <= 1000:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.1, 1000]")
@@ -117,9 +121,11 @@ LEAST_DPI, MOST_DPI = 102.0, 20000.0  # the former are 4 pixels per mm
 
 
 def resolution(text: str) -> float:
+    from ...units import number
+
     try:
-        value = float(text)
-    except ValueError:
+        value = number(text)
+    except Error:
         raise argparse.ArgumentTypeError(
             f"{text[:24]!r} is not a number of dots per inch; write for example 600"
         ) from None
