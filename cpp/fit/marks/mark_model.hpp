@@ -40,6 +40,7 @@ class MarkModel {
 
     const Layout& layout() const { return layout_; }
     Index marks() const { return Index(painted_.size()); }
+    const std::string& stroke(Index mark) const { return painted_[std::size_t(mark)].stroke; }
     Index points(Index mark) const { return painted_[std::size_t(mark)].point_mm.rows(); }
     Index ring_begin(Index mark, std::size_t ring) const { return painted_[std::size_t(mark)].rings[ring]; }
     std::size_t rings(Index mark) const { return painted_[std::size_t(mark)].rings.size() - 1; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
 #include "meanwhile.hpp"
 
 namespace brushsvg::fit {
@@ -26,7 +27,8 @@ std::vector<Seen> look(const MarkProblem& at) {
     at.model.for_each([&](Index i) {
         RowMajor by(at.model.points(i), g), own(at.model.points(i), 2);
         Seen& seen = out[std::size_t(i)];
-        at.model.distances(i, at.shared.data(), at.own[std::size_t(i)].data(), seen.distance_mm, &by, &own);
+        if (!at.model.distances(i, at.shared.data(), at.own[std::size_t(i)].data(), seen.distance_mm, &by, &own))
+            throw Error("fit-failed", "the laws come to predict no mark", at.model.stroke(i));
         seen.by.resize(by.rows(), g + 2);
         seen.by << by, own;
         seen.says = at.says[std::size_t(i)];
