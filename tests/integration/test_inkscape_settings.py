@@ -38,6 +38,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         "    brush: mine",
         "    compensation: nothing, and brushsvg takes closed",
         "    beginnings: nothing, and brushsvg takes auto",
+        "    ends: nothing, and brushsvg takes auto",
         "    machine: grbl-servo",
         "    letters wider than the brush: nothing, and brushsvg takes auto",
         "    tolerance: 0.1mm",
@@ -52,6 +53,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         ("--brush=default", {"brush": None}, "brush: nothing, and brushsvg takes round-6 (before: mine)"),
         ("--compensation=none", {"compensation": "none"}, "compensation: none (before: nothing)"),
         ("--start=hidden", {"start": "hidden"}, "beginnings: hidden (before: nothing)"),
+        ("--end=squared", {"end": "squared"}, "ends: squared (before: nothing)"),
         (
             "--cell=default",
             {"cell": None},
@@ -93,12 +95,13 @@ def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
         "brush": DEFAULT_BRUSH,
         "compensation": options.compensation,
         "start": options.start,
+        "end": options.end,
         "cell": MACHINES,
         "wide": options.wide,
         "tolerance": f"{options.tolerance_mm}mm",
     } == OWN
     dialog = (SOURCE / "brushsvg_settings.inx").read_text()
-    for name in ("brush", "compensation", "start", "cell", "wide"):
+    for name in ("brush", "compensation", "start", "end", "cell", "wide"):
         assert f"brushsvg's own choice: {OWN[name]}<" in dialog
     assert "takes it back to 0.05 mm" in dialog
 

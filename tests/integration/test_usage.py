@@ -40,7 +40,7 @@ USAGE = [
 LATER = {
     "flags": ["--caps"],
     "commands": ["learn"],
-    "formats": [".mod", ".pdf", ".krl"],
+    "formats": [".ls", ".pdf", ".krl"],
 }
 PAGES = [
     [],
