@@ -202,15 +202,21 @@ def test_no_move_is_shorter_than_what_anything_shows(name, decimals):
     assert said is None
     written = as_written(_core.Pass("one", np.array(poses), 20.0), cell, robot_from_paper(cell))
     assert np.linalg.norm(np.diff(written.poses_mm, axis=0), axis=1).min() > 2e-3
-    assert {0, len(poses) - 1} < set(written.kept.tolist())
+    assert np.linalg.norm(written.poses_mm[[0, -1]] - np.array(poses)[[0, -1]], axis=1).max() < 1e-6
 
 
 def test_no_circle_begins_or_ends_beside_one_by_less_than_a_move():
     first, last = arc((50, 40), 14, -70, -40, 4), arc((50, 40), 14, -39.998, -10, 4)
     poses = [DOWN, (30, 20, -2), *first, *last, (60, 40, -2), UP]
     arcs = [_core.Arc(2, 5, (50, 40), 1), _core.Arc(6, 9, (50, 40), 1)]
-    text, said = found_by_check(poses, arcs, cell_of("ur5e", 4))
+    cell = cell_of("ur5e", 4)
+    text, said = found_by_check(poses, arcs, cell)
     assert said is None and text.count("movec") == 1
+    written = as_written(_core.Pass("one", np.array(poses), 20.0, arcs=arcs), cell, robot_from_paper(cell))
+    (told,) = written.arcs
+    run = np.delete(written.poses_mm[:, :2], slice(told.first + 1, told.last), axis=0)
+    radii_mm = np.linalg.norm((run[3:-3] + run[4:-2]) / 2 - (50, 40), axis=1)
+    assert len(radii_mm) > 3 and np.abs(radii_mm - 14).max() < 0.0101  # the other one's chords
 
 
 @pytest.mark.parametrize("turn", [1, -1])

@@ -24,10 +24,17 @@ def with_chords(a_pass):
     """The same pass, with poses so close on its arcs that their chords do as well."""
     if not len(a_pass.arcs):
         return a_pass
-    rows = _rows(np.asarray(a_pass.poses_mm), a_pass.arcs)
+    return on_way(a_pass, *with_chords_on(np.asarray(a_pass.poses_mm), a_pass.arcs, a_pass.arcs))
+
+
+def with_chords_on(poses: np.ndarray, dense, arcs) -> tuple[np.ndarray, list]:
+    """Poses (n, 3) with more of them on the arcs `dense`; and `arcs`, which begin and end where they did."""
+    if not dense:
+        return poses, list(arcs)
+    rows = _rows(poses, dense)
     at = np.concatenate([[0], np.cumsum([len(each) for each in rows])]).tolist()
-    arcs = [_core.Arc(at[arc.first], at[arc.last], arc.centre_mm, arc.direction) for arc in a_pass.arcs]
-    return on_way(a_pass, np.vstack(rows), arcs)
+    moved = [_core.Arc(at[arc.first], at[arc.last], arc.centre_mm, arc.direction) for arc in arcs]
+    return np.vstack(rows), moved
 
 
 def _rows(poses: np.ndarray, arcs) -> list[np.ndarray]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from math import ceil, dist, tau
 
 import numpy as np
 
 from .. import _core
+from .arc_chords import with_chords_on
 from .cell import Cell, least_move_mm
 from .corner_blending import ON_THE_SPOT_MM
 from .distortion import leans, told_pass
@@ -23,11 +25,10 @@ CIRCLE_UNITS = 10
 
 @dataclass(frozen=True)
 class Written:
-    """kept: (k,) which poses of a pass a program has; told_mm: (k, 3) what the machine is told for each; poses_mm:
-    (k, 3) the same as the program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm:
-    steps of less than that are straight up and down."""
+    """told_mm: (k, 3) what the machine is told for each pose that a program has; poses_mm: (k, 3) the same as the
+    program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm: steps of less than that
+    are straight up and down."""
 
-    kept: np.ndarray
     told_mm: np.ndarray
     poses_mm: np.ndarray
     arcs: list
@@ -40,19 +41,27 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     a_pass = told_pass(a_pass, cell)
     post = POSTS.get(cell.language)
     unit_mm = 10.0**-cell.decimals
-    meant = poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    meant = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     circles_by = post.circles_by if post else "centre"
+    in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
     # what leans is told to go aside for it to go straight down, which it does up to rounding
     sideways_mm = 2 * unit_mm if leans(cell.machine) else ON_THE_SPOT_MM
-    if post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)):
-        poses = moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
-        if not is_upright(frame):
-            sideways_mm = 2 * unit_mm  # up and down are only so up to rounding
-            circles_by = ""  # and circles lie in no plane that the robot knows
-    else:
-        poses = np.round(poses, cell.decimals)
+    if in_robot and not is_upright(frame):
+        sideways_mm = 2 * unit_mm  # up and down are only so up to rounding
+        circles_by = ""  # and circles lie in no plane that the robot knows
+
+    def rounded(poses: np.ndarray) -> np.ndarray:
+        if in_robot:
+            return moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
+        return np.round(poses, cell.decimals)
+
+    poses, arcs = rounded(meant), []
     least_mm = least_move_mm(cell)
-    arcs = list(_told(a_pass.arcs, poses, circles_by, unit_mm, least_mm)) if circles_by else []
+    if circles_by:
+        arcs, others = _told(a_pass.arcs, poses, circles_by, unit_mm, least_mm)
+        dense, arcs = with_chords_on(meant, others, arcs)
+        if len(dense) > len(meant):
+            meant, poses = dense, rounded(dense)
     kept = _kept(poses, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):
         arcs = [
@@ -64,7 +73,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     if cell.servo:
         held = _held(poses[:, :2], least_mm)
         poses[:, :2], told_mm[:, :2] = poses[held, :2], told_mm[held, :2]
-    return Written(kept, told_mm, poses, arcs, sideways_mm)
+    return Written(told_mm, poses, arcs, sideways_mm)
 
 
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
@@ -78,22 +87,25 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     return stays
 
 
-def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> Iterator:
-    """The arcs that are told as circles: those that come back to where they began or beyond in parts, and none where no
-    more than a tiny move would lead to it or away from it."""
+def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> tuple[list, list]:
+    """The arcs that are told as circles, those that come back to where they began or beyond in parts, and none where no
+    more than a tiny move would lead to it or away from it; and the others."""
 
     def is_tiny(first: int, last: int) -> bool:
         return first != last and dist(poses[first], poses[last]) < least_mm
 
-    done = 0
-    for arc in arcs:
-        for part in _parts(arc, poses, CIRCLE_UNITS * unit_mm):
-            if not _is_told(poses[part.first : part.last + 1, :2], circles_by, CIRCLE_UNITS * unit_mm):
-                continue
-            if is_tiny(done, part.first) or is_tiny(part.last, len(poses) - 1):
-                continue
-            yield part
+    told, others, done = [], [], 0
+    for part in chain.from_iterable(_parts(arc, poses, CIRCLE_UNITS * unit_mm) for arc in arcs):
+        if (
+            _is_told(poses[part.first : part.last + 1, :2], circles_by, CIRCLE_UNITS * unit_mm)
+            and not is_tiny(done, part.first)
+            and not is_tiny(part.last, len(poses) - 1)
+        ):
+            told.append(part)
             done = part.last
+        else:
+            others.append(part)
+    return told, others
 
 
 def _parts(arc, poses: np.ndarray, least_mm: float) -> Iterator:
