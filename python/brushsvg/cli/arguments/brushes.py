@@ -45,8 +45,8 @@ def add_chart(commands) -> None:
         "--noise",
         metavar="MM",
         type=values.noise,
-        default=0.1,
-        help="standard deviation of a digitized edge, for the confidence intervals to expect; default: 0.1",
+        help="standard deviation of a digitized edge, for the confidence intervals to expect of strokes; "
+        f"default: {values.EDGE_NOISE_MM:g}",
     )
     add_z_offset(chart)
     add_quiet(chart)
@@ -55,6 +55,8 @@ def add_chart(commands) -> None:
 
 def _check_chart(args) -> None:
     check_job(args)
+    if args.dabs and args.noise is not None:
+        args.parser.error("--noise is for intervals to expect of strokes: a chart of dabs tells none")
     written = [(args.output, (".json", *PROGRAMS)), (args.page, (".pdf", ".svg")), (args.chart, (".json",))]
     check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 

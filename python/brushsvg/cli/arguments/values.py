@@ -21,6 +21,9 @@ def size(text: str) -> tuple[float, float]:
     return _read(size_mm, text)
 
 
+EDGE_NOISE_MM = 0.1  # of digitized edges, unless told otherwise
+
+
 def noise(text: str) -> float:
     return _length(text, 0.001, 10.0)
 

@@ -9,6 +9,7 @@ from ...machine.paint_reload import in_loads
 from ...machine.program import Job
 from ...pipeline import preparation
 from ...text_summary import summarized
+from ..arguments.values import EDGE_NOISE_MM
 from ..console import RefusedError, about, stage, tell
 from ..steps.options import brush_of, exact_cell, settled, typed, warn_of_example
 from ..steps.output_places import check_places, suffix_of, write
@@ -49,4 +50,6 @@ def chart_file(args) -> None:
         files[args.chart] = write_chart(made).encode()
     warn_of_example(args, cell)
     write(args, files, len(loads.loads), seconds_written(suffix, made.plan, walk, brush, cell))
-    tell(dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise))
+    tell(
+        dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise or EDGE_NOISE_MM)
+    )
