@@ -16,6 +16,7 @@ from ..geometry.rings import signed_area
 BLURS_MM = (1.2, 0.5, 0.2)  # coarse to fine: a mark is found from as far as the first is wide
 ROUNDS = 6
 MOST_GROWN_MM = 1.0  # in one step
+TURN_WEIGHT = 3000.0  # of no turn, against what pixels say: rings and dots show none
 MOST_MM = 8.0  # a step goes no farther: beyond, nothing was found
 
 
@@ -108,7 +109,9 @@ def place(
                 columns[2] = np.zeros_like(size)
             slopes = np.column_stack([column[here] for column in columns])
             off = (seen - shown)[here]
-            step = np.linalg.lstsq(slopes.T @ slopes + 1e-6 * np.eye(4), slopes.T @ off, rcond=None)[0]
+            prior = np.array([0.0, 0.0, TURN_WEIGHT, 0.0])
+            normal = slopes.T @ slopes + np.diag(prior + 1e-6)
+            step = np.linalg.lstsq(normal, slopes.T @ off - prior * now, rcond=None)[0]
             length = float(np.hypot(*step[:2]))
             step[:3] *= min(1.0, 1.5 * blur_mm / max(length, 1e-9))
             now = now + np.append(step[:3], np.clip(step[3], -MOST_GROWN_MM, MOST_GROWN_MM))

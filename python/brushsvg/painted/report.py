@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import asdict
 
 from .comparison import BLOT_MM, Compared, Comparison
+from .corrections import FORMAT, Correction
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing")
@@ -64,10 +66,11 @@ def _row(one: Compared) -> tuple[str, ...]:
     )
 
 
-def as_json(title: str, found: Comparison) -> str:
+def as_json(title: str, found: Comparison, corrections: dict[str, Correction]) -> str:
+    """corrections: of the strokes that should be led elsewhere next time."""
     _, placed, each = found.overlaps
     made = {
-        "format": "brushsvg/comparison",
+        "format": FORMAT,
         "version": 1,
         "title": title,
         "overlap_wanted": found.overlap_wanted,
@@ -92,6 +95,7 @@ def as_json(title: str, found: Comparison) -> str:
                 "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
                 "wider_mm": one.placed.wider_mm if one.placed.found else None,
                 "missing": one.missing,
+                "correction": _told(corrections.get(one.stroke)),
             }
             for one in found.strokes
         ],
@@ -99,9 +103,15 @@ def as_json(title: str, found: Comparison) -> str:
     return json.dumps(_rounded(made), indent=1, ensure_ascii=False) + "\n"
 
 
+def _told(correction: Correction | None) -> dict | None:
+    return (
+        {key: value for key, value in asdict(correction).items() if key != "stroke"} if correction else None
+    )
+
+
 def _rounded(value):
     if isinstance(value, float):
         return round(value, 4) + 0.0
     if isinstance(value, dict):
         return {key: _rounded(item) for key, item in value.items()}
-    return [_rounded(item) for item in value] if isinstance(value, list) else value
+    return [_rounded(item) for item in value] if isinstance(value, list | tuple) else value

@@ -32,7 +32,13 @@ def notes(work: Work) -> tuple[str, ...]:
     made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
     damaged = sum(notice.damaged for notice in work.notices)
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
-    return (made, count) if work.strokes is not None else (count,)
+    lines = (made, count) if work.strokes is not None else (count,)
+    if options.corrections:
+        farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
+        lines += (
+            f"corrections: {len(options.corrections)} strokes, shifted by {farthest_mm:.2f} mm at most",
+        )
+    return lines
 
 
 def picture(suffix: str, work: Work, marks, band=None) -> bytes:

@@ -17,6 +17,7 @@ from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
 from ..machine.program import Job, walked
+from ..painted.corrections import Correction, corrected
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
@@ -49,6 +50,7 @@ class Options:
     join: bool = False  # lines that meet end to end are one stroke
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's
+    corrections: tuple[Correction, ...] = ()  # by which a painted sheet showed that strokes lie elsewhere
 
     def __post_init__(self):
         if self.cell is not None:  # from here on it is as exact as the plan
@@ -59,7 +61,8 @@ class Options:
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
-    tracking_errors: one per pass of the plan, () for a plan read from a file; refused: strokes that were left out.
+    plan: with corrections. tracking_errors: one per pass of the plan without them, () for a plan read from a file;
+    refused: strokes that were left out.
     """
 
     title: str
@@ -134,7 +137,7 @@ def prepare(
     return Work(
         design.title,
         brush,
-        plan,
+        corrected(plan, options.corrections),
         strokes,
         tuple(tracking_errors),
         options,
@@ -332,7 +335,7 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
                 code="plan-of-other-brush",
             )
         )
-    return Work("", brush, plan, None, (), options, tuple(notices))
+    return Work("", brush, corrected(plan, options.corrections), None, (), options, tuple(notices))
 
 
 def whole_strokes(work: Work, loads: PlanInLoads) -> list:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...drawing import READERS
 from . import values
-from .flags import add_choices, add_input, add_job, add_layout, add_quiet, plans_and_programs
+from .flags import add_choices, add_corrections, add_input, add_job, add_layout, add_quiet, plans_and_programs
 from .usage_checks import (
     DRAWINGS,
     PHOTOS,
@@ -24,6 +24,7 @@ def add_convert(commands) -> None:
     convert.add_argument("output", metavar="OUT", help=plans_and_programs())
     add_choices(convert)
     add_job(convert)
+    add_corrections(convert)
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     convert.add_argument(
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
@@ -42,7 +43,8 @@ def _check_convert(args) -> None:
         (args.page, (".pdf", ".svg")),
         (args.report, (".txt", ".json")),
     ]
-    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], written)
+    read = [(args.input, DRAWINGS), (args.brush, None), (args.corrections, (".json",))]
+    check_files(args, read, written)
 
 
 def add_compare(commands) -> None:
@@ -57,6 +59,7 @@ def add_compare(commands) -> None:
     )
     add_input(compare)
     add_choices(compare)
+    add_corrections(compare)
     compare.add_argument("-o", metavar="FILE", dest="output", help="also write the figures (.json .txt)")
     compare.add_argument("--picture", metavar="FILE", help="also draw paint, wanted and predicted (.png)")
     compare.add_argument(
@@ -73,6 +76,7 @@ def add_compare(commands) -> None:
 def _check_compare(args) -> None:
     check_drawing(args)
     read = [*((path, PHOTOS) for path in args.photos), (args.input, DRAWINGS), (args.brush, None)]
+    read.append((args.corrections, (".json",)))
     check_files(args, read, [(args.output, (".json", ".txt")), (args.picture, (".png",))])
 
 

@@ -55,6 +55,14 @@ def add_z_offset(command: argparse.ArgumentParser) -> None:
     )
 
 
+def add_corrections(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--corrections",
+        metavar="FILE",
+        help="what compare found on a painted sheet: strokes are led elsewhere by it (.json)",
+    )
+
+
 def add_quiet(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="do not say what was written; warnings stay")
 

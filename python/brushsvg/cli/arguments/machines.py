@@ -6,6 +6,7 @@ from . import values
 from .flags import (
     add_choices,
     add_corners,
+    add_corrections,
     add_input,
     add_join,
     add_layout,
@@ -82,6 +83,7 @@ def add_check(commands) -> None:
     add_wide(check)
     add_corners(check)
     add_join(check)
+    add_corrections(check)
     check.add_argument(
         "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
     )
@@ -104,7 +106,12 @@ def add_check(commands) -> None:
 def _check_check(args) -> None:
     if args.input is not None:
         check_drawing(args)
-    read = [(args.program, PROGRAMS), (args.input, DRAWINGS), (args.brush, None)]
+    read = [
+        (args.program, PROGRAMS),
+        (args.input, DRAWINGS),
+        (args.brush, None),
+        (args.corrections, (".json",)),
+    ]
     check_files(args, read, [(args.preview, PICTURES)])
 
 

@@ -170,6 +170,13 @@ def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
 
 def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
     """The drawing or plan that a program should paint, prepared as its header says."""
+    if made.is_corrected and args.corrections is None:
+        with about(args.program):
+            raise Error(
+                "its strokes were led elsewhere by corrections, which are not known here",
+                code="corrections-missing",
+                advice="give --corrections FILE",
+            )
     chosen = typed(args)
     if suffix_of(args.input) != ".json":
         with about(args.input):

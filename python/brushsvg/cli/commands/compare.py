@@ -5,9 +5,10 @@ from __future__ import annotations
 from ...errors import Error
 from ...evaluation import report as figures
 from ...files import read_bytes
+from ...painted.corrections import corrected
 from ...pipeline import prediction
 from ..console import RefusedError, about, stage, tell, warn
-from ..steps.options import settled, typed
+from ..steps.options import corrections_of, settled, typed
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
 
@@ -15,15 +16,17 @@ from ..steps.prepared import prepare
 def compare_files(args) -> None:
     from ...painted.comparison import Wanted, compare_photos
     from ...painted.job_page import job_page
+    from ...painted.next_time import next_corrections
     from ...painted.picture import comparison_png
     from ...painted.report import as_json, as_text
 
     check_places(args.output, args.picture)
-    work = prepare(settled(typed(args), args.input))
+    work = prepare(settled(typed(args, corrections=None), args.input))
+    before = corrections_of(args.corrections)
     warn(args.input, work.notices)
     with about(args.input):
         marks = prediction.predict(work, True, stage)
-        page = job_page(work.plan, work.title)
+        page = job_page(corrected(work.plan, before), work.title)
         wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
         strokes = [
             Wanted(each.stroke, wanted.get(each.stroke), [ring for ring in each.outline_mm])
@@ -32,17 +35,18 @@ def compare_files(args) -> None:
     with about(args.photos[0]):
         stage("reading the photographs")
         found = compare_photos(page, strokes, [(path, read_bytes(path)) for path in args.photos])
-    warn(args.photos[0], list(found.notices))
+    corrections, too_far = next_corrections(found, work.plan, before)
+    warn(args.photos[0], [*found.notices, *too_far])
     title = work.title or "untitled"
     files = {}
+    as_figures = as_json(title, found, corrections)
     if args.output:
-        make = as_json if suffix_of(args.output) == ".json" else as_text
-        files[args.output] = make(title, found)
+        files[args.output] = as_figures if suffix_of(args.output) == ".json" else as_text(title, found)
     if args.picture:
         files[args.picture] = comparison_png(page, strokes, found, title)
     if files:
         write(args, files)
-    tell(as_json(title, found) if args.json else as_text(title, found))
+    tell(as_figures if args.json else as_text(title, found))
     reached = found.overlap_wanted if found.overlap_wanted is not None else found.overlap_predicted
     if args.at_least is not None and reached < args.at_least:
         raise RefusedError(

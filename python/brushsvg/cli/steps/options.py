@@ -12,6 +12,7 @@ from ...machine.cell import Cell
 from ...machine.cell_check import OF_EXAMPLE
 from ...machine.cell_file import cell_names, find_cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
+from ...painted.corrections import Correction, read_corrections
 from ...pipeline import preparation
 from ..console import about, warn
 from .output_places import suffix_of
@@ -42,6 +43,7 @@ class Choices:
     start: str | None
     end: str | None
     z_offset: float | None
+    corrections: str | None
 
 
 def typed(args, **instead) -> Choices:
@@ -75,6 +77,13 @@ def brush_of(name: str | None):
 def cell_of(name: str | None) -> Cell:
     with about(name or ""):
         return find_cell(name) if name is not None else find_cell()
+
+
+def corrections_of(path: str | None) -> tuple[Correction, ...]:
+    if path is None:
+        return ()
+    with about(path):
+        return read_corrections(path)
 
 
 def exact_cell(name: str | None, tolerance_mm: float | None = None) -> Cell:
@@ -112,6 +121,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         speed_mm_s=min(preparation.Options.speed_mm_s, cell.speeds.paint_mm_s),
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,
+        corrections=corrections_of(chosen.corrections),
     )
 
 

@@ -24,6 +24,7 @@ class Made:
     z_offset_mm: float
     first_stroke: int
     nearest_first: bool
+    is_corrected: bool
     compensation: str
     tolerance_mm: float | None
     lag_mm: float | None
@@ -62,6 +63,7 @@ def made(text: str) -> Made:
     _said(header, "warnings", r"(\d+)(?:, \d+ of them damaged geometry)?", (0, 1e6))
     if header.get("order", "nearest first") != "nearest first":
         raise _damaged("order", header["order"])
+    _said(header, "corrections", r"(\d+) strokes, shifted by (\S+) mm at most", (0, 1e6))
     strokes = re.search(r", (\d{1,7}) strokes$", header["brush"])
     return Made(
         title=header["title"],
@@ -71,6 +73,7 @@ def made(text: str) -> Made:
         z_offset_mm=paper[0] if paper else 0.0,
         first_stroke=int(resumed[0]) if resumed else 1,
         nearest_first="order" in header,
+        is_corrected="corrections" in header,
         compensation=how[1],
         tolerance_mm=tolerance[0] if tolerance else None,
         lag_mm=lag[0] if lag else None,
@@ -78,7 +81,9 @@ def made(text: str) -> Made:
         end=end[1] if end else None,
         strokes=int(strokes[1]) if strokes else 0,
         notes=tuple(
-            f"{word}: {header[word]}" for word in ("compensation", "warnings", "order") if word in header
+            f"{word}: {header[word]}"
+            for word in ("compensation", "warnings", "corrections", "order")
+            if word in header
         ),
         border_mm=(border[0], border[2], border[1], border[3]) if border else None,
         heights_mm=tuple(heights) if heights else None,

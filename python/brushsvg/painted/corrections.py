@@ -1,0 +1,99 @@
+"""What a painted job teaches for the next one: by how much each stroke is led elsewhere."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core, json_fields
+from ..errors import Error
+from ..files import read_bytes
+from ..machine.pass_way import on_way
+
+FORMAT = "brushsvg/comparison"
+MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
+START_MM = 0.1  # where the same stroke begins
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A stroke, whose way begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
+    shifted by shift_mm."""
+
+    stroke: str
+    start_mm: tuple[float, float]
+    middle_mm: tuple[float, float]
+    shift_mm: tuple[float, float]
+    turn_deg: float
+
+    def moved(self, points_mm: np.ndarray) -> np.ndarray:
+        """(n, 2) places on the sheet, led elsewhere."""
+        c, s = math.cos(math.radians(self.turn_deg)), math.sin(math.radians(self.turn_deg))
+        return (points_mm - self.middle_mm) @ np.array([[c, s], [-s, c]]) + self.middle_mm + self.shift_mm
+
+
+def corrected(plan, corrections: tuple[Correction, ...]):
+    """The plan with its strokes led elsewhere. Error for corrections of another job."""
+    left = {each.stroke: each for each in corrections}
+    passes = []
+    for a_pass in plan.passes:
+        correction = left.pop(a_pass.stroke, None)
+        passes.append(_led(a_pass, correction) if correction else a_pass)
+    if left:
+        raise _of_another_job(next(iter(left)), "there is no such stroke")
+    return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, plan.extra)
+
+
+def _led(a_pass, correction: Correction):
+    poses = np.array(a_pass.poses_mm, dtype=float)
+    away_mm = math.dist(poses[0, :2], correction.start_mm)
+    if away_mm > START_MM:
+        raise _of_another_job(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
+    poses[:, :2] = correction.moved(poses[:, :2])
+    arcs = [
+        _core.Arc(arc.first, arc.last, tuple(correction.moved(np.array([arc.centre_mm]))[0]), arc.direction)
+        for arc in a_pass.arcs
+    ]
+    return on_way(a_pass, poses, arcs)
+
+
+def _of_another_job(stroke: str, why: str) -> Error:
+    return Error(
+        f"the corrections are of another job, or of other flags: {why}",
+        stroke,
+        code="corrections-of-another-job",
+    )
+
+
+def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
+    """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
+    damaged, or when it holds no corrections."""
+    try:
+        rows = json_fields.objects(
+            json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes", ""
+        )
+        found = tuple(
+            _read(row, f"strokes[{k}]") for k, row in enumerate(rows) if row.get("correction") is not None
+        )
+        if not found:
+            sentence = "it says of no stroke where to lead it: the photograph did not show where marks lie"
+            raise Error(sentence, "strokes", code="corrections-missing")
+    except Error as refusal:
+        refusal.file = os.fspath(path)
+        raise
+    return found
+
+
+def _read(row: dict, where: str) -> Correction:
+    (said,) = json_fields.objects([row["correction"]], f"{where}.correction")
+    stroke, at = row.get("stroke"), f"{where}.correction"
+    if not isinstance(stroke, str):
+        raise Error("this must be the name of a stroke", f"{where}.stroke", code="wrong-type")
+    places = (json_fields.numbers(said.get(key), f"{at}.{key}", 2) for key in ("start_mm", "middle_mm"))
+    shift_mm = json_fields.numbers(said.get("shift_mm"), f"{at}.shift_mm", 2)
+    json_fields.number(math.hypot(*shift_mm), f"{at}.shift_mm", 0.0, MOST_MM)
+    turn_deg = json_fields.number(said.get("turn_deg"), f"{at}.turn_deg", -MOST_DEG, MOST_DEG)
+    return Correction(stroke, *places, shift_mm, turn_deg)

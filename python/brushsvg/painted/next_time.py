@@ -1,0 +1,59 @@
+"""From where marks lie to where their strokes should be led next time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..errors import Notice
+from .comparison import Compared, Comparison
+from .corrections import MOST_DEG, MOST_MM, Correction
+
+SHARE = 0.8  # of what was seen is taken back: part of it does not repeat
+UNSEEN = 0.3  # share of a mark without paint, beyond which its place is doubtful
+
+
+def next_corrections(
+    found: Comparison, plan, before: tuple[Correction, ...]
+) -> tuple[dict[str, Correction], list[Notice]]:
+    """By stroke. The sheet's own place is left out, which is another one on the next sheet; so nothing is said of fewer
+    marks than tell it. plan: without corrections; before: those that were painted with. A stroke of which nothing
+    certain was seen keeps its own, one that would be led too far has none, which is told."""
+    made, notices = {each.stroke: each for each in before}, []
+    if found.spread_mm is None:
+        return made, notices
+    starts = {a_pass.stroke: a_pass.poses_mm[0][:2] for a_pass in plan.passes}
+    for row in found.strokes:
+        if not row.placed.found or row.missing > UNSEEN:
+            continue
+        correction = _next(row, found, tuple(map(float, starts[row.stroke])), made.get(row.stroke))
+        far_mm, far_deg = math.hypot(*correction.shift_mm), abs(correction.turn_deg)
+        if far_mm <= MOST_MM and far_deg <= MOST_DEG:
+            made[row.stroke] = correction
+            continue
+        made.pop(row.stroke, None)
+        sentence = (
+            f"it would be led {far_mm:.2f} mm and {far_deg:.1f} degrees elsewhere, outside the ranges [0, {MOST_MM:g}] "
+            f"mm and [0, {MOST_DEG:g}] degrees of a correction: look for what moves it so far"
+        )
+        notices.append(Notice(row.stroke, sentence, code="correction-too-far"))
+    return made, notices
+
+
+def _next(row: Compared, found: Comparison, start_mm, before: Correction | None) -> Correction:
+    middle = np.array([row.middle_mm])
+    sheet = found.common
+    beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
+    c, s = math.cos(sheet.turn_rad), math.sin(sheet.turn_rad)
+    x, y = beyond[0]
+    off = SHARE * np.array([c * x + s * y, c * y - s * x])  # in the sheet's own directions
+    turn_deg = SHARE * math.degrees(row.placed.turn_rad - sheet.turn_rad)
+    shift = np.array(before.shift_mm) - off if before else -off
+    return Correction(
+        row.stroke,
+        start_mm,
+        row.middle_mm,
+        (float(shift[0]), float(shift[1])),
+        (before.turn_deg if before else 0.0) - turn_deg,
+    )
