@@ -495,6 +495,10 @@ UNWRITTEN = {
         (r"(?m)^  end$", "  end\n  end"),
         (r"(?m)^end$", "end\nend"),
     ],
+    "irb120": [
+        (r"(?m)^(  LOCAL VAR robtarget here;\r?\n)", r"\1\1"),
+        (r"(?m)^(  LOCAL PERS wobjdata .*\n)", r"\1\1"),
+    ],
 }
 
 
@@ -558,6 +562,10 @@ HARMLESS = {
         (r"(?m)^(  movel\(on_paper.*\n)", r"\1\1"),
         (r"(?m)^(  # stroke 2)", r"  # all is well\n\1"),
         (r"(?m)^(  # stroke 2)", r"  # Anna, Monday: slower here\n\1"),
+    ],
+    "irb120": [
+        (r"(?m)^(    RETURN \[\[x, y, z\].*\n)", r"\1\1"),
+        (r"(?m)^(    ConfL .*\n)(    PathAccLim .*\n)", r"\2\1"),
     ],
 }
 

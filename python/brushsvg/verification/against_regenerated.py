@@ -198,12 +198,15 @@ _TOLD = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =|local ")
 
 
 def _with_header_sorted(acts: list[Act]) -> list[Act]:
-    """The acts, what a header says and sets in the order of first words, and nothing twice."""
+    """The acts, what a header says and sets in the order of first words, and nothing twice but declarations, of which
+    controllers load no two alike."""
     is_told = [bool(_TOLD.match(act.text)) for act in acts]
     first = next((k for k, told in enumerate(is_told) if told), len(acts))
     last = next((k for k in range(first, len(acts)) if not is_told[k]), len(acts))
-    header = {act.text: act for act in acts[first:last]}
-    return acts[:first] + sorted(header.values(), key=_header_word) + acts[last:]
+    said = acts[first:last]
+    once = {act.text: act for act in said if not act.text.startswith("local ")}
+    declared = [act for act in said if act.text.startswith("local ")]
+    return acts[:first] + sorted([*once.values(), *declared], key=_header_word) + acts[last:]
 
 
 def _header_word(act: Act) -> str:

@@ -42,11 +42,12 @@ _SCRIPT = Script(
             ("text", "|".join(_FRAME)),
         )
     ),
-    again=re.compile(r"confl|here := crobt|here\.trans"),
+    again=re.compile(r"confl|here := crobt|here\.trans|return"),
     last=(f"! {RAPID_END}", "ENDPROC", "ENDMODULE"),
     units_mm={"more": 1e3, "less": 1e3},
     least=LEAST_ACCELERATION_MM_S2["rapid"],
     any_case=True,
+    either_way=r"confl \off;",
 )
 
 

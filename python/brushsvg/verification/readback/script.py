@@ -26,7 +26,7 @@ class Script:
     again: texts that do nothing when they stand there twice; last: of the program, without blanks around them;
     units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be; least: of `most`;
     sets_after: the text before which nothing may be set; is_indented: whether blanks before a line mean something;
-    any_case: whether large and small letters are the same.
+    any_case: whether large and small letters are the same; either_way: a text that may stand before `most` or after.
     """
 
     remark: str
@@ -39,6 +39,7 @@ class Script:
     least: float = 0.0
     is_indented: bool = False
     any_case: bool = False
+    either_way: str = ""
 
 
 def place(names: str) -> str:
@@ -170,9 +171,10 @@ class _Reader:
         before = next((act.text for act in reversed(acts) if not act.text.startswith("(")), None)
         if before == line and self.script.again.match(line):
             return
-        acts.insert(
-            0 if before is None else len(acts), Act(number, "text", line)
-        )  # remarks may stand before the first one
+        at = 0 if before is None else len(acts)  # remarks may stand before the first one
+        if acts and acts[-1].text == "at most" and line == self.script.either_way:
+            at -= 1
+        acts.insert(at, Act(number, "text", line))
 
     # What they say -----------------------------------------------------------------------------------
 
