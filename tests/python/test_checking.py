@@ -888,6 +888,14 @@ def test_a_blend_may_differ_by_what_rounded_moves_turn():
     assert not like.is_same(blend(0.573), blend(0.540))
 
 
+@pytest.mark.parametrize("load_kg", ["-0.5", "0.0", "1.4"])
+def test_what_a_brush_weighs_is_not_rounded(load_kg):
+    """It has one decimal, ten of which would be another load, or one with which no ABB robot moves."""
+    like, told = _Alike(find_cell("irb120")), "local pers tooldata brush := [[0.000, 150.000], [{}, [0, 0, 50]]];"
+    said = [Act(1, "text", told.format(text)) for text in ("0.5", "0.500", load_kg)]
+    assert like.is_same(said[1], said[0]) and not like.is_same(said[2], said[0])
+
+
 def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
     text = re.sub(r"(?m)^decimals = \d", "decimals = 3", (SHIPPED / "ur5e.toml").read_text())
     (desk / "coarse.toml").write_text(text)
