@@ -18,7 +18,7 @@ SPEED_DECIMALS = 3
 # of up to 100 degrees, where brushsvg blends, so much cuts a corner by no more than the tolerance in both readings
 BLENDED = 0.8
 XARM_END = "end: the brush is held up"
-NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # by such a remark Python is told how a file's letters are to be read
+NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # tells Python how a file's letters are to be read
 
 BEFORE = """import sys
 
