@@ -97,6 +97,13 @@ def need(value, kind: type | tuple[type, ...], what: str) -> None:
         raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
 
 
+def need_one_of(value, choices: tuple, what: str) -> None:
+    """Error for what is none of the choices there are."""
+    if not any(value is choice or (type(value) is str and value == choice) for choice in choices):
+        known = ", ".join(map(str, choices[:-1]))
+        raise Error(f"{what} is {known} or {choices[-1]}, not {str(value)[:40]!r}", code="choice-unknown")
+
+
 def lacking(what: str, *packages: str) -> Error:
     """A refusal for want of packages of an extra, with what installs them where this runs."""
     names = " ".join(packages)

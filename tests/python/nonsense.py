@@ -189,7 +189,7 @@ SOUND_CELL = Path(brushsvg.__file__).parent / "data" / "cells" / "grbl-3axis.tom
 (FOLDER / "huge.toml").write_text(SOUND_CELL.read_text().replace("= 5", "= 1e400"))
 NAMES = ["", "\0", "no-such", "../x", "a" * 5000, *PATHS]
 
-SHEETS = [(100, 100), (0, 0), (NAN, 9), (1e300, 1e300)]
+SHEETS = [(100, 100), (0, 0), (NAN, 9), (1e300, 1e300), [np.zeros(3)] * 2, ("x", None), np.zeros(2)]
 COLOURS = [["#000000"], [], ["varnish"], ["#0"], ["#zzzzzz"]]
 FONT = (
     '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="9"><font-face units-per-em="9"/>'
@@ -250,7 +250,7 @@ ARGUMENTS = {
         ["a", *TEXTS],
         [None, *NUMBERS],
     ],
-    "strokes": [designs],
+    "strokes": [designs, [None, "stroke", *NUMBERS, *WRONG_TYPES]],
     "text_svg": [["AA", *TEXTS], [FONT.encode(), b"", b"\0" * 99, b"OTTO" + bytes(99), FONT[:99].encode()]],
     "trace_outlines": [marks, brushes],
     "unite": [rings],

@@ -600,11 +600,12 @@ STATIONS = [
     ["n" * 199 + "1", "n" * 199 + "2"],
     ["a-b", "a~b", "a", "~!%"],
     ["MSG, hello", "(PRINT,1", "#5220"],
+    ["1234567890123", "12345678901234"],
 ]
 
 
 @pytest.mark.parametrize("hand", [False, True])
-@pytest.mark.parametrize("cell", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
+@pytest.mark.parametrize("cell", LANGUAGES)
 @pytest.mark.slow
 def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
     """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
@@ -630,7 +631,7 @@ def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
         for drawing in (("some.svg",), ()):
             status, _, err = call(capsys, "check", words[1], *drawing, "--cell", "mine.toml")
             assert (status, err) == (0, []), names
-        told = re.findall(r"(?m)^(?:\(|  # )(paint: .*)$", (desk / words[1]).read_text())
+        told = re.findall(r"(?m)^(?:\(| *[#!;] )(paint: .*)$", (desk / words[1]).read_text())
         assert len(set(told)) == len(names)
 
 
@@ -894,6 +895,15 @@ def test_a_blend_may_differ_by_what_rounded_moves_turn():
     assert not like.is_same(blend(0.900), blend(0.540))
     like = _Alike(replace(find_cell("ur5e"), decimals=5))
     assert not like.is_same(blend(0.573), blend(0.540))
+
+
+@pytest.mark.parametrize("load_kg", ["-0.5", "0.0", "1.4"])
+def test_what_a_brush_weighs_is_not_rounded(load_kg):
+    """It has one decimal, ten of which would be another load, or one with which no ABB robot moves."""
+    like = _Alike(find_cell("irb120"))
+    told = "local pers tooldata brush := [[0.000, 150.000], [{}, [0, 0, 50]]];"
+    said = [Act(1, "text", told.format(text)) for text in ("0.5", "0.500", load_kg)]
+    assert like.is_same(said[1], said[0]) and not like.is_same(said[2], said[0])
 
 
 def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):

@@ -164,3 +164,16 @@ def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, said):
     with refused(said):
         brushsvg.write_program(tmp_path / name, plan, brushsvg.find_brush("round-6"))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_choices_that_there_are_not_are_refused(tmp_path):
+    (tmp_path / "d.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><path d="M0 0h9v9z"/></svg>'
+    )
+    design, brush = brushsvg.read_drawing(tmp_path / "d.svg"), brushsvg.find_brush("round-6")
+    for choice in ("varnish", "", np.ones((2, 2)), 5):
+        with refused("choice-unknown stroke outline None"):
+            brushsvg.strokes(design, choice)
+    for choice in ("varnish", "", np.ones((2, 2)), None):
+        with refused("choice-unknown auto clamp passes refuse"):
+            brushsvg.within_reach([], brush, choice)

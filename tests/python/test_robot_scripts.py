@@ -2,10 +2,12 @@
 and what `check` makes of them. It shares nothing with what writes and reads them."""
 
 import inspect
+import io
 import itertools
 import re
 import subprocess
 import sys
+import tokenize
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -170,6 +172,8 @@ REFUSED = [
     ("xarm6", "wait=False", "wait=True", "line-unread"),
     ("xarm6", ", 0.031)", ", radius=0.031)", "line-unread"),
     ("xarm6", "arm.disconnect()\n", "", "program-cut-short"),
+    ("xarm6", "# title", "# coding: utf-7\n# title", "line-unread letters"),
+    ("xarm6", "strokes\n", "strokes\n# -*- coding=cp037 -*-\n", "line-unread letters"),
 ]
 
 
@@ -179,6 +183,16 @@ def test_what_the_reader_refuses(name, old, new, said):
     assert old in text
     with refused(said):
         read_program(text.replace(old, new, 1), LANGUAGES[name], find_cell(name))
+
+
+@pytest.mark.parametrize("title", ["coding: rot13", "coding=coding:utf-7 +AAo-x = 1"])
+def test_no_title_tells_python_how_letters_are_read(title):
+    """Python obeys such remarks in the first two lines of a file."""
+    cell = find_cell("xarm6")
+    text = text_for(cell, header=(f"title: {title}", f"brush: {title}, 3 strokes"))
+    letters, _ = tokenize.detect_encoding(io.BytesIO(text.encode()).readline)
+    assert letters == "utf-8"
+    assert read_program(text, ".py", cell).sections
 
 
 @pytest.mark.parametrize("name", NAMES)

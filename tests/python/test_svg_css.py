@@ -82,6 +82,16 @@ def test_display_visibility_and_geometry_by_rule():
     assert design.elements[1].subpaths[0].cubics[0, 0].tolist() == [14, 48]
 
 
+def test_lengths_without_a_unit_are_none_in_css():
+    """In an attribute they are px; browsers drop such a declaration, and what is weaker counts."""
+    body = '<circle id="c" r="5" cx="9" cy="9" style="r:8;cx:9.5e0;cy:0"/><circle id="d" r="5" cx="9" style="r:8px"/>'
+    design = read(f"<style>#c{{r:6px}}</style>{body}")
+    starts = [element.subpaths[0].cubics[0, 0].tolist() for element in design.elements]
+    assert starts == [[15, 50], [17, 50]]
+    assert [notice.where for notice in design.notices] == ["c", "c"]
+    assert are_told(design.notices, "css-invalid r '8' unit", "css-invalid cx '9.5e0' unit")
+
+
 def test_own_properties_are_inherited_only_when_asked():
     body = (
         '<g style="opacity:.5"><path id="p" style="opacity:inherit" d="M0 0H5"/><path id="q" d="M0 0H5"/></g>'

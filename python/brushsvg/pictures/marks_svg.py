@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from html import escape
+from numbers import Real
 
 from .. import _core
 from ..errors import Error, need
@@ -62,6 +63,8 @@ def check_picture(marks, sheet_mm: tuple[float, float], colours: list[str]) -> N
     """Error for a sheet that has no size, or where not every pass has a colour."""
     need(marks, _core.Marks, "marks, as simulate returns them")
     need(sheet_mm, (tuple, list), "a sheet's width and height")
+    for side in sheet_mm:
+        need(side, Real, "the side of a sheet")
     if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
         raise Error(
             f"a sheet of {sheet_mm} mm cannot be drawn: both sides must lie within (0, 1e6] mm",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..drawing.design import Design, Element, Notice, SubPath
-from ..errors import Error, need
+from ..errors import Error, need, need_one_of
 from .corners import begun_amid_a_side
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
     Error if nothing is left to paint.
     """
     need(design, Design, "a drawing, as read_drawing returns it")
+    need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
     found, empty, notices = [], [], []
     for element in design.elements:
         try:

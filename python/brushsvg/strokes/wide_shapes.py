@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import _core
 from ..drawing.design import Notice
-from ..errors import Error, need
+from ..errors import Error, need, need_one_of
 from .offset_passes import clamped
 from .trial_mark import trial_mark
 
@@ -27,7 +27,7 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
     widths the mark of one of them overlaps with it by less than 0.8; "refuse", Error naming stroke, width and range.
     """
     need(brush, _core.Brush, "a brush")
-    need(wide, str, "auto, clamp, passes or refuse")
+    need_one_of(wide, ("auto", "clamp", "passes", "refuse"), "what becomes of wide shapes")
     for stroke in strokes:
         need(stroke, _core.Stroke, "a stroke")
     if not brush.width_follows_depth():

@@ -220,7 +220,7 @@ NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, 
 WAITS_S = 0.0031
 LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits, and which part of it
 FASTER = 0.011  # mm/s, of what is written in steps of 0.01
-DIGITS = 10.5  # of the last decimal: what a statement loses with it
+DIGITS = 10.5  # of the last decimal, the third at least: what a statement loses with it
 TILTED_RAD = 1.05e-3  # about a brush's tip, which stays where it is
 PAPER_TILTED_RAD = 1e-5  # about a sheet's corner
 # what rounded poses make of a blend, which hangs on the angle between two moves: mm, or a part of it; and the part for
@@ -333,7 +333,7 @@ class _Alike:
             <= (
                 tilted
                 if k >= len(numbers) - tilts
-                else DIGITS * 10.0 ** -len(y.partition(".")[2]) * ("." in y)
+                else DIGITS * 10.0 ** -max(len(y.partition(".")[2]), 3) * ("." in y)
             )
             for k, (x, y) in enumerate(numbers)
         )

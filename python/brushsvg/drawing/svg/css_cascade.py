@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from operator import itemgetter
 
 from ...errors import Notice
-from ...units import FONT_PX
+from ...units import FONT_PX, NUMBER
 from .css_declarations import Declaration, declarations
 from .css_values import computed, path_text, problem_of, substituted
 
@@ -52,6 +53,8 @@ OWN |= _CSS_ALONE
 _GEOMETRY = frozenset(
     "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
 )
+_LENGTHS = frozenset("x y width height cx cy r rx ry".split())
+_BARE_NUMBER = re.compile(NUMBER)  # a length in an attribute, and in CSS none unless it is 0
 _OLD_PREFIX = "-webkit-"  # still means the same where nothing else does
 _PREFIXED = frozenset(
     "transform transform-origin clip-path mask mask-image filter animation animation-name".split()
@@ -116,6 +119,10 @@ def cascade(
                 if (text := path_text(value)) is not None:
                     geometry[name] = text
                     break
+                continue
+            if name in _LENGTHS and _BARE_NUMBER.fullmatch(value) and float(value):
+                sentence = f"{name} {value[:40]!r} of its style has no unit: it counts as not given"
+                problems.append(Notice("", sentence, code="css-invalid", about=name))
                 continue
             if name in _GEOMETRY:
                 geometry[name] = value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,6 +18,7 @@ SPEED_DECIMALS = 3
 # of up to 100 degrees, where brushsvg blends, so much cuts a corner by no more than the tolerance in both readings
 BLENDED = 0.8
 XARM_END = "end: the brush is held up"
+NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # tells Python how a file's letters are to be read
 
 BEFORE = """import sys
 
@@ -69,7 +71,7 @@ def xarm(program: Program) -> Iterator[str]:
     them is full. Turns of the brush are lines: the SDK tells a circle by its share of a whole one, not by its end."""
     cell, decimals = program.cell, program.cell.decimals
     tool = numbers(cell.tool.tcp_mm, decimals), numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
-    yield "".join(map(comment, program.header))
+    yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))
     yield BEFORE
     yield f"\nUPRIGHT = ({numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
     yield f"TOOL = [{tool[0]}, {tool[1]}]\n"

@@ -152,7 +152,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", ";", "popup", "TPWrite")
+            ("(", "#", "!", ";", "popup", "TPWrite", "stop(")
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
+from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, XARM_END, upright_deg
+from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, NAMES_LETTERS, XARM_END, upright_deg
 from . import Readback
 from .script import N, Script, place, read_script
 
@@ -31,6 +32,10 @@ _LINES = tuple(
 
 def read_xarm(text: str, cell: Cell) -> Readback:
     """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
+    for number, line in enumerate(text.splitlines()[:2], 1):  # Python looks no further
+        if NAMES_LETTERS.search(line):
+            sentence = f"line {number}: {line[:60]!r} tells Python to read the program's letters as others"
+            raise Error(sentence, code="line-unread")
     script = Script(
         remark="# ",
         lines=_LINES,
