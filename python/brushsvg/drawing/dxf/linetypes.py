@@ -64,7 +64,7 @@ class Dashes:
                 raise Error(str(error), where=element.id, code=error.code) from None
         self._left -= len(pieces)
         if len(pieces) > len(element.subpaths):
-            sentence = f"it is dashed: {len(pieces)} strokes, one for each dash"
+            sentence = f"it is dashed: {len(pieces)} dashes, each a stroke"
             self.notices.append(Notice(element.id, sentence, layer=element.layer, code="dashed"))
         return replace(element, subpaths=tuple(pieces))
 

@@ -215,7 +215,7 @@ class Painted:
             raise Error(str(error), where=self.notes.label(node), code=error.code) from None
         self.dashes_left -= len(pieces)
         self.notes.add(
-            node, context, f"it is dashed: {len(pieces)} strokes, one for each dash", code="dashed"
+            node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed"
         )
         return tuple(pieces)
 
