@@ -658,6 +658,8 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
 
 def _alike(one, other, near: float, job: Job) -> bool:
     (a, cut), (b, its) = one, other
+    if (a.tilt_rad - b.tilt_rad) * LEVER_MM > LAST_MM:
+        return False
     if a.kind != b.kind or a.turn != b.turn or cut > its + ROUNDING_MM:
         return False
     if a.acceleration > b.acceleration * 1.001:

@@ -127,6 +127,8 @@ class XArmAPI(Arm):
         return 0
 
     def set_mode(self, mode=0, detection_param=0):
+        if mode != 0:  # in mode 2 an arm gives way to hands
+            self.run.acts.append(f"line {_line()}: mode {mode}")
         self.mode, self.state = mode, 4
         return 0
 
@@ -179,6 +181,8 @@ class XArmAPI(Arm):
         given = [x, y, z, roll, pitch, yaw]
         self.is_waiting = wait
         if given == [None] * 6:
+            if self.run.legs and self.run.legs[-1].cut_mm > 0:  # stands still where it should go on
+                self.rest(number, "wait", 0.0)
             return 0
         if relative or is_radian or mvtime:
             self.run.acts.append(f"line {number}: a move of another kind")

@@ -214,9 +214,7 @@ class Painted:
         except Error as error:
             raise Error(str(error), where=self.notes.label(node), code=error.code) from None
         self.dashes_left -= len(pieces)
-        self.notes.add(
-            node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed"
-        )
+        self.notes.add(node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed")
         return tuple(pieces)
 
     def _path_scale(self, node, context: Context, subpaths, mm_per_user: float) -> float:

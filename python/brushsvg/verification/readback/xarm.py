@@ -11,7 +11,9 @@ from . import Readback
 from .script import N, Script, place, read_script
 
 _FIXED = "|".join(
-    re.escape(line) for line in dict.fromkeys((BEFORE + FUNCTIONS + AFTER).splitlines()) if line
+    re.escape(line).replace("\\[0,", "\\[-?0,")
+    for line in dict.fromkeys((BEFORE + FUNCTIONS + AFTER).splitlines())
+    if line
 )
 _LINES = tuple(
     (kind, re.compile(pattern))
