@@ -60,11 +60,13 @@ struct WayRound {
     std::size_t leaves, joins;
 };
 
-/// None where a mark does not come back along the side.
-std::optional<WayRound> way_round(const Ring& widest, std::size_t begin, std::size_t end,
+/// None where a mark is not set down heading back, or does not come back along the side.
+std::optional<WayRound> way_round(const PassMarks& marks, const Ring& widest, std::size_t begin, std::size_t end,
                                   const SquaredBeginning& squared) {
     constexpr double kThere = 0.25;
     if (begin == end) return {};
+    const double heading = marks.heading_rad[Index(begin)];
+    if (squared.along.dot(Eigen::Vector2d(std::cos(heading), std::sin(heading))) > 0.0) return {};
     const std::size_t aside = nearest_row(widest, begin, end, squared.aside_mm);
     const Eigen::Vector2d on = squared.joins_mm - squared.aside_mm;
     const Eigen::Vector2d off = squared.aside_mm - squared.start_mm, along = squared.along;
@@ -120,7 +122,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
             last = point;
         });
     };
-    if (const auto round = beginning ? way_round(widest, begin, end, *beginning) : std::nullopt) {
+    if (const auto round = beginning ? way_round(marks, widest, begin, end, *beginning) : std::nullopt) {
         Surroundings surroundings{beginning->start_mm, beginning->reach_mm};
         look(begin, round->leaves, nearest);
         look(round->leaves, round->joins, surroundings);
