@@ -1,4 +1,4 @@
-"""Draws docs/ends.png: how strokes begin, exposed and hidden, and below how they end, lifted and squared.
+"""Draws docs/ends.png: how strokes begin, exposed, hidden and squared, and below how they end, lifted and squared.
 
 Grey is painted and wanted, red wanted and not painted, blue painted and not wanted; the tool's path on the paper is
 green. Needs nothing but the package.
@@ -19,6 +19,13 @@ SIZE_MM = (26.0, 13.0)
 AT_MM = (7.5, 6.5)  # of the ends that are looked at, from the lower left of a cell
 COLOURS = {"both": (0xB8, 0xB4, 0xB0), "wanted": (0x3C, 0x46, 0xD0), "painted": (0xD0, 0x80, 0x40)}  # BGR
 PATH = (0x50, 0x90, 0x30)
+ROWS = (
+    ("start", "exposed"),
+    ("start", "hidden"),
+    ("start", "squared"),
+    ("end", "lifted"),
+    ("end", "squared"),
+)
 
 
 def bar(half_mm: float, slant: float = 0.0) -> np.ndarray:
@@ -65,8 +72,7 @@ def cell(stroke, brush, **how: str) -> np.ndarray:
 def main() -> None:
     brush = find_brush("round-6")
     rows = [
-        np.hstack([cell(each, brush, **{name: how}) for each in strokes(name == "end")])
-        for name, how in (("start", "exposed"), ("start", "hidden"), ("end", "lifted"), ("end", "squared"))
+        np.hstack([cell(each, brush, **{name: how}) for each in strokes(name == "end")]) for name, how in ROWS
     ]
     small = cv2.resize(np.vstack(rows), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "ends.png"), small)

@@ -40,6 +40,11 @@ Pass beginning_of(const Pass& pass, double length_mm) {
     return out;
 }
 
+double way_of(const Pass& pass) {
+    const Index n = pass.poses_mm.rows();
+    return (pass.poses_mm.bottomRows(n - 1) - pass.poses_mm.topRows(n - 1)).rowwise().norm().sum();
+}
+
 /// The surroundings of an end, what is wanted there, and how marks compare with it.
 class View {
  public:
@@ -101,6 +106,20 @@ Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush
     const bool is_better =
         dot ? view.is_better(hidden, exposed) : view.is_better(beginning_of(hidden, made), beginning_of(exposed, made));
     return is_better ? Beginning::hidden : Beginning::exposed;
+}
+
+bool begins_better(const Stroke& wanted, const Stroke& squared, const Stroke& stroke, const Brush& brush,
+                   Beginning start, double step_tolerance) {
+    const Line line(stroke, brush);
+    bool turns = false;
+    Pass plain, other;
+    closed_form(stroke, brush, line, start, step_tolerance, turns).into(plain);
+    closed_form(squared, brush, Line(squared, brush), Beginning::exposed, step_tolerance, turns).into(other);
+    const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth),
+                 made = kMade * half + 4.0 * brush.lag(depth);
+    const View view(wanted, line.at(0.0).middle, half, greatest_half_mm(stroke, half), brush);
+    // both up to the same place: from there on they are the same
+    return view.is_better(beginning_of(other, made + way_of(other) - way_of(plain)), beginning_of(plain, made));
 }
 
 Ending best_ending(const Stroke& wanted, const Stroke& lifted, const Stroke& squared, const Brush& brush,

@@ -16,6 +16,7 @@
 #include "dot.hpp"
 #include "middle_line.hpp"
 #include "refuse_unusable.hpp"
+#include "squared_beginning.hpp"
 #include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
@@ -133,7 +134,7 @@ bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& str
 Beginning beginning_named(const std::string& name, const std::string& where) {
     for (const auto& [known, value] : kBeginnings)
         if (name == known) return value;
-    throw Error("choice-unknown", "a stroke's start is exposed, hidden or auto, not \"" + name + "\"", where);
+    throw Error("choice-unknown", "a stroke's start is exposed, hidden, squared or auto, not \"" + name + "\"", where);
 }
 
 Ending ending_named(const std::string& name, const std::string& where) {
@@ -143,6 +144,33 @@ Ending ending_named(const std::string& name, const std::string& where) {
 }
 
 namespace {
+
+/// How a stroke begins in closed form, and what is led along.
+struct Begun {
+    Stroke stroke, whole;              ///< with the way of a squared beginning; and up to its end
+    Beginning start;                   ///< of that line: all of a squared beginning's way is in it
+    std::optional<Beginning> instead;  ///< what `auto` takes where this one misses the line
+};
+
+/// A squared beginning where that is asked for and can be, or is chosen: else hidden; else exposed.
+Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                     double step_tolerance) {
+    const Beginning asked = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
+    const bool choose = asked == Beginning::automatic;
+    Begun plain{stroke, up_to_its_end(stroke, brush), asked, {}};
+    if (choose)
+        plain.start = best_beginning(stroke, plain.whole, brush, Line(plain.whole, brush), step_tolerance);
+    else if (asked == Beginning::squared)
+        plain.start = Beginning::hidden;
+    if (choose && plain.start == Beginning::hidden) plain.instead = Beginning::exposed;
+    if (asked != Beginning::squared && !(choose && !stroke.wanted_mm.empty())) return plain;  // round caps, as fronts
+    const std::optional<SquaredBeginning> squared = squared_beginning(stroke, brush);
+    if (!squared || dot_of(stroke, brush)) return plain;
+    Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}};
+    if (choose) begun.instead = plain.start;
+    if (choose && !begins_better(stroke, begun.whole, plain.whole, brush, plain.start, step_tolerance)) return plain;
+    return begun;
+}
 
 /// The stroke with its end squared, where that is asked for and can be, or chosen.
 std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Stroke& lifted, const Brush& brush,
@@ -185,10 +213,8 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
-    Stroke whole = up_to_its_end(stroke, brush);
-    Beginning start = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
-    const bool choose = start == Beginning::automatic;
-    if (choose) start = best_beginning(stroke, whole, brush, Line(whole, brush), step_tolerance);
+    const Begun begun = begun_as_asked(stroke, brush, options, step_tolerance);
+    const Beginning start = begun.start;
     if (const std::optional<Dot> dot = dot_of(stroke, brush); dot && start == Beginning::hidden) {
         const auto [least, greatest] = std::minmax(dot->from_depth_mm, dot->to_depth_mm);
         warn({least, greatest}, stroke.id, brush, result.warnings);
@@ -197,8 +223,9 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         return result;
     }
     warn(depths, stroke.id, brush, result.warnings);
-    const std::optional<Stroke> squared = squared_where_asked(stroke, whole, brush, options, start, step_tolerance);
-    if (squared) whole = *squared;
+    const std::optional<Stroke> squared =
+        squared_where_asked(begun.stroke, begun.whole, brush, options, start, step_tolerance);
+    const Stroke& whole = squared ? *squared : begun.whole;
     const Line whole_line(whole, brush);
     // the plan is simulated before it is handed over; finer steps as long as they help
     if (options.few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
@@ -231,12 +258,12 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     if (options.few_poses)
         thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
     result.miss.has_turn_in_place = turns;
-    if (choose && start == Beginning::hidden && !result.miss.within_tolerance) {
+    if (begun.instead && !result.miss.within_tolerance) {
         Stroke plain = stroke;
         plain.settings.start.reset();
-        CompensateOptions pointed = options;
-        pointed.start = Beginning::exposed;
-        CompensatedPass other = at_its_tolerance(plain, brush, pointed);
+        CompensateOptions instead = options;
+        instead.start = *begun.instead;
+        CompensatedPass other = at_its_tolerance(plain, brush, instead);
         other.pass.settings = stroke.settings;
         if (other.miss.largest_mm < result.miss.largest_mm) return other;
     }

@@ -19,28 +19,8 @@ constexpr int kHalvings = 30;  // of a few mm: to rounding
 /// Of the front of a footprint, what is wide enough to hide a pointed rear.
 constexpr double kHidingShare = 0.8;
 constexpr double kWithinReach = 0.999;
-constexpr double kStraightBack = 0.5;  // cosine
 /// Steps of the depth and of the way in which the mark is narrowed for that, as shares of the whole.
 constexpr double kNarrowingDepths = 1.0 / 64.0, kNarrowingWay = 1.0 / 12.0;
-
-/// Whether the pointed rear of a footprint that is set down heading back along the line stays inside the stroke: each
-/// place on its axis is nearer to the line than it is to the edge, there where the rear is so narrow. And whether the
-/// way back goes round no corner: P would be dragged past it.
-bool lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm) {
-    constexpr int n = 6;
-    const Sample widest = line.at(widest_mm);
-    const Vector2d along = line.tangent(widest);
-    const double rear = brush.tip_to_widest(widest.depth);
-    if (along.dot(line.tangent(line.at(0.0))) < kStraightBack) return false;
-    for (int i = 1; i <= n; ++i) {
-        const double t = double(i) / n, s = widest_mm + t * rear;
-        const double half = half_width_at(stroke, std::min(1.0, s / line.length()));
-        const Vector2d on_line = s <= line.length() ? line.at(s).middle : line.at(line.length()).middle;
-        if ((widest.middle + t * rear * along - on_line).norm() > half - (1.0 - t) * brush.half_width(widest.depth))
-            return false;
-    }
-    return true;
-}
 
 /// Arc length from which on the rear of a footprint as wide as the stroke lies behind `from_mm`, and the stroke
 /// narrowed up to there so that narrower ones do too. None where no depth does.
@@ -86,7 +66,7 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
     // as far back as it goes on from with all its width, or what there is room for; less leaves a waist
     const double way_mm = std::max(2.0 * e, onward->first - turn_mm);
     double from_mm = turn_mm + way_mm;
-    for (int tries = 0; from_mm > last_mm || !lies_inside(stroke, brush, line, std::max(from_mm, 0.0)); ++tries) {
+    for (int tries = 0; from_mm > last_mm || !rear_lies_inside(stroke, brush, line, std::max(from_mm, 0.0)); ++tries) {
         if (tries == kShorter) return {};
         from_mm -= way_mm / kShorter;
     }

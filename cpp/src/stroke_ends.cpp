@@ -14,6 +14,8 @@ using Eigen::Vector2d;
 /// What a front may stay short of the drawn end, as a share of its half width: less is not seen and costs a pose.
 constexpr double kShortOfEnd = 0.05;
 
+constexpr double kStraightBack = 0.5;  // cosine
+
 }  // namespace
 
 double beyond_the_end(const Brush& brush, double depth, double half_width_mm) {
@@ -68,6 +70,22 @@ Stroke up_to_its_end(const Stroke& stroke, const Brush& brush) {
         out.middle_mm.row(last).segment<2>(2 * i) = end.middle + i / 3.0 * beyond_mm * line.tangent(end);
     for (WidthKnot& knot : out.half_width) knot.at *= length_mm / (length_mm + beyond_mm);
     return out;
+}
+
+bool rear_lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm) {
+    constexpr int n = 6;
+    const Sample widest = line.at(widest_mm);
+    const Vector2d along = line.tangent(widest);
+    const double rear = brush.tip_to_widest(widest.depth);
+    if (along.dot(line.tangent(line.at(0.0))) < kStraightBack) return false;
+    for (int i = 1; i <= n; ++i) {
+        const double t = double(i) / n, s = widest_mm + t * rear;
+        const double half = half_width_at(stroke, std::min(1.0, s / line.length()));
+        const Vector2d on_line = s <= line.length() ? line.at(s).middle : line.at(line.length()).middle;
+        if ((widest.middle + t * rear * along - on_line).norm() > half - (1.0 - t) * brush.half_width(widest.depth))
+            return false;
+    }
+    return true;
 }
 
 }  // namespace brushsvg

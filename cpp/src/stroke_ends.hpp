@@ -4,6 +4,7 @@
 
 #include "brushsvg/brush.hpp"
 #include "brushsvg/stroke.hpp"
+#include "middle_line.hpp"
 
 namespace brushsvg {
 
@@ -19,5 +20,10 @@ std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, 
 /// The stroke up to where the front of the footprint reaches the drawn end, half a width beyond the path's: a blunt one
 /// has to go beyond that itself.
 Stroke up_to_its_end(const Stroke& stroke, const Brush& brush);
+
+/// Whether the pointed rear of a footprint that is set down heading back along the line stays inside the stroke: each
+/// place on its axis is nearer to the line than it is to the edge, there where the rear is so narrow. And whether the
+/// way back goes round no corner: P would be dragged past it.
+bool rear_lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm);
 
 }  // namespace brushsvg

@@ -7,6 +7,7 @@
 #include "brushsvg/simulate.hpp"
 #include "dot.hpp"
 #include "nearest_on_polyline.hpp"
+#include "squared_beginning.hpp"
 #include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "tolerance.hpp"
@@ -21,7 +22,8 @@ constexpr double kLookEveryMm = 0.1;
 
 namespace {
 
-/// Where the way of a squared end lies: there the mark is judged and not its middle, which swings in corners.
+/// Where the way of a squared beginning or end lies: there the mark is judged and not its middle, which swings in
+/// corners.
 struct Surroundings {
     Eigen::Vector2d middle_mm;
     double radius_mm;
@@ -42,6 +44,41 @@ bool ends_squared(const PassMarks& marks, const Ring& widest, const SquaredEnd& 
     return (last - there).norm() < kThere * (last - squared.end_mm).norm();
 }
 
+/// The row that comes nearest to a place.
+std::size_t nearest_row(const Ring& rows, std::size_t begin, std::size_t end, const Eigen::Vector2d& place_mm) {
+    Index nearest = 0;
+    if (begin == end) return end;
+    (rows.middleRows(Index(begin), Index(end - begin)).rowwise() - place_mm.transpose())
+        .rowwise()
+        .squaredNorm()
+        .minCoeff(&nearest);
+    return begin + std::size_t(nearest);
+}
+
+/// Rows of a squared beginning: where it leaves the path on its way back, and where it is on it again.
+struct WayRound {
+    std::size_t leaves, joins;
+};
+
+/// None where a mark is not set down heading back, or does not come back along the side.
+std::optional<WayRound> way_round(const PassMarks& marks, const Ring& widest, std::size_t begin, std::size_t end,
+                                  const SquaredBeginning& squared) {
+    constexpr double kThere = 0.25;
+    if (begin == end) return {};
+    const double heading = marks.heading_rad[Index(begin)];
+    if (squared.along.dot(Eigen::Vector2d(std::cos(heading), std::sin(heading))) > 0.0) return {};
+    const std::size_t aside = nearest_row(widest, begin, end, squared.aside_mm);
+    const Eigen::Vector2d on = squared.joins_mm - squared.aside_mm;
+    const Eigen::Vector2d off = squared.aside_mm - squared.start_mm, along = squared.along;
+    const double off_line_mm = std::abs(along.x() * off.y() - along.y() * off.x());
+    if ((widest.row(Index(aside)).transpose() - squared.aside_mm).norm() > kThere * off_line_mm) return {};
+    std::size_t last = aside + 1;  // a stroke may come by again
+    for (double way = 0.0; last < end && way < 2.0 * on.norm(); ++last)
+        way += (widest.row(Index(last)) - widest.row(Index(last) - 1)).norm();
+    return WayRound{nearest_row(widest, begin, aside, squared.leaves_mm),
+                    nearest_row(widest, aside, last, squared.joins_mm)};
+}
+
 /// The last row that comes as near to a place as any.
 std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const Eigen::Vector2d& place_mm) {
     constexpr double kHair = 0.01;
@@ -54,6 +91,7 @@ std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const 
 }
 
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
+                                const std::optional<SquaredBeginning>& beginning = {},
                                 const std::optional<SquaredEnd>& squared = {}) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     // on its way back to a hidden beginning a blunt front goes beyond the path's
@@ -84,7 +122,14 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
             last = point;
         });
     };
+    if (const auto round = beginning ? way_round(marks, widest, begin, end, *beginning) : std::nullopt) {
+        Surroundings surroundings{beginning->start_mm, beginning->reach_mm};
+        look(begin, round->leaves, nearest);
+        look(round->leaves, round->joins, surroundings);
+        begin = round->joins;
+    }
     for (const TurnOver& turn : turns_over(marks)) {
+        if (turn.first < begin) continue;
         look(begin, turn.first, before_turn);
         begin = turn.last;
     }
@@ -108,11 +153,14 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
     const Ring widest = is_dot(marks) ? marks.contact_mm : widest_points(marks, brush);
     // a blunt front goes beyond the path's end
-    const TrackingError miss = tracking_error_of(marks, widest, up_to_its_end(stroke, brush), tolerance_mm);
+    const Stroke whole = up_to_its_end(stroke, brush);
+    const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm);
     if (miss.within_tolerance) return miss;
-    const std::optional<SquaredEnd> squared = squared_end(stroke, brush);
-    if (!squared || !ends_squared(marks, widest, *squared)) return miss;
-    return tracking_error_of(marks, widest, stroke, tolerance_mm, squared);
+    const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush);
+    std::optional<SquaredEnd> end = squared_end(stroke, brush);
+    if (end && !ends_squared(marks, widest, *end)) end.reset();
+    if (!beginning && !end) return miss;
+    return tracking_error_of(marks, widest, end ? stroke : whole, tolerance_mm, beginning, end);
 }
 
 }  // namespace brushsvg

@@ -53,6 +53,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         ("--brush=default", {"brush": None}, "brush: nothing, and brushsvg takes round-6 (before: mine)"),
         ("--compensation=none", {"compensation": "none"}, "compensation: none (before: nothing)"),
         ("--start=hidden", {"start": "hidden"}, "beginnings: hidden (before: nothing)"),
+        ("--start=squared", {"start": "squared"}, "beginnings: squared (before: nothing)"),
         ("--end=squared", {"end": "squared"}, "ends: squared (before: nothing)"),
         (
             "--cell=default",

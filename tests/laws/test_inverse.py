@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 core = pytest.importorskip("brushsvg._core")
 Error = pytest.importorskip("brushsvg").Error
 find_brush = pytest.importorskip("brushsvg.brush.library").find_brush
+with_chords = pytest.importorskip("brushsvg.machine.arc_chords").with_chords
 
 ROUND = find_brush("round-6")
 LAG = oracle.Law(*LAGS["round"])
@@ -652,7 +653,7 @@ def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
     assert (refused.value.where, refused.value.code) == ("s", "choice-unknown")
 
 
-# Ends ---------------------------------------------------------------------------------------------
+# Ends, and beginnings that are cut ----------------------------------------------------------------
 
 
 def cut_bar(half_width, slope):
@@ -691,6 +692,75 @@ def test_a_squared_end_is_as_straight_as_its_cut(half_width, slope):
     np.testing.assert_array_equal(end_of_bar(half_width, slope, end="auto")[2], there)
 
 
+def mirrored(outline):
+    return [(60.0 - x, y) for x, y in outline]
+
+
+def begun_bar(half_width, slope):
+    """A bar that begins at 20 mm where it is cut, and runs on to the right."""
+    start, *_, end = mirrored(cut_bar(half_width, slope))
+    return [(80.0, start[1]), *mirrored(cut_bar(half_width, slope))[1:3], (80.0, end[1])]
+
+
+def plan_of_bar(half_width, slope, **options):
+    """A bar of which the beginning is cut, and its plan; one touch, and no deeper than its line asks for."""
+    stroke = stroke_of(line((20, 20), (80, 20)), [(0.0, half_width)])
+    stroke.wanted_mm = [np.array(begun_bar(half_width, slope))]
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
+    poses = np.asarray(found.plan.passes[0].poses_mm)
+    assert found.misses[0].within_tolerance
+    assert core.miss_of(found.plan.passes[0], stroke, ROUND).largest_mm == found.misses[0].largest_mm
+    assert poses[0, 2] == poses[-1, 2] == 0.0
+    assert (poses[1:-1, 2] < 0.0).all()
+    assert -poses[:, 2].min() < ROUND.depth_for_half_width(half_width) + 1e-9
+    return poses
+
+
+def beginning_of_bar(half_width, slope, poses):
+    """Overlap of mark and bar in its beginning, up to where all of the stroke's width has begun, and the greatest
+    distance of paint beyond the bar there."""
+    import shapely
+
+    wanted = shapely.Polygon(begun_bar(half_width, slope))
+    near = shapely.box(0, 0, 20 + 3 * half_width, 40)
+    here, meant = painted_region(poses, 10) & near, wanted & near
+    beyond = shapely.hausdorff_distance(here | meant, meant)
+    return (here & meant).area / (here | meant).area, beyond
+
+
+@pytest.mark.parametrize(
+    ("half_width", "slope"), [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3), (4.2, 0.0)]
+)
+def test_a_squared_beginning_is_as_straight_as_its_cut(half_width, slope):
+    plans = {start: plan_of_bar(half_width, slope, start=start) for start in ("hidden", "squared", "auto")}
+    hidden, _ = beginning_of_bar(half_width, slope, plans["hidden"])
+    squared, beyond = beginning_of_bar(half_width, slope, plans["squared"])
+    assert hidden < 0.97 - 0.05 * abs(slope)
+    assert squared > 0.975 - 0.015 * abs(slope)
+    assert beyond < 0.05 + 0.1 * half_width
+    np.testing.assert_array_equal(plans["auto"], plans["squared"])
+
+
+def test_a_stroke_is_squared_where_it_begins_and_where_it_ends():
+    import shapely
+
+    middle = np.array([(20.0, 20.0, 35.0, 20.0, 45.0, 20.0, 60.0, 28.0)])
+    points = oracle.bezier(middle[0], np.linspace(0, 1, 200))
+    flat = shapely.LineString(points).buffer(2.0, cap_style="square")
+    stroke = stroke_of(middle, [(0.0, 2.0)])
+    stroke.wanted_mm = [np.array(flat.exterior.coords)[:-1]]
+    plain = core.compensate([stroke], ROUND, (200.0, 200.0), start="hidden", end="lifted")
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="auto", end="auto")
+    assert found.misses[0].within_tolerance
+
+    def overlap(plan):
+        mark = painted_region(with_chords(plan.passes[0]).poses_mm)
+        return (mark & flat).area / (mark | flat).area
+
+    assert overlap(plain.plan) < 0.975
+    assert overlap(found.plan) > 0.985
+
+
 ROUND_CAP = [
     (20, 18),
     *((60 + 2 * np.sin(t), 20 - 2 * np.cos(t)) for t in np.linspace(0, np.pi, 40)),
@@ -716,6 +786,47 @@ def test_what_is_no_cut_is_lifted(half_width, wanted):
     stroke.wanted_mm = [np.array(wanted, float)]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("lifted", "squared")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
+
+
+@pytest.mark.parametrize(
+    ("half_width", "wanted"),
+    [
+        (2.0, mirrored(ROUND_CAP)),
+        (
+            0.5,
+            [(19.5, 19.5), (60, 19.5), (60, 20.5), (19.5, 20.5)],
+        ),  # finer than what can be led into a corner
+        (2.0, [(22, 18), (60, 18), (60, 22), (22, 22), (18, 20)]),  # pointed
+        (2.0, [(10, 18), (60, 18), (60, 22), (10, 22)]),  # goes on in another stroke
+    ],
+)
+def test_what_begins_with_no_cut_is_hidden(half_width, wanted):
+    stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
+    stroke.wanted_mm = [np.array(wanted, float)]
+    plans = [
+        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("hidden", "squared")
+    ]
+    np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
+
+
+@pytest.mark.parametrize("middle", [line((20, 20), (28, 20)), line((20, 20), (25, 20), (25, 50))])
+def test_a_beginning_without_room_for_the_way_back_is_hidden(middle):
+    """Too short for the tip that is set down inside, or it would come out beside a corner."""
+    hidden = poses_of(middle, [(0.0, 3.0)], start="hidden")
+    np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="squared"), hidden)
+
+
+def test_round_caps_are_not_squared_where_beginnings_are_chosen():
+    middle, half_width = line((20, 20), (60, 20)), [(0.0, 2.0)]
+    hidden = poses_of(middle, half_width, start="hidden")
+    np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), hidden)
+    squared = poses_of(middle, half_width, start="squared")
+    assert len(squared) > len(hidden)
+    said = core.Stroke(
+        id="s", middle_mm=middle, half_width=half_width, settings=core.Settings(start="squared")
+    )
+    plan = core.compensate([said], ROUND, (200.0, 200.0), start="exposed").plan
+    np.testing.assert_array_equal(plan.passes[0].poses_mm, squared)
 
 
 def test_round_caps_are_lifted_where_ends_are_chosen():

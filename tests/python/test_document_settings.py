@@ -75,6 +75,22 @@ BAR = (
 )
 
 
+def test_a_cut_beginning_is_squared_where_it_is_chosen_and_where_it_is_said(desk, capsys):
+    def poses(*flags):
+        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
+
+    (desk / "s.svg").write_text(BAR)
+    hidden, squared = poses("--start", "hidden"), poses("--start", "squared")
+    assert all(len(squared[name]) > len(hidden[name]) for name in "ab")
+    assert poses() == squared  # what suits a straight cut
+    (desk / "s.svg").write_text(BAR.replace('id="a"', 'id="a" data-brushsvg-start="squared"'))
+    assert poses("--start", "hidden") == {"a": squared["a"], "b": hidden["b"]}
+    assert main(["convert", "s.svg", "s.ngc", "--start", "squared"]) == 0
+    assert ", start squared)" in (desk / "s.ngc").read_text()
+    assert main(["check", "s.ngc", "s.svg"]) == 0
+
+
 def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
     def poses(text, *flags):
         (desk / "s.svg").write_text(text)

@@ -336,6 +336,29 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     assert status == 1 and "own" in told[-1], "who asks for a hidden beginning is told"
 
 
+BARS = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+    '<path id="edge" d="M95.5 12h4v30h-4z"/><path id="amid" d="M50 12h4v30h-4z"/></svg>'
+)
+
+
+def test_a_cut_beginning_that_the_cell_cannot_square_is_hidden_or_exposed(tmp_path, capsys):
+    cell = find_cell()
+    cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=3.0))
+    (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
+    (tmp_path / "a.svg").write_text(BARS, encoding="utf-8")
+    words = ("--cell", str(tmp_path / "tight.toml"))
+
+    def passes(*more):
+        plan = tmp_path / "a.json"
+        assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--end", "lifted", *more)[0] == 0
+        return [one.poses_mm for one in _core.read_plan(plan.read_text(encoding="utf-8")).passes]
+
+    chosen, squared, hidden = passes(*words), passes("--start", "squared"), passes("--start", "hidden")
+    assert np.array_equal(chosen[1], squared[1]), "amid the sheet it begins squared, as it suits it"
+    assert np.array_equal(chosen[0], hidden[0]) and not np.array_equal(hidden[0], squared[0])
+
+
 def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed(tmp_path, capsys):
     """Beside a cap of 7.6 mm the front of a footprint shows by 0.3 mm: beyond the edge, the drawing was refused."""
     drawn = (

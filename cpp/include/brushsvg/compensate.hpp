@@ -25,10 +25,14 @@ enum class Beginning {
     exposed,  ///< pointed, as a footprint is behind
     hidden,   ///< set down inside of the stroke, back to its beginning, turned over: round, as a footprint is in front
               ///< (a dot: turned round on the spot)
-    automatic,  ///< hidden where the mark lies better on the wanted one there for it, by more than can hardly be seen
+    squared,  ///< on its way back a narrower mark goes into one corner, along the cut into the other, and turns there
+    automatic,  ///< hidden, or squared, where the mark lies better on the wanted one there for it, by more than can
+                ///< hardly be seen
 };
-inline constexpr std::array<std::pair<std::string_view, Beginning>, 3> kBeginnings{
-    {{"exposed", Beginning::exposed}, {"hidden", Beginning::hidden}, {"auto", Beginning::automatic}}};
+inline constexpr std::array<std::pair<std::string_view, Beginning>, 4> kBeginnings{{{"exposed", Beginning::exposed},
+                                                                                    {"hidden", Beginning::hidden},
+                                                                                    {"squared", Beginning::squared},
+                                                                                    {"auto", Beginning::automatic}}};
 /// Error for another word.
 Beginning beginning_named(const std::string& name, const std::string& where);
 
@@ -49,7 +53,7 @@ struct CompensateOptions {
     std::optional<double> lag_mm;          ///< constant only; default the lag at the stroke's median depth
     double speed_mm_s = 20.0;              ///< capped by the brush's own limit
     bool few_poses = true;                 ///< closed only: no more than the tolerance asks for, see thin_out.hpp
-    Beginning start = Beginning::exposed;  ///< closed only; where one cannot be hidden inside the stroke it is exposed
+    Beginning start = Beginning::exposed;  ///< closed only; where there is no cut or room it is hidden, else exposed
     Ending end = Ending::lifted;           ///< closed only; where there is no cut, or no room, it is lifted
 };
 

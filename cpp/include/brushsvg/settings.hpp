@@ -16,7 +16,7 @@ struct Settings {
     std::optional<bool> reload;
     std::optional<bool> skip;
     std::optional<double> speed_mm_s;
-    std::optional<std::string> start;  ///< of the stroke: exposed, hidden, auto
+    std::optional<std::string> start;  ///< of the stroke: exposed, hidden, squared, auto
     std::optional<double> width_mm;
     std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
 };

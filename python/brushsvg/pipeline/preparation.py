@@ -42,7 +42,7 @@ class Options:
     lag_mm: float | None = None
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
-    start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "auto"
+    start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "squared", "auto"
     end: str = "auto"  # the same: "lifted", "squared", "auto"
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
@@ -173,8 +173,9 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
 
 def _begun_within_reach(painted: list, brush, plan, compensated, options: Options) -> list:
     """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
-    or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its round
-    front may be wider than what is wanted; at a squared end the tool runs aside. The list itself where there are none.
+    or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
+    round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
+    where there are none.
     """
 
     def astray(of) -> set[str]:
@@ -186,7 +187,8 @@ def _begun_within_reach(painted: list, brush, plan, compensated, options: Option
     choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
     left = {stroke.id for stroke in choosing} & astray(plan) if choosing else set()
     found = {}
-    for plain in ({"end": "lifted"}, {"end": "lifted", "start": "exposed"}):
+    lifted = {"end": "lifted"}
+    for plain in (lifted, {"start": "hidden"}, {**lifted, "start": "hidden"}, {**lifted, "start": "exposed"}):
         tried = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
         fits = tried.keys() - astray(compensated(list(tried.values())).plan) if tried else set()
         found |= {name: tried[name] for name in fits}

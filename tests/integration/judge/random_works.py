@@ -241,7 +241,7 @@ def random_flags(random, dialect: str) -> tuple[str, ...]:
         how = random.choice(("none", "constant", "refined"), p=chances)
         flags += ("--compensation", str(how))
     if random.random() < 0.3:
-        flags += ("--start", str(random.choice(("exposed", "hidden"))))
+        flags += ("--start", str(random.choice(("exposed", "hidden", "squared"))))
     if random.random() < 0.3:
         flags += ("--corners", "turn")
     if random.random() < 0.2:

@@ -102,8 +102,9 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     )
     add(
         "--start",
-        choices=("exposed", "hidden", "auto"),
-        help="of strokes: pointed, round (set down inside, moved back, turned over), or what suits each; default: auto",
+        choices=("exposed", "hidden", "squared", "auto"),
+        help="of strokes: pointed, round (set down inside, moved back, turned over), drawn along the cut from corner "
+        "to corner, or what suits each; default: auto",
     )
     add(
         "--end",

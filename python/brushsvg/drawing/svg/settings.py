@@ -107,7 +107,7 @@ _KNOWN = {
     "reload": ("reload", _yes),
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
-    "start": ("start", _one_of("exposed", "hidden", "auto")),
+    "start": ("start", _one_of("exposed", "hidden", "squared", "auto")),
     "end": ("end", _one_of("lifted", "squared", "auto")),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
