@@ -99,6 +99,8 @@ def calibrate_marks(
     if edge_mm > 0:
         moved = _moved_by_edges(fit, painted.marks, options, edge_mm)
         covariance += np.outer(moved, moved)
+        wetter = _wetter_where_wider(fit.laws, deepest, edge_mm, len(covariance))
+        covariance += np.outer(wetter, wetter)
     brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
     count = f"{len(painted.marks)} painted marks"
@@ -149,6 +151,18 @@ def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float
     other = _core.fit_marks(wider, fit.laws, options)
     options.round_tail, options.widest_per_half = False, usual
     return _all_fitted(other) - _all_fitted(fit)
+
+
+def _wetter_where_wider(laws, deepest_mm: float, edge_mm: float, count: int) -> np.ndarray:
+    """The same where edges lie the farther out the wider a mark is, by edge_mm at the greatest depth: more paint runs
+    farther. The fit would take edges that all lie as far out for a paper that lies higher; these are wider marks."""
+    half = np.array(laws.half_width)
+    first = len(laws.lag) + len(laws.tip_gap) - 1
+    moved = np.zeros(count)
+    moved[first : first + len(half) - 1] = (
+        half[1:] * edge_mm / np.polynomial.polynomial.polyval(deepest_mm, half)
+    )
+    return moved
 
 
 def _all_fitted(fit) -> np.ndarray:
