@@ -461,7 +461,7 @@ def chords(poses, arcs, step=0.02):
 def subdivide(poses, parts, step=np.inf):
     """The same pass (n, 3) with every move cut into at least `parts` equal parts no longer than `step` mm."""
     poses = np.asarray(poses, float)
-    length = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+    length = np.linalg.norm(np.diff(poses, axis=0), axis=1)
     cuts = [np.arange(n) / n for n in np.maximum(parts, np.ceil(length / step).astype(int))]
     at = np.concatenate([k + c for k, c in enumerate(cuts)] + [[len(poses) - 1.0]])
     return np.stack([np.interp(at, np.arange(len(poses)), poses[:, k]) for k in range(3)], axis=1)

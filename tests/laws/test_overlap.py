@@ -15,7 +15,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 STEP_MM = (
     0.04  # a lift begins where the patch is about to slip: twice as much lets it, by 0.006 of a dot's overlap
 )
-PARTS = 45  # of a move at least: pressing in place has no length
+PARTS = 6  # of a move at least: where it turns, the patch is not let go by one step
 OUTLINE_EVERY = 6  # a hull of neighbours 0.24 mm apart leaves 1e-3 mm out on the tightest bends
 
 
