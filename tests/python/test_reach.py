@@ -88,7 +88,7 @@ def overlap(strokes, shape, brush) -> float:
 @pytest.mark.parametrize(
     ("d", "is_filled"),
     [
-        *((f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10) for wide_mm in (8.2, 8.6, 9.0, 10.4, 12.0, 24.0)),
+        *((f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10) for wide_mm in (8.2, 8.6, 9.0, 10.8, 12.0, 24.0)),
         ("M44.8 30a5.2 5.2 0 1 0 10.4 0a5.2 5.2 0 1 0 -10.4 0Z", True),
     ],
 )
