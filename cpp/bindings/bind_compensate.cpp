@@ -117,8 +117,8 @@ point of the mark may be off the middle line once the brush is taut, between pos
 miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
 the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
 asks for. start: closed and refined, how strokes begin that do not say it themselves: "exposed", pointed; "hidden",
-round, set down inside the stroke, back to its beginning and turned over; "squared", straight, a narrower mark goes into one corner on its way back, along
-the cut into the other and turns there; "auto", what suits the drawn beginning better.
+round, set down inside the stroke, back to its beginning and turned over; "squared", straight, a narrower mark goes into
+one corner on its way back, along the cut into the other and turns there; "auto", what suits the drawn beginning better.
 end: the same of ends: "lifted", as the footprint is in front; "squared", a narrower mark goes on into one corner, along
 the cut and back into the other; "auto", what suits the drawn end better.
 

@@ -10,11 +10,12 @@ namespace brushsvg {
 Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush& brush, const Line& line,
                          double step_tolerance);
 
-/// Whether that differs still more than a squared one.
+/// Whether a squared one makes the mark begin still better, by more than can hardly be seen. start: how the stroke
+/// begins without it; squared: the stroke with its way.
 bool begins_better(const Stroke& wanted, const Stroke& squared, const Stroke& stroke, const Brush& brush,
                    Beginning start, double step_tolerance);
 
-/// The same of an end: of the stroke as far as the brush goes, and of that with a squared end.
+/// What `auto` takes of ends: of that of the stroke as far as the brush goes, and of that with a squared end.
 Ending best_ending(const Stroke& wanted, const Stroke& lifted, const Stroke& squared, const Brush& brush,
                    Beginning start, double step_tolerance);
 

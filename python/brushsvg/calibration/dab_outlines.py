@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import Error, Notice
 from ..geometry.polylines import lengths
 from ..geometry.rings import signed_area
+from ..geometry.rotation import rotation
 
 STEP_MM = 0.05
 VERTICES = 96  # of an outline; more cost time in every sweep
@@ -156,12 +157,6 @@ def _refuse_open(depths: list[float], dabs: list[Dab], remarks: list[Notice]) ->
         )
 
 
-def _rotation(angle: float) -> np.ndarray:
-    """Of rows of points, against the clock."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, s], [-s, c]])
-
-
 def _outer(dab: Dab) -> np.ndarray:
     return max(dab.rings_mm, key=signed_area)
 
@@ -190,7 +185,7 @@ class _Sheet:
     middle_mm: np.ndarray
 
     def undone(self, points: np.ndarray) -> np.ndarray:
-        return (points - self.shift_mm - self.middle_mm) @ _rotation(-self.turn_rad) + self.middle_mm
+        return (points - self.shift_mm - self.middle_mm) @ rotation(-self.turn_rad) + self.middle_mm
 
 
 def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
@@ -208,7 +203,7 @@ def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
         columns[:, :, 2] = np.column_stack([-away[:, 1], away[:, 0]])
         for row, dab in zip(columns, dabs, strict=True):
             at = 3 + 2 * depths.index(dab.depth_mm)
-            row[:, at : at + 2] = _rotation(dab.heading_rad).T
+            row[:, at : at + 2] = rotation(dab.heading_rad).T
         columns, wanted = columns.reshape(2 * len(dabs), -1), (found - place).ravel()
         answer = np.linalg.lstsq(columns, wanted, rcond=None)[0]
         off = np.hypot(*(wanted - columns @ answer).reshape(-1, 2).T)
@@ -224,7 +219,7 @@ def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
 
 def _seen_from_patch(dab: Dab, sheet: _Sheet) -> Seen:
     ring = sheet.undone(_close(_outer(dab)))
-    return Seen(dab, (ring - dab.place_mm) @ _rotation(-dab.heading_rad), np.zeros(2))
+    return Seen(dab, (ring - dab.place_mm) @ rotation(-dab.heading_rad), np.zeros(2))
 
 
 def _across(seen: list[Seen]) -> tuple[Callable[[float], float], float]:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from .. import _core
 from ..brush import footprint_shapes
@@ -99,7 +100,7 @@ def calibrate_marks(
     if edge_mm > 0:
         moved = _moved_by_edges(fit, painted.marks, options, edge_mm)
         covariance += np.outer(moved, moved)
-        wetter = _wetter_where_wider(fit.laws, deepest, edge_mm, len(covariance))
+        wetter = _wetter_where_wider(fit, deepest, edge_mm)
         covariance += np.outer(wetter, wetter)
     brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
@@ -153,15 +154,12 @@ def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float
     return _all_fitted(other) - _all_fitted(fit)
 
 
-def _wetter_where_wider(laws, deepest_mm: float, edge_mm: float, count: int) -> np.ndarray:
+def _wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
     """The same where edges lie the farther out the wider a mark is, by edge_mm at the greatest depth: more paint runs
     farther. The fit would take edges that all lie as far out for a paper that lies higher; these are wider marks."""
-    half = np.array(laws.half_width)
-    first = len(laws.lag) + len(laws.tip_gap) - 1
-    moved = np.zeros(count)
-    moved[first : first + len(half) - 1] = (
-        half[1:] * edge_mm / np.polynomial.polynomial.polyval(deepest_mm, half)
-    )
+    half = np.array(fit.laws.half_width)
+    moved, end = np.zeros(len(fit.covariance)), height_at(fit) - 2  # the shape's two stand in between
+    moved[end - len(half) + 1 : end] = half[1:] * edge_mm / polyval(deepest_mm, half)
     return moved
 
 

@@ -11,6 +11,7 @@ from ..brush.confidence import law_band
 from ..brush.describe import LAWS, polynomial
 from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from ..errors import Notice
+from ..geometry.rotation import rotation
 from . import machine_found
 from .from_marks import LAG_TERMS, TELLS, height_at
 from .stray_marks import OUTLYING
@@ -280,18 +281,15 @@ def report_picture(made, suffix: str) -> bytes:
 def _home(made, rings, displacement) -> list[np.ndarray]:
     """Rings of the sheet in the frame of the plan, as the fit found the one to lie on the other."""
     fit = made.fit
-    c, s = math.cos(fit.turn_rad), math.sin(fit.turn_rad)
-    centre = np.array(fit.centre_mm)
-    back = np.array([[c, -s], [s, c]])
+    centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
 
 
 def on_sheet(made, rings) -> list[np.ndarray]:
     """Rings in the frame of the plan where they lie on the sheet that was painted."""
     fit = made.fit
-    c, s = math.cos(fit.turn_rad), math.sin(fit.turn_rad)
-    centre = np.array(fit.centre_mm)
-    return [(ring - centre) @ np.array([[c, s], [-s, c]]) + centre + fit.shift_mm for ring in rings]
+    centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
+    return [(ring - centre) @ turned + centre + fit.shift_mm for ring in rings]
 
 
 def deepest_mm(mark) -> float:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ..errors import Notice
+from ..geometry.rotation import rotation
 from .comparison import Compared, Comparison
 from .corrections import MOST_DEG, MOST_MM, Correction
 
@@ -45,9 +46,7 @@ def _next(row: Compared, found: Comparison, start_mm, before: Correction | None)
     middle = np.array([row.middle_mm])
     sheet = found.common
     beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
-    c, s = math.cos(sheet.turn_rad), math.sin(sheet.turn_rad)
-    x, y = beyond[0]
-    off = SHARE * np.array([c * x + s * y, c * y - s * x])  # in the sheet's own directions
+    off = SHARE * (beyond @ rotation(-sheet.turn_rad))[0]  # in the sheet's own directions
     turn_deg = SHARE * math.degrees(row.placed.turn_rad - sheet.turn_rad)
     shift = np.array(before.shift_mm) - off if before else -off
     return Correction(

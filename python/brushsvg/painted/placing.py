@@ -12,6 +12,7 @@ from shapely.ops import unary_union
 
 from .. import _core
 from ..geometry.rings import signed_area
+from ..geometry.rotation import rotation
 
 BLURS_MM = (1.2, 0.5, 0.2)  # coarse to fine: a mark is found from as far as the first is wide
 ROUNDS = 6
@@ -32,8 +33,7 @@ class Placed:
 
     def moved(self, points_mm: np.ndarray, middle_mm: np.ndarray) -> np.ndarray:
         """(n, 2) points of the prediction, where they lie in truth."""
-        c, s = np.cos(self.turn_rad), np.sin(self.turn_rad)
-        return (points_mm - middle_mm) @ np.array([[c, s], [-s, c]]) + middle_mm + self.shift_mm
+        return (points_mm - middle_mm) @ rotation(self.turn_rad) + middle_mm + self.shift_mm
 
 
 NOWHERE = Placed((0.0, 0.0), 0.0, 0.0, False)

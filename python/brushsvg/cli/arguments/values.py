@@ -70,14 +70,10 @@ def count(text: str) -> int:
 
 
 def share(text: str) -> float:
-    from ...units import number
-
-    try:
-        value = number(text)
-    except Error:
-        value = -1.0
+    outside = f"{text[:24]!r} is outside the range [0, 1]"
+    value = _number(text, outside)
     if not 0.0 <= value <= 1.0:
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} is outside the range [0, 1]")
+        raise argparse.ArgumentTypeError(outside)
     return value
 
 
@@ -95,26 +91,15 @@ def width(text: str) -> float:
 
 
 def scale(text: str) -> float:
-    from ...units import number
-
-    try:
-        value = number(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
-    except Error:
-        raise argparse.ArgumentTypeError(
-            f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
-        ) from None
+    or_else = f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
+    value = _number(text.removesuffix("%"), or_else) / (100 if text.endswith("%") else 1)
     if not 1e-4 <= value <= 1e4:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.0001, 10000]")
     return value
 
 
 def speed(text: str) -> float:
-    from ...units import number
-
-    try:
-        value = number(text)
-    except Error:
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a factor; write for example 5") from None
+    value = _number(text, f"{text[:24]!r} is not a factor; write for example 5")
     if not 0.1 <= value <= 1000:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.1, 1000]")
     return value
@@ -124,14 +109,7 @@ LEAST_DPI, MOST_DPI = 102.0, 20000.0  # the former are 4 pixels per mm
 
 
 def resolution(text: str) -> float:
-    from ...units import number
-
-    try:
-        value = number(text)
-    except Error:
-        raise argparse.ArgumentTypeError(
-            f"{text[:24]!r} is not a number of dots per inch; write for example 600"
-        ) from None
+    value = _number(text, f"{text[:24]!r} is not a number of dots per inch; write for example 600")
     if not LEAST_DPI <= value <= MOST_DPI:
         sentence = f"{value:g} dpi is outside the range [{LEAST_DPI:g}, {MOST_DPI:g}] dpi"
         raise argparse.ArgumentTypeError(f"{sentence} in which a scan can be measured")
@@ -160,6 +138,15 @@ def point3(text: str) -> tuple[float, float, float]:
     if not max(abs(x), abs(y), abs(z)) <= 1e5:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e5 mm")
     return x, y, z
+
+
+def _number(text: str, or_else: str) -> float:
+    from ...units import number
+
+    try:
+        return number(text)
+    except Error:
+        raise argparse.ArgumentTypeError(or_else) from None
 
 
 def _length(text: str, least: float, greatest: float) -> float:
