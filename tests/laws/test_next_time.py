@@ -110,7 +110,6 @@ def test_each_round_comes_nearer(tmp_path, capsys, seed):
     plan_3 = studio.plan("--corrections", second)
     after_two = apart(studio.painted(plan_3), wanted)
     means = [np.mean([*each.values()]) for each in (before, after_one, after_two)]
-    print(means, before, after_two)
     assert means[1] < 0.4 * means[0] and means[2] < 0.2 * means[0], means
     assert all(after_two[name] < before[name] for name in before)
 
@@ -136,6 +135,19 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
     assert in_json(capsys, "check", tmp_path / "b.ngc", drawing, "--corrections", found)[0] == 1
 
 
+def test_corrections_are_taken_back_once(tmp_path, capsys):
+    """A corrected plan does not say where its strokes should be painted: again, they would go twice as far."""
+    studio = Studio(tmp_path, 6)
+    found = studio.compared(studio.photographed(studio.plan()))
+    photo = studio.photographed(studio.plan("--corrections", found))  # leaves plan.json
+    plan = tmp_path / "plan.json"
+    for words in (("convert", plan, tmp_path / "a.ngc", "--corrections", found), ("compare", photo, plan)):
+        status, _, told = in_json(capsys, *words)
+        assert status == 1 and is_told(told, "corrections-twice"), told
+    assert in_json(capsys, "convert", plan, tmp_path / "a.ngc")[0] == 0
+    assert main(["check", str(tmp_path / "a.ngc"), "--corrections", str(found)]) == 2  # of which drawing?
+
+
 @pytest.mark.parametrize(
     ("change", "code"),
     [
@@ -143,13 +155,15 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
         (lambda row: row.update(turn_deg="2"), "not-a-number"),
         (lambda row: row.pop("middle_mm"), "wrong-type"),
         (lambda row: row.update(start_mm=[1.0]), "wrong-type"),
+        (lambda row: None, "stroke-twice"),
     ],
 )
 def test_damaged_corrections_are_refused(tmp_path, capsys, change, code):
     studio = Studio(tmp_path, 4)
     row = {"start_mm": [0.0, 0.0], "middle_mm": [1.0, 1.0], "shift_mm": [0.1, 0.2], "turn_deg": 0.1}
     change(row)
-    made = {"format": "brushsvg/comparison", "version": 1, "strokes": [{"stroke": "bow", "correction": row}]}
+    rows = [{"stroke": "bow", "correction": row}] * (2 if code == "stroke-twice" else 1)
+    made = {"format": "brushsvg/comparison", "version": 1, "strokes": rows}
     (tmp_path / "c.json").write_text(json.dumps(made))
     words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
     status, _, told = in_json(capsys, *words)

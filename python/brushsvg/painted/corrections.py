@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from dataclasses import dataclass
@@ -11,9 +12,11 @@ import numpy as np
 from .. import _core, json_fields
 from ..errors import Error
 from ..files import read_bytes
+from ..geometry.rotation import rotation
 from ..machine.pass_way import on_way
 
 FORMAT = "brushsvg/comparison"
+MARK = "corrections"  # of a plan that was corrected: the key, with how many strokes were
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
 START_MM = 0.1  # where the same stroke begins
 
@@ -31,12 +34,15 @@ class Correction:
 
     def moved(self, points_mm: np.ndarray) -> np.ndarray:
         """(n, 2) places on the sheet, led elsewhere."""
-        c, s = math.cos(math.radians(self.turn_deg)), math.sin(math.radians(self.turn_deg))
-        return (points_mm - self.middle_mm) @ np.array([[c, s], [-s, c]]) + self.middle_mm + self.shift_mm
+        turned = (points_mm - self.middle_mm) @ rotation(math.radians(self.turn_deg))
+        return turned + self.middle_mm + self.shift_mm
 
 
 def corrected(plan, corrections: tuple[Correction, ...]):
-    """The plan with its strokes led elsewhere. Error for corrections of another job."""
+    """The plan with its strokes led elsewhere, which it says. Error for corrections of another job."""
+    if not corrections:
+        return plan
+    refuse_corrected(plan)
     left = {each.stroke: each for each in corrections}
     passes = []
     for a_pass in plan.passes:
@@ -44,7 +50,15 @@ def corrected(plan, corrections: tuple[Correction, ...]):
         passes.append(_led(a_pass, correction) if correction else a_pass)
     if left:
         raise _of_another_job(next(iter(left)), "there is no such stroke")
-    return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, plan.extra)
+    extra = json.dumps(json.loads(plan.extra or "{}") | {MARK: len(corrections)})
+    return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, extra)
+
+
+def refuse_corrected(plan) -> None:
+    """Error for a plan whose strokes were led elsewhere: it does not say where they should be painted."""
+    if MARK in json.loads(plan.extra or "{}"):
+        sentence = "its strokes were led elsewhere by corrections: give the drawing, or the plan without them"
+        raise Error(sentence, MARK, code="corrections-twice")
 
 
 def _led(a_pass, correction: Correction):
@@ -72,12 +86,13 @@ def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
     """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
     damaged, or when it holds no corrections."""
     try:
-        rows = json_fields.objects(
-            json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes", ""
-        )
+        rows = json_fields.objects(json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes")
         found = tuple(
             _read(row, f"strokes[{k}]") for k, row in enumerate(rows) if row.get("correction") is not None
         )
+        names = [each.stroke for each in found]
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise Error(f"stroke {twice[0][:40]!r} stands twice", "strokes", code="stroke-twice")
         if not found:
             sentence = "it says of no stroke where to lead it: the photograph did not show where marks lie"
             raise Error(sentence, "strokes", code="corrections-missing")

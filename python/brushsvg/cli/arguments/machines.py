@@ -106,6 +106,8 @@ def add_check(commands) -> None:
 def _check_check(args) -> None:
     if args.input is not None:
         check_drawing(args)
+    elif args.corrections is not None:
+        args.parser.error("--corrections needs the drawing that they are of")
     read = [
         (args.program, PROGRAMS),
         (args.input, DRAWINGS),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...errors import Error
 from ...evaluation import report as figures
 from ...files import read_bytes
-from ...painted.corrections import corrected
+from ...painted.corrections import corrected, refuse_corrected
 from ...pipeline import prediction
 from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import corrections_of, settled, typed
@@ -25,6 +25,7 @@ def compare_files(args) -> None:
     before = corrections_of(args.corrections)
     warn(args.input, work.notices)
     with about(args.input):
+        refuse_corrected(work.plan)
         marks = prediction.predict(work, True, stage)
         page = job_page(corrected(work.plan, before), work.title)
         wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
