@@ -93,7 +93,7 @@ Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush
                          double step_tolerance) {
     const double last_mm = painted_stretch(stroke, brush, line.length())[1];
     const std::optional<Dot> dot = dot_of(wanted, brush);
-    if (!dot && !hidden_beginning(stroke, brush, line, Inverse(line, brush), last_mm, step_tolerance))
+    if (!dot && !hidden_beginning(stroke, brush, line, InverseLag(line, brush), last_mm, step_tolerance))
         return Beginning::exposed;
     bool turns = false;
     Pass exposed, hidden;

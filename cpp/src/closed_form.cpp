@@ -5,7 +5,7 @@
 
 #include "brushsvg/lag_arc.hpp"
 #include "hidden_beginning.hpp"
-#include "inverse.hpp"
+#include "inverse_lag.hpp"
 #include "landing.hpp"
 #include "stroke_ends.hpp"
 
@@ -61,7 +61,7 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
 PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
                      bool& turns) {
     auto [s0, s1] = painted_stretch(stroke, brush, line.length());
-    const Inverse inverse(line, brush);
+    const InverseLag inverse(line, brush);
     std::optional<HiddenBeginning> hidden;
     if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
     std::optional<Vector2d> first;

@@ -49,7 +49,7 @@ std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Br
 }  // namespace
 
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
-                                                const Inverse& inverse, double last_mm, double step_tolerance) {
+                                                const InverseLag& inverse, double last_mm, double step_tolerance) {
     if (stroke.closed || brush.is_rigid() || !(line.length() > 0.0)) return {};
     const auto lever = [&](const Stroke& of, double s) {
         return brush.lever_to_widest(depth_of(of, brush, std::clamp(s / line.length(), 0.0, 1.0)));

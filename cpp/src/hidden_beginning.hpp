@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "inverse.hpp"
+#include "inverse_lag.hpp"
 
 namespace brushsvg {
 
@@ -18,6 +18,6 @@ struct HiddenBeginning {
 
 /// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
-                                                const Inverse& inverse, double last_mm, double step_tolerance);
+                                                const InverseLag& inverse, double last_mm, double step_tolerance);
 
 }  // namespace brushsvg

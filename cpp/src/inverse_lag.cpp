@@ -1,4 +1,4 @@
-#include "inverse.hpp"
+#include "inverse_lag.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace brushsvg {
 
 using Eigen::Vector2d;
 
-Inverse::Inverse(const Line& line, const Brush& brush) : line_(line), brush_(brush) {
+InverseLag::InverseLag(const Line& line, const Brush& brush) : line_(line), brush_(brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     const auto e = difference(brush.tip_to_widest, brush.tip_gap, lo, hi);
     ahead_ = make_law(e);
@@ -18,7 +18,7 @@ Inverse::Inverse(const Line& line, const Brush& brush) : line_(line), brush_(bru
             if (root > lo && root < hi) crossings_.push_back(root);
 }
 
-void Inverse::operator()(Samples& samples, const std::optional<Vector2d>& first) const {
+void InverseLag::operator()(Samples& samples, const std::optional<Vector2d>& first) const {
     std::size_t begin = 0;
     while (begin + 1 < samples.size()) {
         const int sign = sign_of(samples, begin);
@@ -39,48 +39,48 @@ void Inverse::operator()(Samples& samples, const std::optional<Vector2d>& first)
     for (Sample& sample : samples) sample.tcp = sample.contact + brush_.lag(sample.depth) * sample.heading;
 }
 
-int Inverse::sign_of(const Samples& samples, std::size_t i) const {
+int InverseLag::sign_of(const Samples& samples, std::size_t i) const {
     if (ahead_.rigid) return 0;
     const double e = brush_.lever_to_widest(0.5 * (samples[i].depth + samples[i + 1].depth));
     return e > 0.0 ? 1 : e < 0.0 ? -1 : 0;
 }
 
-void Inverse::follow_tangent(Samples& samples, std::size_t begin, std::size_t end) const {
+void InverseLag::follow_tangent(Samples& samples, std::size_t begin, std::size_t end) const {
     for (std::size_t i = begin; i <= end; ++i) {
         samples[i].heading = line_.tangent(samples[i]);
         samples[i].contact = samples[i].middle;
     }
 }
 
-void Inverse::forwards(Samples& samples, std::size_t begin, std::size_t end, const Vector2d& heading) const {
+void InverseLag::forwards(Samples& samples, std::size_t begin, std::size_t end, const Vector2d& heading) const {
     LagState<double> state;
     state.heading = heading;
     start(samples, begin, ahead_, 1.0, state);
     for (std::size_t i = begin + 1; i <= end; ++i) step(samples, i - 1, i, ahead_, 1.0, state);
 }
 
-void Inverse::backwards(Samples& samples, std::size_t begin, std::size_t end) const {
+void InverseLag::backwards(Samples& samples, std::size_t begin, std::size_t end) const {
     LagState<double> state;
     state.heading = -line_.tangent(samples[end]);
     start(samples, end, behind_, -1.0, state);
     for (std::size_t i = end; i > begin; --i) step(samples, i, i - 1, behind_, -1.0, state);
 }
 
-void Inverse::start(Samples& samples, std::size_t i, const LagLaw<double>& law, double sign,
-                    LagState<double>& state) const {
+void InverseLag::start(Samples& samples, std::size_t i, const LagLaw<double>& law, double sign,
+                       LagState<double>& state) const {
     state.taut = state.heading_known = true;
     state.contact = samples[i].middle - std::max(0.0, law.at(samples[i].depth)) * state.heading;
     store(samples[i], sign, state);
 }
 
-void Inverse::step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,
-                   LagState<double>& state) const {
+void InverseLag::step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,
+                      LagState<double>& state) const {
     checkpoint();
     advance(law, Move<double>(samples[from].middle, samples[to].middle, samples[from].depth, samples[to].depth), state);
     store(samples[to], sign, state);
 }
 
-void Inverse::store(Sample& sample, double sign, const LagState<double>& state) {
+void InverseLag::store(Sample& sample, double sign, const LagState<double>& state) {
     sample.contact = state.contact;
     sample.heading = sign * state.heading;
     sample.taut = state.taut;

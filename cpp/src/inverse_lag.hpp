@@ -10,9 +10,9 @@
 namespace brushsvg {
 
 /// q = m + (r - e) u with P dragged by m on the lever e (article's law read backwards).
-class Inverse {
+class InverseLag {
  public:
-    Inverse(const Line& line, const Brush& brush);
+    InverseLag(const Line& line, const Brush& brush);
     /// Depths where the widest section stands over the centre of friction.
     const std::vector<double>& crossings() const { return crossings_; }
 
