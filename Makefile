@@ -124,7 +124,7 @@ integration: setup
 	$(call install,nodejs npm)
 	fi
 	$(BIN)/pip install -q -r tests/integration/requirements.txt
-	$(BIN)/python -m pytest -rs tests/integration
+	$(PYTEST) -rs tests/integration
 
 bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev

@@ -1,5 +1,6 @@
 """Other people's material from npm, fetched once and kept in pytest's cache."""
 
+import fcntl
 import json
 import shutil
 import subprocess
@@ -19,9 +20,14 @@ def fetched(folder: Path, packages: dict[str, str]) -> Path:
     for tool in ("node", "npm"):
         if not shutil.which(tool):
             raise UnavailableError(f"{tool} is missing: apt-get install --no-install-recommends nodejs npm")
-    missing = [name for name, version in packages.items() if not _has(modules, name, version)]
-    if not missing:
-        return modules
+    with (folder / "lock").open("w") as lock:  # tests run side by side
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not all(_has(modules, *each) for each in packages.items()):
+            _install(folder, packages)
+    return modules
+
+
+def _install(folder: Path, packages: dict[str, str]) -> None:
     options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
     # all of them: what is left out, npm removes
     wanted = [f"{name}@{version}" for name, version in packages.items()]
@@ -29,10 +35,9 @@ def fetched(folder: Path, packages: dict[str, str]) -> Path:
     try:
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LIMIT_S)
     except subprocess.TimeoutExpired:
-        raise UnavailableError(f"npm did not fetch {' '.join(missing)} within {LIMIT_S} s") from None
-    if done.returncode or not all(_has(modules, *each) for each in packages.items()):
-        raise UnavailableError(f"npm could not fetch {' '.join(missing)}: {done.stderr[-200:]}")
-    return modules
+        raise UnavailableError(f"npm did not fetch {' '.join(packages)} within {LIMIT_S} s") from None
+    if done.returncode or not all(_has(folder / "node_modules", *each) for each in packages.items()):
+        raise UnavailableError(f"npm could not fetch {' '.join(packages)}: {done.stderr[-200:]}")
 
 
 def _has(modules: Path, name: str, version: str) -> bool:
