@@ -18,7 +18,7 @@ help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make quick        what is tested in a minute, for every save: all but slow tests, the laws and C++"
-	@echo "make integration  longer tests: LinuxCNC's interpreter, Inkscape, Chromium, real lettering (installs them)"
+	@echo "make integration  longer tests: brushes fitted to painted sheets; LinuxCNC, Inkscape, Chromium, real lettering (installs them)"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
@@ -111,7 +111,7 @@ asan: test-system
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 
 python-test: $(VENV)/.dev
-	@$(PYTEST)
+	@$(PYTEST) -m 'not long'
 
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
@@ -124,6 +124,7 @@ integration: setup
 	$(call install,nodejs npm)
 	fi
 	$(BIN)/pip install -q -r tests/integration/requirements.txt
+	$(PYTEST) -m long tests/laws
 	$(PYTEST) -rs tests/integration
 
 bench: setup

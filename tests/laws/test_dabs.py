@@ -29,6 +29,8 @@ from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 from brushsvg.pipeline.preparation import Options, prepare  # noqa: E402
 
+pytestmark = pytest.mark.long
+
 WORD = Path(__file__).parents[2] / "examples" / "vincent.svg"
 A5 = (148.0, 210.0)
 DEEPEST = 8.0

@@ -20,6 +20,8 @@ from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.scan.place_by_strokes import _along_ways
 
+pytestmark = pytest.mark.long
+
 A5 = (148.0, 210.0)
 TRUTH = painter.TrueBrush(
     10.0, np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005]), 1.6, 0.9

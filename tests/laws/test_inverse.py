@@ -526,7 +526,7 @@ def painted_region(poses, per_pose=40, from_x=-np.inf):
             continue
         shape = oracle.footprint_at(dragged, [], depth, pull)
         outlines.append(oracle.placed(shape, contact, heading, 0.52 * depth))
-    return oracle.swept(outlines, True)
+    return oracle.swept(outlines, True, oracle.united)
 
 
 def beginning(middle, half_width, start):

@@ -18,6 +18,8 @@ from brushsvg.calibration.from_marks import calibrate_marks  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.mark_report import report  # noqa: E402
 
+pytestmark = pytest.mark.long
+
 LEAN, SCALE, SKEW, TILT = (0.3, -0.2), (1.012, 0.993), 0.01, (0.006, -0.004)
 
 

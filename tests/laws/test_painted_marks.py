@@ -20,6 +20,8 @@ from brushsvg.calibration.from_marks import _refuse_undetermined, brush_of, cali
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.mark_report import report  # noqa: E402
 
+pytestmark = pytest.mark.long
+
 DEPTHS = np.linspace(0.2, 1.0, 5)
 SWEPT: dict[tuple, list] = {}
 

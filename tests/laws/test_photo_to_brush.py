@@ -24,6 +24,8 @@ from brushsvg.calibration.from_marks import _refuse_many  # noqa: E402
 from brushsvg.calibration.stray_marks import strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 
+pytestmark = pytest.mark.long
+
 TRUTH = painter.TrueBrush(
     10.0, np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005]), 1.6, 0.9
 )
