@@ -114,6 +114,7 @@ def test_a_larger_sheet_has_more_strokes():
     assert counts == sorted(set(counts))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strokes", [None, "few", "normal", "many"])
 def test_a_sheet_that_is_too_small_is_told_what_would_do(strokes):
     brush = find_brush("round-6")
@@ -130,6 +131,7 @@ def all_but_the_first_slow(names):
     return [*names[:1], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", all_but_the_first_slow([name for name in cell_names() if find_cell(name).language in POSTS])
 )
@@ -193,6 +195,7 @@ def test_the_bar_keeps_clear_and_is_as_long_as_it_says(sheet):
         assert bar.distance(shapely.box(*stroke.box_mm)) > 1, stroke.id
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sheet", [A5, (420.0, 594.0)])
 def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
     matplotlib = pytest.importorskip("matplotlib")
@@ -210,6 +213,7 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
     assert np.hypot(*(points - bar.at_mm - [bar.length_mm, 1.1]).T).min() < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["chart plan.json --sheet a5", "convert a.svg plan.json"])
 def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
     """It was told as a mistake of ours."""

@@ -49,6 +49,7 @@ def off_circles(found, points):
     return np.min([np.abs(spoke - radius) for spoke, radius in pairs], axis=0, initial=np.inf)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_what_was_planned_comes_back(desk, name):
     work = preparation.prepare("two.svg")
@@ -142,6 +143,7 @@ def test_what_is_not_ours_is_refused(desk, name):
             ran(edit(text), cell, work)
 
 
+@pytest.mark.slow
 def test_the_command_compares_with_the_drawing(desk, capsys):
     assert call(capsys, "convert", "two.svg", "two.ngc", "--z-offset", "0.4")[0] == 0
     status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--preview", "two.png")
@@ -401,6 +403,7 @@ HEADER = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("old", "new", "said"), HEADER)
 def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
     assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
@@ -570,6 +573,7 @@ HARMLESS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 @pytest.mark.parametrize("name", HARMLESS)
 def test_what_a_machine_does_in_the_same_way_is_no_change(desk, capsys, name, drawing):
@@ -680,6 +684,7 @@ NAMES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
     """Comments of URScript and JAKA script lost blanks at their ends: check refused what convert had written."""
@@ -933,6 +938,7 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_told(
         assert status == 1 and any(agrees(each, said) for _, each in told), (old, told)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
     """Alone, too: a time may only be shorter where feeds were lowered since."""
@@ -956,6 +962,7 @@ def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name
     assert (status, err) == (0, []), "slower since"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 @pytest.mark.parametrize(
     ("old", "new", "count"),
@@ -987,6 +994,7 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
     assert all(found[2] != found[3] for found in told if found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_told(desk, capsys, drawing):
     """In laser mode grbl switches the output off wherever no G1 holds; lines of modes alone were taken for idle."""

@@ -157,6 +157,7 @@ def test_animate_writes_one_page(desk, capsys, source):
     assert '"speed":5.0' in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", ["a.svg", "plan.json"])
 def test_predict_draws_and_report_prints(desk, capsys, source):
     for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<svg"), (".json", b"{")):
@@ -321,6 +322,7 @@ def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
     assert not any("--lenient" in line for line in run(capsys, "convert", "x.svg", "out.ngc")[2])
 
 
+@pytest.mark.slow
 def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
     (desk / "x.svg").write_text(drawing(LINE, BAD))
     assert run(capsys, "convert", "x.svg", "out.ngc")[0] == 1
@@ -479,6 +481,7 @@ def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
         assert listing(desk) == before
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 @pytest.mark.parametrize("full", ["out.ngc", "p.png", "r.txt"])
 def test_several_outputs_are_written_all_or_none(desk, capsys, full):
@@ -581,6 +584,7 @@ def test_the_package_runs_as_a_module(desk):
     assert re.fullmatch(rb"brushsvg \d+\.\d+\.\d+\n", done.stdout)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", ["report a.svg", "brush list", "brush show rigid", "--version", "--help", "convert --help"]
 )
@@ -663,6 +667,7 @@ def test_a_reader_who_leaves_early_is_no_error(desk):
     assert (done.returncode, done.stderr) == (0, b"")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 def test_a_full_disk_under_stdout_is_said(desk):
     with open("/dev/full", "wb") as full:

@@ -125,6 +125,7 @@ def test_dxf_needs_its_units(desk, capsys):
     assert main(["convert", "d.dxf", "x.json", "--units", "mm", "--select", "g"]) == 2
 
 
+@pytest.mark.slow
 def test_import_draws_what_was_understood(desk, capsys):
     for drawing, words in (("d.svg", []), ("d.dxf", ["--units", "mm"])):
         for suffix, start in ((".svg", b"<svg"), (".png", b"\x89PNG")):

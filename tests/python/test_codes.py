@@ -120,6 +120,7 @@ def texts_in(node: ast.AST):
         yield from texts_in(child)
 
 
+@pytest.mark.slow
 def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
     """diagnostics.py says how: sentences may be worded anew."""
     found = {}

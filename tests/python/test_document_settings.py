@@ -169,6 +169,7 @@ def test_what_was_typed_is_never_written_over(desk, capsys):
         assert vars(args) == before
 
 
+@pytest.mark.slow
 def test_a_chart_is_for_the_brush_and_machine_of_a_drawing(desk, capsys):
     few = ("--strokes", "few")
     (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))

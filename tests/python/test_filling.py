@@ -46,6 +46,7 @@ def share_left(shape, made) -> float:
     return shape.difference(painted(made)).area / shape.area
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("d", SHAPES.values(), ids=SHAPES)
 def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     made = of(d)

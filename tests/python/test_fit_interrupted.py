@@ -65,6 +65,7 @@ def union():
     return lambda: _core.unite([ring, np.add(ring, [10.0, 0.0])])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("made", [law, fit_of_marks, fit_of_tracks, union])
 def test_ctrl_c_is_heard(made):
     call = made()

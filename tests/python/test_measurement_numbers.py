@@ -221,6 +221,7 @@ def test_a_cell_of_a_table_is_bounded_by_what_it_means(column, calibrated):
 CHART = json.loads(write_chart(chart(ROUND, (148.0, 210.0), "few")))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "path",
     [

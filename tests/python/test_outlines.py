@@ -298,6 +298,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HOSTILE)
 @pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
 def test_hostile_outlines(name, rule):

@@ -23,6 +23,7 @@ def away(points, others):
     return np.abs(points[:, None] - others[None, :]).min(axis=1).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("given", [svgpathtools.parse_path(DATA), DATA], ids=["Path", "text"])
 def test_a_path_becomes_the_stroke_that_svgpathtools_draws(given):
     stroke = brushsvg.stroke_from_path(given, 3.0, id="s")

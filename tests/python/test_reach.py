@@ -85,6 +85,7 @@ def overlap(strokes, shape, brush) -> float:
     return _core.overlap(marks.outline_mm, shape)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("d", "is_filled"),
     [

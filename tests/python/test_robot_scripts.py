@@ -195,6 +195,7 @@ def test_no_title_tells_python_how_letters_are_read(title):
     assert read_program(text, ".py", cell).sections
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_no_dangerous_program_is_allowed(name, tmp_path):
     """A sample; tests/integration has three hundred of each job."""

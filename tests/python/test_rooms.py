@@ -180,6 +180,7 @@ def files() -> dict[Path, str]:
 # The house ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_every_file_keeps_to_its_room():
     assert len(files()) > 60
     found = [sentence for path, text in files().items() for sentence in complaints(path, text)]

@@ -115,6 +115,7 @@ def to_and_fro(chance: random.Random) -> list:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", SERVO_ROWS)
 @pytest.mark.parametrize("step_mm", [0.05, 0.2, 0.5])
 def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
@@ -287,6 +288,7 @@ def drawing(chance: random.Random) -> str:
     return f'{head}<g transform="{turn}">{chance.choice(shapes)}{chance.choice(shapes)}</g></svg>'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(24))
 def test_check_allows_whatever_convert_writes(seed, tmp_path, capsys):
     chance = random.Random(seed)

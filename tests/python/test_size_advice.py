@@ -163,6 +163,7 @@ def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
     assert "width 20" in err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
     made = tmp_path / f"misses{suffix}"

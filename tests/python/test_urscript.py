@@ -104,6 +104,7 @@ def test_the_robot_goes_through_the_plans_poses(paper):
     assert max(row[2] for row in rows) <= 20.0 + 1e-9
 
 
+@pytest.mark.slow
 def test_the_marks_are_the_plans():
     brush = find_brush("round-6")
     work = preparation.prepare(EXAMPLE)
