@@ -51,9 +51,14 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     extension = POSTS[find_cell(cell).language].extensions[0]
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved{extension}"
     drawing.write_text(SOUND)
-    entry = {".script": "urscript", ".jks": "jaka", ".mod": "rapid", ".py": "xarm", ".src": "krl"}.get(
-        extension, "gcode"
-    )
+    entry = {
+        ".script": "urscript",
+        ".jks": "jaka",
+        ".mod": "rapid",
+        ".py": "xarm",
+        ".src": "krl",
+        ".lua": "dobot",
+    }.get(extension, "gcode")
     plugin.set(**{f"save.{entry}__cell": cell})
     try:
         plugin.save(drawing, saved)

@@ -114,6 +114,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".mod": ("--cell", "irb120"),
             ".py": ("--cell", "xarm6"),
             ".src": ("--cell", "kr6-r900"),
+            ".lua": ("--cell", "cr5"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -134,6 +135,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.mod",
             "made.py",
             "made.src",
+            "made.lua",
             "page.pdf",
             "page.svg",
             "seen.png",

@@ -29,6 +29,7 @@ LANGUAGES = {
     "irb120": ".mod",
     "xarm6": ".py",
     "kr6-r900": ".src",
+    "cr5": ".lua",
 }
 SHEET = (400.0, 400.0)
 
@@ -154,8 +155,9 @@ ROBOTS = {
     "irb120": lambda text: moves_on_paper(text, "  ! ", r"mm_s\(([\d.]+)\)"),
     "xarm6": xarm_moves,
     "kr6-r900": krl_moves,
+    "cr5": lambda text: moves_on_paper(text, "-- ", r"speed = (\d+)"),
 }
-ON_PAPER = ("ur5e", "irb120", "kr6-r900")  # whose points are the paper's
+ON_PAPER = ("ur5e", "irb120", "kr6-r900", "cr5")  # whose points are the paper's
 
 
 def in_paper_frame(moves, cell, name, z_offset):

@@ -16,6 +16,7 @@ LANGUAGES = {
     "irb120": ".mod",
     "xarm6": ".py",
     "kr6-r900": ".src",
+    "cr5": ".lua",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

@@ -1,5 +1,5 @@
-"""RAPID, KRL and Python for xArm: what an interpreter of the tests' own, made from the manual, does with our programs,
-and what `check` makes of them. It shares nothing with what writes and reads them."""
+"""RAPID, KRL, Lua for Dobot and Python for xArm: what an interpreter of the tests' own, made from the manual, does with
+our programs, and what `check` makes of them. It shares nothing with what writes and reads them."""
 
 import inspect
 import io
@@ -16,21 +16,25 @@ import numpy as np
 import pytest
 from diagnostics import refused
 from judge import places
+from judge.dobot import LUA
 from judge.moves import Leg, Run
 from judge.table import Figures, measure
 from judge.verdict import ROBOTS
 from judge.works import make
 from judge.xarm import XArmAPI, executed
-from programs import LANGUAGES
-from test_urscript import ARC, STROKES, text_for
+from programs import LANGUAGES, program
+from test_urscript import ARC, BRUSH, STROKES, text_for
 
+from brushsvg import _core
 from brushsvg.machine.cell import Blending, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.writer import text_of
 from brushsvg.verification.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-NAMES = {"irb120": "rapid", "xarm6": "xarm", "kr6-r900": "krl"}
-CIRCLES = {"irb120", "kr6-r900"}  # what tells them
+NAMES = {"irb120": "rapid", "xarm6": "xarm", "kr6-r900": "krl", "cr5": "dobot"}
+CIRCLES = {"irb120", "kr6-r900", "cr5"}  # what tells them
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
@@ -40,8 +44,14 @@ def on(name: str, paper: Paper):
     return replace(find_cell(name), paper=paper)
 
 
+def needs_lua(language: str) -> None:
+    if language == "dobot" and not LUA:
+        pytest.skip("lua5.4 is not installed")
+
+
 def run(text: str, cell, height_mm: float = 300.0) -> Run:
     """What a program does from a place over the robot's table."""
+    needs_lua(cell.language)
     spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
     tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
     return ROBOTS[cell.language](text, (-100.0, -400.0, height_mm), robot_from_paper(cell), spin, tool)
@@ -94,7 +104,8 @@ def test_the_brush_stands_on_the_papers_normal(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_corners_are_blended_within_reach_and_not_where_the_brush_turns_back(name):
-    cell = replace(on(name, SQUARE), blending=Blending(0.05, 2.0))
+    finest = (0.001,) if name == "cr5" else ()
+    cell = replace(on(name, SQUARE), blending=Blending(0.05, 2.0, *finest))
     legs = [leg for leg, _ in touched(sound(text_for(cell), cell), cell)]
     for leg, after in itertools.pairwise(legs):
         into, out = np.subtract(leg.end, leg.start), np.subtract(after.end, after.start)
@@ -106,6 +117,40 @@ def test_corners_are_blended_within_reach_and_not_where_the_brush_turns_back(nam
     assert max(leg.cut_mm for leg in legs) > 0.1
     cell = replace(cell, blending=Blending(0.0, 2.0))
     assert max(leg.cut_mm for leg in sound(text_for(cell), cell).legs) == 0
+
+
+def gentle(cell, speed_mm_s=12.7) -> str:
+    """A stroke with bends of a degree."""
+    poses = np.array([(10, 10, 0), (14, 10, -2), (18, 10, -2), (22, 10.1, -2), (26, 10.3, -2), (30, 10.3, 0)])
+    a_pass = _core.Pass("gentle", poses, speed_mm_s)
+    made = program(_core.Plan("b", "", (100.0, 60.0), [a_pass]), BRUSH, cell)
+    return "".join(text_of(POSTS[cell.language], made))
+
+
+def test_dobot_is_told_whole_blends_and_whole_speeds():
+    """The manual names no others. Where the cell says that finer ones are taken, they are told."""
+    cell = replace(on("cr5", SQUARE), blending=Blending(0.05, 2.0))
+    told = "MovL(on_paper(18.000, 10.000, -2.000), {speed = 12, r = 1})\n"
+    told += "MovL(on_paper(22.000, 10.100, -2.000), {speed = 12, r = 1})\n"
+    assert told in gentle(cell)
+    fine = gentle(replace(cell, blending=Blending(0.05, 2.0, 0.5)))
+    assert told.replace("r = 1", "r = 1.500") in fine
+    speeds = [
+        step.speed_mm_s for section in read_program(fine, ".lua", cell).sections for step in section.steps
+    ]
+    assert speeds == [100.0, 25.0, 10.0, *[12.0] * 5, 10.0, 100.0]
+    assert [leg.speed_mm_s for leg in sound(fine, cell).legs] == speeds
+
+
+def test_what_dobot_cannot_be_told_is_refused():
+    text = write_cell(find_cell("cr5"))
+    with refused("out-of-range [1, 5000]"):
+        parse_cell(text.replace("press_mm_s = 10.0", "press_mm_s = 0.9"))
+    with refused("speed-out-of-range [1.000000"):
+        gentle(find_cell("cr5"), 0.9)
+    fine = write_cell(find_cell("irb120")).replace("radius_mm = 2.0", "radius_mm = 2.0\nstep_mm = 0.5")
+    with refused("out-of-range blends"):
+        parse_cell(fine)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -166,6 +211,16 @@ REFUSED = [
     ("kr6-r900", "$APO.CDIS = 0.039", "$APO.CDIS = -0.039", "line-unread blend"),
     ("kr6-r900", "$APO.CDIS = 0.039\r\n", "", "line-incomplete corner"),
     ("kr6-r900", "\r\nEND\r\n", "\r\n", "program-cut-short"),
+    ("cr5", "MovL(on_paper(10.000", "MovJ(on_paper(10.000", "line-unread"),
+    ("cr5", "on_paper(10.000", "on_paper(+10.000", "line-unread"),
+    ("cr5", "180.00000, 0", "179.40000, 0", "tool-turned 0.6"),
+    ("cr5", "{speed = 20}", "{speed = 0}", "line-incomplete speed"),
+    ("cr5", "{speed = 20}", "{speed = 20.5}", "line-unread"),
+    ("cr5", "{speed = 20}", "{v = 20}", "line-unread"),
+    ("cr5", "{speed = 20}", "{speed = 20, r = -1}", "line-unread blend"),
+    ("cr5", "{speed = 20}", "{speed = 20, cp = 1}", "line-unread"),
+    ("cr5", "User(1)\nTool(1)\n", "Tool(1)\nSetTool(1, {0, 0, 0, 0, 0, 0})\nUser(1)\n", "line-unread chosen"),
+    ("cr5", "\n-- end: the brush is held up", "", "program-cut-short"),
     ("xarm6", "go(-140.000", "go(x=-140.000", "line-unread"),
     ("xarm6", "go(-140.000", " go(-140.000", "line-unread"),
     ("xarm6", "100.000, None", "0.000, None", "line-incomplete speed"),
@@ -199,6 +254,7 @@ def test_no_title_tells_python_how_letters_are_read(title):
 @pytest.mark.parametrize("name", NAMES)
 def test_no_dangerous_program_is_allowed(name, tmp_path):
     """A sample; tests/integration has three hundred of each job."""
+    needs_lua(NAMES[name])
     figures = Figures()
     for job in ("two lines", "leaning"):
         measure(make(job, NAMES[name], tmp_path / str(len(job))), 60, 5, figures)
@@ -219,6 +275,13 @@ BROKEN = [
     ("kr6-r900", "PTP $AXIS_ACT\r\n", ""),
     ("kr6-r900", ", Y 10.000,", ", Y 10.000"),
     ("kr6-r900", "$BASE = {X", "$BASE = {"),
+    ("cr5", "function ", "func "),
+    ("cr5", "MovL(on_paper(", "Movl(on_paper("),
+    ("cr5", "SetUser(1, {", "SetUser(1, {0, "),
+    ("cr5", "Tool(1)\n", "Tool(3)\n"),
+    ("cr5", "{speed = 20}", "{speed = 0}"),
+    ("cr5", "  return {pose", "  return {joint"),
+    ("cr5", "on_paper(10.000", "on_paper(+10.000"),
     ("xarm6", "def done", "def dun"),
     ("xarm6", "set_tcp_offset", "set_tool_offset"),
     ("xarm6", "done(arm.set_state(0))", "done(arm.set_state(4))"),

@@ -87,12 +87,18 @@ class Speeds:
     )
 
 
+BLEND_STEP_MM = 1.0
+
+
 @dataclass(frozen=True)
 class Blending:
     """How much of the joint of two moves the machine may cut, so as not to stand still there and bleed."""
 
     tolerance_mm: float = _number("at most so far from the joint; 0: joints are met exactly", 0, 10)
     radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
+    step_mm: float = _number(
+        "dobot: blends are told in steps of so much, rounded down", 0.001, 1, default=BLEND_STEP_MM
+    )
 
 
 @dataclass(frozen=True)
@@ -199,8 +205,11 @@ TABLES = {
     "machine": Machine,
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
-NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(("urscript", "jaka", "rapid", "xarm", "krl"), "tool")
+NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot"), "tool"
+)
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
+LEAST_SPEED_MM_S = {"dobot": 1.0}  # of MovL; all its speeds are whole multiples of it
 RELOADS = ("length", "stroke", "layer")
 
 

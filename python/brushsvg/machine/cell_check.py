@@ -9,7 +9,9 @@ import numpy as np
 
 from ..errors import Error, Notice
 from .cell import (
+    BLEND_STEP_MM,
     LEAST_ACCELERATION_MM_S2,
+    LEAST_SPEED_MM_S,
     NEEDED_BY,
     RELOADS,
     Cell,
@@ -46,12 +48,31 @@ def check(cell: Cell) -> None:
             where="speeds.acceleration_mm_s2",
             code="out-of-range",
         )
+    _check_speeds(cell)
+    if cell.blending.step_mm != BLEND_STEP_MM and cell.language != "dobot":
+        raise Error(
+            f"language {cell.language!r} has no steps of blends: they are as fine as its decimals",
+            where="blending.step_mm",
+            code="out-of-range",
+        )
     _check_paper(cell)
     _check_workspace(cell)
     if cell.servo:
         _check_servo(cell)
         _check_machine_of_servo(cell)
     _check_paint(cell)
+
+
+def _check_speeds(cell: Cell) -> None:
+    least = LEAST_SPEED_MM_S.get(cell.language, 0.0)
+    for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
+        if (speed := getattr(cell.speeds, name)) < least:
+            raise Error(
+                f"{speed:g} mm/s is outside the range [{least:g}, {entries(Speeds)[name].greatest:g}] mm/s of "
+                f"language {cell.language!r}",
+                where=f"speeds.{name}",
+                code="out-of-range",
+            )
 
 
 def _check_paper(cell: Cell) -> None:

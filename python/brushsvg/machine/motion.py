@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..geometry import polylines
-from .cell import Cell
+from .cell import LEAST_SPEED_MM_S, Cell
 from .distortion import told_high_mm
 from .frames import moved
 
@@ -112,6 +112,20 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
         centre = moved(frame, np.array([[*arc.centre_mm, 0.0]]))[0]
         arc = Arc((float(centre[0]), float(centre[1])), arc.turn)
     return replace(step, points_mm=moved(frame, step.points_mm), arc=arc)
+
+
+def at_told_speeds(section: Section, cell: Cell) -> Section:
+    """The same where a language tells whole speeds alone: no move is faster, but none slower than the least of them."""
+    unit = LEAST_SPEED_MM_S.get(cell.language)
+    if unit is None:
+        return section
+
+    def told(step: Move | Wait) -> Move | Wait:
+        if isinstance(step, Wait):
+            return step
+        return replace(step, speed_mm_s=unit * max(math.floor(step.speed_mm_s / unit + 1e-6), 1))
+
+    return Section(section.title, tuple(map(told, section.steps)))
 
 
 def via(points_mm: np.ndarray) -> np.ndarray:

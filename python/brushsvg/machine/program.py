@@ -14,7 +14,7 @@ from .cell import Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
-from .motion import Arc, Move, Program, Section, Wait, rise_over
+from .motion import Arc, Move, Program, Section, Wait, at_told_speeds, rise_over
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import told_apart
@@ -127,9 +127,9 @@ def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JO
     def sections() -> Iterator[Section]:
         for number, a_pass in left:
             stations = job.visits[number - 1] if job.visits else ()
-            yield from (visit(station, brush, cell) for station in stations)
+            yield from (at_told_speeds(visit(station, brush, cell), cell) for station in stations)
             moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
-            yield Section(f"stroke {number} of {count}: {a_pass.stroke}", moves)
+            yield at_told_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     made = cache(lambda: tuple(sections()))
     is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_AT_ONCE

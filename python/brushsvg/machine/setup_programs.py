@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..errors import Error
-from .cell import Cell, robot_from_paper
+from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper
 from .distortion import told_mm
-from .motion import Move, Program, Section, Wait, rise_over
+from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
 from .program import approach_mm_s, astray_in, over, safely_over
 from .workspace_limits import touching_mm_s
 
@@ -74,6 +74,12 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             code="height-out-of-range",
         )
     speed = min(touching_mm_s(brush, cell), SPEED_MM_S)
+    if speed < (least_mm_s := LEAST_SPEED_MM_S.get(cell.language, 0.0)):
+        raise Error(
+            f"speed {speed:.4g} mm/s of brush {brush.name} is outside the range [{least_mm_s:g}, {SPEED_MM_S:g}] mm/s "
+            f"of cell {cell.name}",
+            code="speed-out-of-range",
+        )
     press = min(speeds.press_mm_s, speed)
     steps = []
     for number, (height, (x, y)) in enumerate(zip(heights, starts, strict=True)):
@@ -130,7 +136,11 @@ def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
 def _unless_astray(sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
     frame = robot_from_paper(cell, z_offset_mm)
     rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
-    made = Program((), cell, frame, sections, *rises_mm, touching_mm_s(brush, cell))
+
+    def told() -> Iterator[Section]:
+        return (at_told_speeds(section, cell) for section in sections())
+
+    made = Program((), cell, frame, told, *rises_mm, touching_mm_s(brush, cell))
     for notice in astray_in(made, sheet_mm):
         raise Error(notice.sentence, code=notice.code)
     return made

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cell import Cell, servo_parts, servo_stands
+from .cell import LEAST_SPEED_MM_S, Cell, servo_parts, servo_stands
 from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
 
@@ -27,7 +27,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
     brush: asked for nothing but its name and how fast it may go. least_mm: pressed by less, rounding may leave nothing.
     """
     problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
-    limit = touching_mm_s(brush, cell)
+    least_mm_s, limit = LEAST_SPEED_MM_S.get(cell.language, SLOWEST_MM_S), touching_mm_s(brush, cell)
     whose = f"brush {brush.name}" if limit == brush.max_speed_mm_s else f"cell {cell.name}"
     for a_pass in passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
@@ -49,9 +49,9 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
             if cell.servo:
                 found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
-        if not SLOWEST_MM_S <= speed <= limit:
+        if not least_mm_s <= speed <= limit:
             sentence = (
-                f"speed {speed:.4g} mm/s is outside the range [{SLOWEST_MM_S:f}, {limit:.1f}] mm/s of {whose}"
+                f"speed {speed:.4g} mm/s is outside the range [{least_mm_s:f}, {limit:.1f}] mm/s of {whose}"
             )
             found.append(Notice("", sentence, code="speed-out-of-range"))
         problems += [replace(each, where=a_pass.stroke) for each in found]

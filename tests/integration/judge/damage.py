@@ -188,6 +188,37 @@ SCRIPTS = {
         says="$FLAG[1]={}",
         rates=(r"(\$VEL\.CP = )(\d+\.\d+)", r"(\$APO\.CDIS = )(\d+\.\d+)", r"(\$ACC\.CP = )(\d+\.\d+)"),
     ),
+    "dobot": Script(
+        remark="--",
+        moves=r"MovL|Arc",
+        words=(
+            *(("MovL", "MovJ"), ("Arc", "MovL"), ("MovL", "movl"), ("speed", "v"), ("speed", "Speed")),
+            *(("speed", "r"), (", r =", ", cp ="), ("}", ", r = 5}"), ("here[3]", "here[2]"), ("<", ">")),
+            *((".pose", ""), ("x, y, z", "y, x, z"), ("{speed", "{tool = 0, speed"), ("pose =", "joint =")),
+        ),
+        modes=(
+            *(("SetUser(1", "SetUser(0"), ("SetTool(1", "SetTool(2"), ("SetTool", "SetUser")),
+            *(("User(1)", "User(0)"), ("Tool(1)", "Tool(0)"), ("CP(0)", "CP(50)"), ("})", "}, 1)")),
+            *(("GetPose(1, 1)", "GetPose()"), ("GetPose(1, 1)", "GetPose(0, 1)"), ("function ", "func ")),
+        ),
+        offsets=r"^Set|here\[3\]|return",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *(
+                "Halt()",
+                "Wait(500)",
+                "DO(1, ON)",
+                "Pause()",
+                "User(0)",
+                "CP(100)",
+                "ToolDO(1, 1)",
+                "SetCollisionLevel(0)",
+            ),
+            *("SpeedFactor(100)", "MovL(on_paper(0, 0, -1), {speed = 10})", "SetPayload(1, {0, 0, 0})"),
+        ),
+        says='print("{}")',
+        rates=(r"(speed = )(\d+)", r"(r = )(\d+)", r"(Wait\()(\d+)"),
+    ),
 }
 
 
@@ -213,7 +244,7 @@ class Page:
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + (self.dialect in ("jaka", "xarm"))
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot"))
         last -= self.script.after if self.script else 0
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))

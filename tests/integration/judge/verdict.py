@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from . import places
+from .dobot import run_dobot
 from .gcode import run_gcode
 from .jaka import run_jaka
 from .krl import run_krl
@@ -33,7 +34,14 @@ SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
 MOST = 4000  # samples of one leg
 
 
-ROBOTS = {"urscript": run_urscript, "jaka": run_jaka, "rapid": run_rapid, "xarm": run_xarm, "krl": run_krl}
+ROBOTS = {
+    "urscript": run_urscript,
+    "jaka": run_jaka,
+    "rapid": run_rapid,
+    "xarm": run_xarm,
+    "krl": run_krl,
+    "dobot": run_dobot,
+}
 
 
 @dataclass

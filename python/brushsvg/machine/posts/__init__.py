@@ -73,6 +73,12 @@ def _krl(program: Program) -> Iterator[str]:
     return krl(program)
 
 
+def _dobot(program: Program) -> Iterator[str]:
+    from .dobot import dobot
+
+    return dobot(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -83,4 +89,5 @@ POSTS = {  # by the language a cell names
     "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
     "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
+    "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
 }

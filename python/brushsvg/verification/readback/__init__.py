@@ -152,7 +152,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", ";", "popup", "TPWrite", "stop(")
+            ("(", "#", "!", ";", "--", "popup", "TPWrite", "stop(", "print(")
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
@@ -200,6 +200,12 @@ def _krl(text: str, cell: Cell) -> Readback:
     return read_krl(text, cell)
 
 
+def _dobot(text: str, cell: Cell) -> Readback:
+    from .dobot import read_dobot
+
+    return read_dobot(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -209,4 +215,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "rapid": _rapid,
     "xarm": _xarm,
     "krl": _krl,
+    "dobot": _dobot,
 }

@@ -117,6 +117,6 @@ def _damaged(word: str, said: str) -> Error:
 
 def _header_of(text: str) -> dict[str, str]:
     """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
-    told = re.compile(r"\((\w+): (.*)\)| *[#!;] (\w+):(?: (.*))?")
+    told = re.compile(r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?")
     lines = (told.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     return {found[1] or found[3]: found[2] or found[4] or "" for found in lines if found}
