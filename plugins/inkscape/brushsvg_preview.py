@@ -69,7 +69,7 @@ def remove_layer(root, name: str) -> None:
 
 def _layer(etree, marks, root, warnings: list[str]):
     paths = marks.findall(f"{SVG}path")
-    missed = {path for path in paths if _is_missed(path, marks)}
+    missed = {path for path in paths if path.get("data-missed") == "yes"}
     if root.get("transform"):
         warnings = [*warnings, MOVED]
     layer = locked_layer(etree, LAYER_ID, _label(paths, len(missed), marks, len(warnings)))
@@ -97,11 +97,6 @@ def locked_layer(etree, name: str, label: str):
     return layer
 
 
-def _is_missed(path, marks) -> bool:
-    """Whether the tracking error is above the tolerance. A refined mark leaves its line on purpose."""
-    return path.get("data-missed") == "yes" and not marks.get("data-made", "").endswith(", refined")
-
-
 def _label(paths, missed: int, marks, warnings: int) -> str:
     count = len(paths)
     parts = [f"{count} stroke{'s' * (count != 1)}"]
@@ -109,7 +104,7 @@ def _label(paths, missed: int, marks, warnings: int) -> str:
     if misses_mm:
         parts.append(f"tracking error at most {max(misses_mm):.2f} mm")
     if missed:
-        parts.append(f"{missed} above the tolerance")
+        parts.append(f"{missed} painted elsewhere than drawn")
     if warnings:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}")
     return f"Brush preview: {marks.get('data-made')}: " + ", ".join(parts)

@@ -13,6 +13,7 @@ import vpype
 import vpype_cli
 
 import brushsvg
+from brushsvg.brush.confidence import unseen_mm
 
 MM_PER_PX = 25.4 / 96
 CORNER_RAD = np.radians(
@@ -96,7 +97,9 @@ def _compensated(document, brush_name, compensation, tolerance_mm, start, end, w
     for where, sentence in (*drawing.notices, *notices, *done.warnings):
         click.echo("brushsvg: " + ": ".join(filter(None, (where, sentence))), err=True)
     missed = [
-        stroke.id for stroke, miss in zip(strokes, done.misses, strict=True) if not miss.within_tolerance
+        stroke.id
+        for stroke, miss in zip(strokes, done.misses, strict=True)
+        if not miss.within_tolerance and miss.largest_mm > unseen_mm(found, found.paint_depth_mm)
     ]
     if missed and compensation == "closed":
         many = f" and {len(missed) - 1} more" if len(missed) > 1 else ""

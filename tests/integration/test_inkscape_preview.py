@@ -103,7 +103,7 @@ def test_its_layer_is_locked_named_and_replaced(plugin, tmp_path):
     assert layer.get(f"{SODIPODI}insensitive") == "true"
     label = (
         r"Brush preview: round-6, closed: 4 strokes, tracking error at most \d+\.\d\d mm, "
-        r"1 above the tolerance, 2 warnings"
+        r"1 painted elsewhere than drawn, 2 warnings"
     )
     assert re.fullmatch(label, layer.get(f"{INKSCAPE}label"))
     assert [("#d4351c" in path.get("style")) for path in layer.iter(f"{SVG}path")] == [

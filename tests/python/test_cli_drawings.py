@@ -6,10 +6,12 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from diagnostics import agrees, in_json, is_told, read
 
+import brushsvg
 from brushsvg.cli import main
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
@@ -230,14 +232,38 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 
 @pytest.mark.parametrize(("d", "is_marked"), [("M20 60C80 75 20 75 80 60", False), ("M30 60H60L40 62", True)])
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
-    """0.095 mm in place of 0.05 was red, of a brush whose lag is known to 0.58 mm."""
+    """0.095 mm in place of 0.05 was red, and told, of a brush whose lag is known to 0.58 mm."""
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
     assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
-    assert "b: tracking error " in capsys.readouterr().err
+    assert ("b: tracking error " in capsys.readouterr().err) == is_marked
     text = (desk / "x.svg").read_text()
     ((miss, marked),) = re.findall(r'data-stroke="b" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
     assert float(miss) > 0.05
     assert bool(marked) == is_marked
+
+
+def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
+    """The same 0.095 mm, of a brush whose lag nobody doubts by more than 0.01 mm."""
+    (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M20 60C80 75 20 75 80 60"))
+    text = (Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text()
+    (desk / "exact.json").write_text(text.replace('"rmse_mm": 0.58', '"rmse_mm": 0.01'))
+    assert main(["predict", "d.svg", "x.svg", "--brush", "exact.json"]) == 0
+    assert "b: tracking error " in capsys.readouterr().err
+    assert 'data-missed="yes"' in (desk / "x.svg").read_text()
+
+
+def test_a_width_is_advised_only_for_lines(desk, capsys):
+    """Outlines have no single width: --width was advised, and told to be without effect when it was taken."""
+    hair = '<path id="hair" fill="none" stroke="#000" stroke-width="0.3" d="M10 10H80"/>'
+    sliver = '<path id="sliver" d="M10 40H80V40.3H10Z"/>'
+    size = 'width="100mm" height="60mm" viewBox="0 0 100 60"'
+    (desk / "thin.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{hair}{sliver}</svg>')
+    _, told = plan(desk, capsys, drawing="thin.svg")
+    thin = {each.where: each.advice for each in told if each.code == "depth-not-measured"}
+    assert thin.keys() == {"hair", "sliver"} and thin["sliver"] == ""
+    (width,) = re.findall(r"--width MM, from ([0-9.]+) to", thin["hair"])
+    _, told = plan(desk, capsys, "--width", str(float(width) + 0.05), drawing="thin.svg")
+    assert "hair" not in {each.where for each in told if each.code == "depth-not-measured"}
 
 
 def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):

@@ -7,6 +7,7 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.trial_mark import trial_mark
 from brushsvg.strokes.wide_shapes import within_reach
 
 WIDE = "M10 10H90V26H10Z"  # 16 mm; round-6 paints 8.4
@@ -128,7 +129,33 @@ def test_the_stems_of_a_drawing_are_of_one_weight(brush):
 
 
 def test_passes_are_advised_only_where_they_paint_more(brush):
-    """8.43 mm in place of 8.4 was said to be filled by passes."""
-    for wide_mm, is_advised in ((8.43, False), (10.0, True)):
-        (notice,) = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush, "clamp")[2]
+    """A short bar of 8.9 mm was said to be painted better by passes, whose discs cover more; their mark does not."""
+    for d, is_advised in (("M10 10H28V18.9H10Z", False), ("M10 10H90V20H10Z", True)):
+        strokes = of(d)
+        (notice,) = within_reach(strokes, brush, "clamp")[2]
         assert bool(notice.advice) == is_advised
+        clamped, filled = (
+            _core.overlap(trial_mark(within_reach(strokes, brush, wide)[0], brush), strokes[0].wanted_mm)
+            for wide in ("clamp", "passes")
+        )
+        assert (filled > clamped + 0.01) == is_advised
+
+
+def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
+    """8.45 mm in place of 8.4 was told of nine strokes of a word."""
+    for wide_mm, is_told in ((8.45, False), (8.55, False), (8.7, True)):
+        painted, _, notices = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush)
+        assert bool(notices) == is_told
+        assert max(half for _, half in painted[0].half_width) <= 4.2
+    with refused("width-out-of-reach"):
+        within_reach(of("M10 10H90V18.45H10Z"), brush, "refuse")
+
+
+def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
+    """The trial of a letter with such an arm was refused and counted as nothing: all other letters were filled."""
+    arm, bar = "M10 10H90V18.45H54.8V60H44.2V18.45H10Z", "M10 70H90V80.4H10Z"
+    bare = 'fill="red" stroke="none"'
+    both = strokes(read(f'<path id="arm" d="{arm}" {bare}/><path id="bar" d="{bar}" {bare}/>'))[0]
+    _, _, notices = within_reach(both, brush)
+    told = [each.told for each in notices]
+    assert any("would overlap" in each for each in told) or not any("as others" in each for each in told)

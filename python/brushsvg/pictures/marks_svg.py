@@ -24,13 +24,13 @@ def marks_svg(
     made: str = "",
     band=None,
     blank=(),
-    seen_mm: float = 0.0,
+    astray=(),
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
     marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: where their edges lie,
-    with a legend; blank: rings of what of shapes stays blank, outlined; seen_mm: no stroke is marked for a smaller
-    tracking error, whatever the tolerance.
+    with a legend; blank: rings of what of shapes stays blank, outlined; astray: names of strokes that are marked, since
+    their paint lies elsewhere.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -44,7 +44,7 @@ def marks_svg(
         if trace.outline_mm:
             stroke = quoted(trace.stroke)
             lines.append(
-                f'<path data-stroke={stroke}{_missed(miss, seen_mm)} fill="{known_colour(colour)}" d="'
+                f'<path data-stroke={stroke}{_missed(miss, trace.stroke in astray)} fill="{known_colour(colour)}" d="'
             )
             lines += [path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
@@ -92,11 +92,10 @@ def _band(band, width: float, height: float) -> list[str]:
     return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
 
 
-def _missed(miss, seen_mm: float) -> str:
+def _missed(miss, is_astray: bool) -> str:
     if miss is None:
         return ""
-    is_missed = not miss.within_tolerance and miss.largest_mm > seen_mm
-    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * is_missed
+    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * is_astray
 
 
 def known_colour(colour: str) -> str:

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from .. import _core
-from ..brush.confidence import law_band
 from ..errors import Error
 from ..evaluation import report
 from ..evaluation.uncertainty import uncertainty
@@ -60,18 +59,12 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
             made,
             band,
             bare,
-            _seen_mm(work.brush),
+            work.astray,
         )
         return text.encode()
     from ..pictures import marks_png  # brings OpenCV, which the others do not need
 
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
-
-
-def _seen_mm(brush) -> float:
-    """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares."""
-    known = law_band(brush, "lag", np.array([brush.paint_depth_mm]))
-    return 0.0 if known is None else 0.25 * float(known[0][0])
 
 
 def overlap_picture(suffix: str, work: Work, marks) -> bytes:

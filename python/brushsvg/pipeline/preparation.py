@@ -27,6 +27,7 @@ from ..strokes.unreached import missed, unreached
 from ..strokes.unreached import notices as blank_notices
 from ..strokes.wide_shapes import within_reach
 from .json_files import read_plan
+from .paint_astray import off_middle_line, outside
 
 DEFAULT_BRUSH = "round-6"
 
@@ -77,6 +78,7 @@ class Work:
     drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
     missed: tuple = ()  # pieces that strokes reach and the mark does not
+    astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
 
 
 def prepare(
@@ -122,7 +124,7 @@ def prepare(
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _with_speeds(plan, strokes)
-    told = _widths(painted, done, brush, options.layout.width_mm is None)
+    told = _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
     notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
@@ -130,10 +132,10 @@ def prepare(
     bare = unreached(planned, painted, brush)
     notices += blank_notices(bare)
     blank = []
+    astray = _astray(painted, strokes, plan, tracking_errors, moved, brush, options)
     if options.compensation in ("closed", "refined"):
         blank = missed(planned, painted, _core.simulate(plan, brush).passes, bare, brush)
-        notices += blank_notices(blank, is_reached=True)
-        notices += _tracking_notices(painted, tracking_errors, moved, brush, options.tolerance_mm)
+        notices += blank_notices(blank, is_reached=True) + astray
     return Work(
         design.title,
         brush,
@@ -147,6 +149,7 @@ def prepare(
         drawn,
         tuple(bare),
         tuple(blank),
+        tuple(notice.where for notice in astray),
     )
 
 
@@ -235,10 +238,10 @@ def _sorted_out(painted, wanted, step):
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
-def _widths(painted, done, brush, may_advise: bool) -> list[Notice]:
+def _widths(painted, done, brush, compensated) -> list[Notice]:
     """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
-    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them."""
-    advice = "--width MM gives all strokes one width" if may_advise else ""
+    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them. compensated:
+    tries what is advised, None where one width was asked for."""
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
@@ -246,9 +249,17 @@ def _widths(painted, done, brush, may_advise: bool) -> list[Notice]:
     thin = {
         stroke.id: stroke for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)
     }
+    off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin.keys()
+    advice, lines = "", []
+    if compensated is not None and measured and measured[0] < measured[1]:
+        lines = [stroke for stroke in painted if stroke.id in off and not stroke.wanted_mm]
+        advice = _width_advice(lines[:1], brush, measured, compensated)
+    advised = {stroke.id for stroke in lines}
     is_end = [each.code == "depth-not-measured" and each.where in thin for each in done.warnings]
     told = [
-        replace(each, advice=advice) if each.code == "depth-not-measured" else each
+        replace(each, advice=advice if each.where in advised else "")
+        if each.code == "depth-not-measured"
+        else each
         for each, end in zip(done.warnings, is_end, strict=True)
         if not end
     ]
@@ -262,6 +273,22 @@ def _widths(painted, done, brush, may_advise: bool) -> list[Notice]:
         )
         told.append(Notice("", sentence, code="ends-not-measured"))
     return told
+
+
+def _width_advice(lines: list, brush, measured: tuple[float, float], compensated) -> str:
+    """Which widths keep a line within the depths that were measured; "" where the middle one of them does not."""
+    halves = [brush.half_width(depth) for depth in measured]
+    same = [stroke.replaced(half_width=[(0.0, sum(halves) / 2)]) for stroke in lines]
+    try:
+        helps = bool(same) and not any(
+            each.code == "depth-not-measured" for each in compensated(same).warnings
+        )
+    except Error:
+        helps = False
+    if not helps:
+        return ""
+    least, greatest = (2 * half for half in halves)
+    return f"--width MM, from {least:.2g} to {greatest:.2g}, gives all strokes one width that was measured"
 
 
 def _thins_out(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
@@ -300,21 +327,20 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _tracking_notices(painted, tracking_errors, moved, brush, tolerance_mm: float) -> list[Notice]:
-    """Tracking errors above their bound: moved, as refinement does on purpose, where it is beside the stroke."""
-    found = []
-    for stroke, miss, is_moved in zip(painted, tracking_errors, moved, strict=True):
-        half_mm = brush.half_width(brush.paint_depth_mm)
-        if brush.width_follows_depth():
-            half_mm = max(half for _, half in stroke.half_width)
-        if miss.largest_mm <= half_mm if is_moved else miss.within_tolerance:
-            continue
-        bound = f"half the width, {half_mm:.3g} mm" if is_moved else f"the tolerance of {tolerance_mm:g} mm"
-        place = f"x {miss.at_mm[0]:.1f}, y {miss.at_mm[1]:.1f} mm"
-        sentence = f"tracking error {miss.largest_mm:.3g} mm near {place}, above {bound}"
-        turns = ": it turns too sharply there for the brush"
-        found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place, code="off-middle-line"))
-    return found
+def _astray(painted, wanted, plan, tracking_errors, moved, brush, options: Options) -> list[Notice]:
+    """Of strokes that lie where nobody wants them. Who drew a shape drew no middle line, and refinement leaves it on
+    purpose: there the paint is judged."""
+    shapes = {stroke.origin.element for stroke in wanted if stroke.wanted_mm}
+    by_paint = [
+        is_moved or stroke.origin.element in shapes for stroke, is_moved in zip(wanted, moved, strict=True)
+    ]
+    lines = [None if by else stroke for stroke, by in zip(painted, by_paint, strict=True)]
+    off = [by and not miss.within_tolerance for by, miss in zip(by_paint, tracking_errors, strict=True)]
+    runs = [run if is_off else None for run, is_off in zip(plan.passes, off, strict=True)]
+    return [
+        *off_middle_line(lines, tracking_errors, brush, options.tolerance_mm),
+        *outside(wanted, runs, brush),
+    ]
 
 
 def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:

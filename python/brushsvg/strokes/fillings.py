@@ -3,7 +3,7 @@ their outlines."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -30,12 +30,6 @@ class Filling:
     gap_mm: float
     rings: list[np.ndarray]
     narrow: list
-    at_nearest: float = 1.0
-
-    @property
-    def helps(self) -> bool:
-        """Whether its discs cover more than those of the same strokes at the nearest width."""
-        return 1 - self.unpainted > self.at_nearest + BETTER
 
     @property
     def shows(self) -> bool:
@@ -65,16 +59,13 @@ def _filling(shape, wide: dict[int, object], narrow: list, least: float, greates
         k: [clamped(stroke, least, greatest), *offset_passes(stroke, greatest)] for k, stroke in wide.items()
     }
     meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
-    left = unpainted(shape, [*narrow, *(lines[0] for lines in beside.values())])
-    at_nearest = 1 - left.area / shape.area
-    along_middles = replace(_tried(shape, beside, meant, narrow), at_nearest=at_nearest)
+    along_middles = _tried(shape, beside, meant, narrow)
     if not (lines := contour_passes(shape, list(wide.values()), narrow, least, greatest)):
         return along_middles
     first, *others = wide
     part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
     passes = {first: lines, **{k: [] for k in others}}
     along_outline = _tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow)
-    along_outline = replace(along_outline, at_nearest=at_nearest)
     return along_outline if _is_better(along_outline, along_middles) else along_middles
 
 

@@ -16,6 +16,7 @@ ENOUGH = 0.8
 BETTER = 0.01  # and passes by so much more
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
+UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
 
 def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, list[Notice]]:
@@ -40,16 +41,14 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
             sentence = f"width {2 * worst:.3g} mm of its outline is outside the range {reach}"
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
-    least_wide = greatest if wide == "passes" else greatest * _WORTH_PASSES
-    wider = [k for k, found in beyond.items() if found and found[1] > least_wide]
-    filled, fillable = _filled(strokes, wider, brush, wide) if wider else ({}, set())
+    filled, fillable = _filled(strokes, _wide(strokes, beyond, greatest), brush, wide)
     painted, wanted, notices = [], [], []
     for k, stroke in enumerate(strokes):
         made, meant, how = filled.get(k) or ([stroke], [stroke], "")
-        if beyond[k]:
+        if beyond[k] and k not in filled:
+            made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
+        if beyond[k] and (k in filled or _shows(beyond[k][1], least, greatest)):
             count, worst = beyond[k]
-            if k not in filled:
-                made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
             notices.append(
                 Notice(
                     stroke.id,
@@ -64,6 +63,11 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
     return painted, wanted, notices
 
 
+def _shows(half: float, least: float, greatest: float) -> bool:
+    """Whether one sees that half a width was brought within the range."""
+    return not least - UNSEEN_MM <= half <= greatest + UNSEEN_MM
+
+
 def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
     """How many widths of an outline are out of reach, in words, and half the worst."""
     halves = np.array([half for _, half in stroke.half_width])
@@ -76,18 +80,25 @@ def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
     return f"{off.sum()} of {len(off)} widths of its outline, up to", worst
 
 
+def _wide(strokes: list, beyond: dict, greatest: float) -> list[int]:
+    """The strokes that are wider than the brush, of elements where one of them is so by more than hardly."""
+    wider = {k: found[1] for k, found in beyond.items() if found and found[1] > greatest}
+    elements = {strokes[k].origin.element for k, half in wider.items() if half > greatest * _WORTH_PASSES}
+    return [k for k in wider if strokes[k].origin.element in elements]
+
+
 def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int, tuple], set[int]]:
     """For each stroke to paint in passes (these, what they should become, how in words); and the strokes of which
     passes would paint more, if they were asked for."""
+    if not wider:
+        return {}, set()
     from .fillings import fillings  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
-    fillable: set[int] = set()
     found = fillings(strokes, wider, *brush.half_width_range_mm())
-    chosen = _chosen(found, strokes, brush) if wide == "auto" else {}
+    chosen, fillable = ({}, set()) if wide == "passes" else _chosen(found, strokes, brush, wide)
     for number, filling in enumerate(found):
         if wide != "passes" and number not in chosen:
-            fillable |= set(filling.passes) if filling.helps else set()
             continue
         first = min(filling.passes)
         left_over = _left_over(filling)
@@ -102,29 +113,36 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
     return done, fillable
 
 
-def _chosen(found: list, strokes: list, brush) -> dict[int, str]:
+def _chosen(found: list, strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
     """The fillings that are taken where nobody says which, by their numbers, and why in words: all that paint better,
-    if one of their shapes would be painted too badly without, for the stems of a word are of one weight."""
+    if one of their shapes would be painted too badly without, for the stems of a word are of one weight. And of the
+    others, the strokes of shapes that passes paint better; none where all of them together hardly win by it."""
+    nearest, filled = _both_ways(found, strokes, brush)
+    better = [k for k in range(len(found)) if filled[k] > nearest[k] + BETTER]
+    taken: dict[int, str] = {}
+    if wide == "auto" and min(nearest, default=1.0) < ENOUGH:
+        words = ", since at the nearest width its mark would overlap with the shape by {:.2f}"
+        others = ", as others of the drawing"
+        taken = {k: words.format(nearest[k]) if nearest[k] < ENOUGH else others for k in better}
+    left = [k for k in range(len(found)) if k not in taken]
+    areas = [_core.area(found[k].rings) for k in left]
+    gained = sum(area * (filled[k] - nearest[k]) for k, area in zip(left, areas, strict=True))
+    if gained <= BETTER * sum(areas):
+        return taken, set()
+    return taken, {stroke for k in better if k in left for stroke in found[k].passes}
+
+
+def _both_ways(found: list, strokes: list, brush) -> tuple[list[float], list[float]]:
+    """How much the marks overlap with each shape, its strokes at the nearest width and in passes."""
     range_mm = brush.half_width_range_mm()
-    nearest = [
-        _mark_overlap([*f.narrow, *(_clamped(strokes[k], *range_mm) for k in f.passes)], f.rings, brush)
-        for f in found
-    ]
-    if min(nearest, default=1.0) >= ENOUGH:
-        return {}
-    filled = [
-        _mark_overlap(
-            [*f.narrow, *(_like(strokes[k], line) for k in f.passes for line in f.passes[k])], f.rings, brush
+    ways = []
+    for filling in found:
+        at_nearest = [_clamped(strokes[k], *range_mm) for k in filling.passes]
+        passes = [_like(strokes[k], line) for k, lines in filling.passes.items() for line in lines]
+        ways.append(
+            [_mark_overlap([*filling.narrow, *some], filling.rings, brush) for some in (at_nearest, passes)]
         )
-        for f in found
-    ]
-    return {
-        number: f", since at the nearest width its mark would overlap with the shape by {before:.2f}"
-        if before < ENOUGH
-        else ", as others of the drawing"
-        for number, (before, after) in enumerate(zip(nearest, filled, strict=True))
-        if after > before + BETTER
-    }
+    return [nearest for nearest, _ in ways], [filled for _, filled in ways]
 
 
 def _mark_overlap(strokes: list, rings: list, brush) -> float:
