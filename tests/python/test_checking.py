@@ -635,7 +635,7 @@ def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
         for drawing in (("some.svg",), ()):
             status, _, err = call(capsys, "check", words[1], *drawing, "--cell", "mine.toml")
             assert (status, err) == (0, []), names
-        told = re.findall(r"(?m)^(?:\(| *[#!;] )(paint: .*)$", (desk / words[1]).read_text())
+        told = re.findall(r"(?m)^(?:\(| *(?:[#!;]|--) )(paint: .*)$", (desk / words[1]).read_text())
         assert len(set(told)) == len(names)
 
 

@@ -19,17 +19,8 @@ from .places import frame, moved
 
 STUB = Path(__file__).with_suffix(".lua")
 LUA = shutil.which("lua5.4")
-LOWER_MM = (
-    -3.0,
-    5.0,
-    15.0,
-    19.0,
-    20.5,
-    21.0,
-    25.0,
-    50.0,
-    300.0,
-)  # heights over the paper from which a rise is tried
+# heights over the paper from which a rise is tried
+LOWER_MM = (-3.0, 5.0, 15.0, 19.0, 20.1, 20.5, 21.0, 25.0, 50.0, 300.0)
 MOVES = ("line", "arc")
 REMARK = "--"
 

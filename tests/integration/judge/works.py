@@ -48,6 +48,10 @@ class Work:
     by_plan: bool = False
 
 
+def _finely_blended(cell):
+    return replace(cell, blending=replace(cell.blending, step_mm=0.001))
+
+
 def _turned(cell):
     """On paper that lies askew, and higher."""
     if cell.language == "grbl-servo":
@@ -116,6 +120,10 @@ class Made:
 
 def cell_of(dialect: str, change=None):
     cell = find_cell(CELLS[dialect][0])
+    if (
+        dialect == "dobot" and change is None
+    ):  # else no corner of small works has a blend that could be damaged
+        change = _finely_blended
     cell = change(cell) if change else cell
     return replace(cell, name="mine") if change else cell
 

@@ -32,7 +32,7 @@ _LINES = tuple(
         ("text", rf"if here\[3\] < (?P<height>{N}) then|here\[3\] = {N}|end|Pause\(\)|print\(\"[^\"\\]*\"\)"),
         ("text", rf"here = GetPose\({INDEX}, {INDEX}\)\.pose|function on_paper\(x, y, z\)"),
         ("text", rf"return \{{pose = \{{x, y, z, (?P<turned>{N}, {N}, {N})\}}\}}"),
-        ("text", rf"Set(?:User|Tool)\({INDEX}, {_FRAME}\)|(?:User|Tool)\({INDEX}\)|CP\(0\)"),
+        ("text", rf"Set(?:User|Tool)\({INDEX}, {_FRAME}\)|(?:User|Tool)\({INDEX}\)|CP\(-?0\)"),
     )
 )
 
@@ -52,7 +52,8 @@ def read_dobot(text: str, cell: Cell) -> Readback:
         turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg)).tolist()),
     )
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
-    out.acts = _with_settings_sorted([act for act in out.acts if act.text != "CP(0)"])  # which holds anyway
+    held = ("CP(0)", "CP(-0)")  # whether it is said or not
+    out.acts = _with_settings_sorted([act for act in out.acts if act.text not in held])
     return out
 
 
