@@ -38,6 +38,7 @@ BARS = "".join(
     f'<path id="bar-{k}" d="M20 {20 * k} L{80 + 10 * k} {20 * k}" stroke-width="4"/>' for k in (1, 2, 3, 4)
 )
 CAMERA = Camera(size_px=(1800, 1170), fill=0.95)
+ASIDE = Camera(size_px=(1800, 1170), tilt_deg=(-6.0, 5.0), fill=0.9)
 FAULTS = painter.Faults(
     noise=0.05, noise_length=0.5, displacement=0.2, placement=0.6, turn=0.006, height=0.15
 )
@@ -106,7 +107,8 @@ class Studio:
             sheet.paint([tick], INK)
         for _, _, rings in painted.marks:
             sheet.paint([ring + page.frame_mm for ring in rings], BLUE)
-        (self.folder / photo).write_bytes(photograph.photograph(sheet, CAMERA))
+        for name, camera in ((photo, CAMERA), (f"aside-{photo}", ASIDE)):
+            (self.folder / name).write_bytes(photograph.photograph(sheet, camera))
 
     def words(self, out="mine-2.json", photo="photo.jpg", plan="word.json", prior="mine.json"):
         files = [self.folder / name for name in (photo, plan, prior, out)]
@@ -233,5 +235,6 @@ def test_the_plan_of_a_corrected_word_says_where_the_tool_went(tmp_path, capsys)
     plan = studio.convert("led.json", "--corrections", str(tmp_path / "c.json"))
     truth = true_brush(1.15, 0.9)
     studio.paint(6, truth, plan)
-    assert in_json(capsys, *studio.words(plan=plan))[0] == 0
+    words = studio.words(plan=plan)
+    assert in_json(capsys, *words[:2], tmp_path / "aside-photo.jpg", *words[2:])[0] == 0
     assert abs(studio.brush().lag(4.0) / truth.law("lag")(4.0) - 1) < 0.03

@@ -54,6 +54,16 @@ class KnownLaws:
             out[law] = max(1.0, share * float(np.sqrt(np.mean(size**2) / max(np.mean(sd**2), 1e-18))))
         return out
 
+    def unfollowed(self, share: float, deepest_mm: float) -> np.ndarray:
+        """Covariance of numbers whose laws were measured down to this depth, each time off by a share of them."""
+        at, own, depths = numbers_of(), self.laws, np.linspace(0.0, deepest_mm, DEPTHS)[1:]
+        out = np.diag(np.full(len(self.covariance), (share * own.widest_per_half) ** 2))
+        for law in TERMS:
+            values = np.polynomial.polynomial.polyval(depths, getattr(own, law))
+            size = np.maximum(values, values[DEPTHS // 4])
+            out[at[law], at[law]] = as_measured(law, depths, share * size)
+        return out
+
     def widened(self, wider: dict[str, float]) -> np.ndarray:
         times = np.ones(len(self.covariance))
         for law, place in numbers_of().items():

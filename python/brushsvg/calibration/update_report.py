@@ -87,6 +87,11 @@ def _stays(made) -> list[str]:
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
     ]
+    if made.painted.deepest_mm < made.brush.depth_range_mm[1]:
+        lines.append(
+            f"deeper than {made.painted.deepest_mm:.3g} mm nothing was painted: there laws rest on the prior and on "
+            "their form"
+        )
     if made.strays:
         names = ", ".join(stray.mark.stroke for stray in made.strays)
         lines.append(f"note: left out, not being where or what the other marks say: {names}")
