@@ -51,7 +51,9 @@ def known_brush(sure):
     """The brush as its file has it: each number known to a share `sure` of it (standard deviation)."""
     laws = core.MarkLaws(LAG.tolist(), GAP.tolist(), HALF.tolist(), WIDEST, FRONT)
     numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
-    brush = brush_of(laws, "mine", (0.0, DEEPEST), np.diag((sure * numbers) ** 2))
+    covariance = np.diag((sure * numbers) ** 2)
+    covariance[0, 5] = covariance[5, 0] = 0.3 * np.sqrt(covariance[0, 0] * covariance[5, 5])
+    brush = brush_of(laws, "mine", (0.0, DEEPEST), covariance)
     brush.max_speed_mm_s = 25.0
     return brush
 
@@ -169,6 +171,7 @@ def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, c
     studio.paint(3, true_brush())
     assert in_json(capsys, *studio.words())[0] == 0
     before, now = studio.brush("mine.json"), studio.brush()
+    assert np.array_equal(now.covariance, before.covariance)
     for law in LAWS:
         assert getattr(now, law).coefficients == getattr(before, law).coefficients
         assert law_band(now, law, DEPTHS)[0] == pytest.approx(law_band(before, law, DEPTHS)[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import dataclass
 
@@ -249,12 +250,12 @@ def _joined(brush, made, told: set[str], whole: np.ndarray, fitted: dict[str, sl
     """Covariance over the coefficients of the brush: of laws that were told, and of the others as it was."""
     at, was = places(made), places(brush)
     out = np.zeros((at[LAWS[-1]].stop,) * 2)
-    for law in LAWS:
-        if law not in told and len(brush.covariance):
-            out[at[law], at[law]] = np.array(brush.covariance)[was[law], was[law]]
-        for other in told:
-            if law in told:
-                out[at[law], at[other]] = whole[fitted[law], fitted[other]]
+    known = np.array(brush.covariance)
+    for law, other in itertools.product(LAWS, LAWS):
+        if law in told and other in told:
+            out[at[law], at[other]] = whole[fitted[law], fitted[other]]
+        elif len(known) and law not in told and other not in told:
+            out[at[law], at[other]] = known[was[law], was[other]]
     return out
 
 
