@@ -76,6 +76,14 @@ the pass, followed on their circles.)")
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
         .def_readonly("front_per_half", &MarkLaws::front_per_half)
         .def_readonly("round_tail", &MarkLaws::round_tail);
+    py::class_<LawPrior>(m, "LawPrior", R"(Laws that are known beforehand: laws is the mean.
+
+rows (k, n): each, over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and
+widest_per_half, gives a standard normal number of what they differ from it.)")
+        .def(py::init([](MarkLaws laws, std::vector<std::vector<double>> rows) {
+                 return LawPrior{std::move(laws), std::move(rows)};
+             }),
+             py::arg("laws"), py::arg("rows"));
     py::class_<Machine>(m, "Machine", R"(How a machine takes the tool elsewhere than it was told.
 
 Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
@@ -88,7 +96,7 @@ is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlas
     py::class_<MarkOptions>(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
 
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
-widest_per_half, front_per_half, height_mm: Prior. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
+widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
 and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
 machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.)")
         .def(py::init<>())
@@ -99,6 +107,7 @@ machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to 
         .def_readwrite("widest_per_half", &MarkOptions::widest_per_half)
         .def_readwrite("front_per_half", &MarkOptions::front_per_half)
         .def_readwrite("round_tail", &MarkOptions::round_tail)
+        .def_readwrite("laws", &MarkOptions::laws)
         .def_readwrite("height_mm", &MarkOptions::height_mm)
         .def_readwrite("placement_mm", &MarkOptions::placement_mm)
         .def_readwrite("turn_rad", &MarkOptions::turn_rad)

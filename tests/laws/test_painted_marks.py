@@ -343,3 +343,26 @@ def test_what_to_expect_is_what_comes():
         came = np.array(getattr(made.brush, law).half_interval_95)
         at = slice(0 if law == "lag" else 1, count)
         assert np.all(np.abs(np.log(told[at] / came[at])) < np.log(1.7))
+
+
+def test_laws_that_are_known_add_their_information():
+    """Inverse covariances add up, exactly where edges err independently."""
+    _, _, made = calibrated(3)
+    options = core.MarkOptions()
+    options.deepest_mm, options.noise_mm, options.noise_length_mm = made.painted.deepest_mm, 0.1, 1e-3
+    options.lag_terms, options.half_width_terms = len(made.fit.laws.lag), len(made.fit.laws.half_width) - 1
+    options.height_mm = core.Prior(0.1, 0.3)  # beyond the touch, where intervals are those of both sides
+    alone = core.fit_marks(made.painted.marks, made.fit.laws, options)
+    known = options.lag_terms + 1 + options.half_width_terms + 1
+    rows = np.random.default_rng(8).normal(0, 40.0, (known, known))
+    options.laws = core.LawPrior(made.fit.laws, rows.tolist())
+    options.widest_per_half = core.Prior(made.fit.laws.widest_per_half, 0.5)
+    both = core.fit_marks(made.painted.marks, made.fit.laws, options)
+    added = np.linalg.inv(np.array(both.covariance)) - np.linalg.inv(np.array(alone.covariance))
+    expected = np.zeros_like(added)
+    expected[:known, :known] = rows.T @ rows
+    size = np.sqrt(np.diag(np.linalg.inv(np.array(both.covariance))))
+    assert np.abs((added - expected) / np.outer(size, size)).max() < 1e-4
+    options.laws = core.LawPrior(made.fit.laws, rows[:, :-1].tolist())
+    with refused("out-of-range laws.rows"):
+        core.fit_marks(made.painted.marks, made.fit.laws, options)

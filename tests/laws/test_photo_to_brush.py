@@ -20,7 +20,7 @@ from brushsvg import find_brush  # noqa: E402
 from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
-from brushsvg.calibration.from_marks import _refuse_many  # noqa: E402
+from brushsvg.calibration.from_marks import refuse_many  # noqa: E402
 from brushsvg.calibration.stray_marks import strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 
@@ -140,6 +140,6 @@ def test_a_mark_is_held_against_the_others_alone():
 def test_many_marks_astray_are_refused():
     some = [SimpleNamespace(mark=SimpleNamespace(stroke=f"arc-{k}")) for k in range(6)]
     painted = SimpleNamespace(marks=[None] * 25)
-    _refuse_many(tuple(some[:5]), painted)
+    refuse_many(tuple(some[:5]), painted)
     with refused("marks-outlying 6 25 '[0, 5]' arc-0 arc-1"):
-        _refuse_many(tuple(some), painted)
+        refuse_many(tuple(some), painted)

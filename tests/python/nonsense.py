@@ -339,6 +339,11 @@ def all_mark_options():
         for name in ("widest_per_half", "front_per_half", "height_mm"):
             yield mark_options(**{name: _core.Prior(value, 1.0)})
             yield mark_options(**{name: _core.Prior(1.0, value)})
+        laws = _core.MarkLaws([4], [0, 1], [0, 0.4])
+        yield mark_options(laws=_core.LawPrior(laws, [[value] * 8]))
+        yield mark_options(laws=_core.LawPrior(_core.MarkLaws([value], [0, 1], [0, 0.4]), [[1.0] * 8]))
+    yield mark_options(laws=_core.LawPrior(laws, [[1.0] * 7]))
+    yield mark_options(laws=_core.LawPrior(laws, []))
 
 
 def all_tracks():

@@ -18,7 +18,8 @@ namespace {
 constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overflow
 // Of one fit: each is met some hundred times, in a microsecond or so. A sheet of 49 strokes has 22,000 and 8,500.
 constexpr double kMostPlaces = 2e5, kMostPoints = 2e5;
-constexpr double kPlaceMm = 0.15;  // no two places of a prediction lie farther apart along the way
+constexpr double kPlaceMm = 0.15;      // no two places of a prediction lie farther apart along the way
+constexpr double kMostCertain = 1e12;  // of a law's coefficient: 1 over its standard deviation
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// `name`: of the option, a normal distribution's sigma.
@@ -50,12 +51,23 @@ void refuse_options(const MarkOptions& options) {
     require_within(options.most_iterations, {1, 10000}, "the number of iterations", "most_iterations");
 }
 
-void refuse_laws(const MarkLaws& laws) {
-    for (const auto& [law, name] : {std::pair{&laws.lag, "start.lag"}, std::pair{&laws.tip_gap, "start.tip_gap"},
-                                    std::pair{&laws.half_width, "start.half_width"}})
-        for (const double c : *law) require_within(c, {-kLargestMm, kLargestMm}, "a coefficient", name);
-    require_within(laws.widest_per_half, {0.1, 100.0}, "the ratio", "start.widest_per_half");
-    require_within(laws.front_per_half, {0.1, 100.0}, "the ratio", "start.front_per_half");
+/// `of`: what they are for.
+void refuse_laws(const MarkLaws& laws, const std::string& of) {
+    for (const auto& [law, name] : {std::pair{&laws.lag, ".lag"}, std::pair{&laws.tip_gap, ".tip_gap"},
+                                    std::pair{&laws.half_width, ".half_width"}})
+        for (const double c : *law) require_within(c, {-kLargestMm, kLargestMm}, "a coefficient", of + name);
+    require_within(laws.widest_per_half, {0.1, 100.0}, "the ratio", of + ".widest_per_half");
+    require_within(laws.front_per_half, {0.1, 100.0}, "the ratio", of + ".front_per_half");
+}
+
+void refuse_law_prior(const MarkOptions& options) {
+    if (!options.laws) return;
+    refuse_laws(options.laws->laws, "laws");
+    const int terms = options.lag_terms + options.tip_gap_terms + options.half_width_terms + 1;
+    for (const std::vector<double>& row : options.laws->rows) {
+        require_within(double(row.size()), {double(terms), double(terms)}, "the number of columns", "laws.rows");
+        for (const double c : row) require_within(c, {-kMostCertain, kMostCertain}, "a number", "laws.rows");
+    }
 }
 
 void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
@@ -65,6 +77,7 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
         if (terms < 1 || terms > 4)
             throw Error("law-terms", std::to_string(terms) + " numbers are outside the range [1, 4] for a law", name);
     refuse_options(options);
+    refuse_law_prior(options);
     double way = 0.0, around = 0.0;
     for (const PaintedMark& mark : marks) {
         if (mark.poses_mm.rows() < 1) throw Error("pass-empty", "the stroke needs poses", mark.stroke);
@@ -154,7 +167,7 @@ MatrixXd covariance_at_touch(MarkProblem fit) {
 MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& from,
                   const MarkOptions& options) {
     refuse_what_cannot_be_fitted(marks, options);
-    if (from) refuse_laws(*from);
+    if (from) refuse_laws(*from, "start");
     MarkProblem fit(marks, options);
     Index points = 0;
     for (Index i = 0; i < fit.model.marks(); ++i) points += fit.model.points(i);

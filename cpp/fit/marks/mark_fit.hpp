@@ -43,12 +43,20 @@ struct Machine {
     std::array<double, 2> tilt_mm_per_mm{0.0, 0.0}, backlash_mm{0.0, 0.0};
 };
 
+/// Laws that are known beforehand: laws is the mean; each row, over the coefficients of lag, tip_gap and half_width
+/// (their constant, 0, left out) and widest_per_half, gives a standard normal number of what they differ from it.
+struct LawPrior {
+    MarkLaws laws;
+    std::vector<std::vector<double>> rows;
+};
+
 struct MarkOptions {
     double deepest_mm = 10.0;  ///< the laws are to hold on [0, deepest]
     /// Numbers per law, at most four: r = c0 + ..., b and h through 0; h never falls.
     int lag_terms = 4, tip_gap_terms = 1, half_width_terms = 2;
     Prior widest_per_half{1.8, 0.5};  ///< the shape that the project assumes of round brushes, and round-6's spread
     Prior front_per_half{1.0, 0.3};
+    std::optional<LawPrior> laws;  ///< beside the priors of the shape; none: nothing is known of them
     bool round_tail = false;
     Prior height_mm{0.0, 0.3};     ///< the paper lies higher than taught by so much: touching by eye is as good
     double placement_mm = 2.0;     ///< sigma of the sheet's shift in x and in y: laid against a stop by hand

@@ -175,7 +175,7 @@ void MarkModel::refuse_endless() const {
         painted_[which].stroke);
 }
 
-VectorXd MarkModel::unknowns(const MarkLaws& laws) const {
+VectorXd MarkModel::unbounded(const MarkLaws& laws) const {
     const auto padded = [](const std::vector<double>& c, Index size) {
         VectorXd out = VectorXd::Zero(size);
         for (Index i = 0; i < std::min(size, Index(c.size())); ++i) out[i] = c[std::size_t(i)];
@@ -191,7 +191,7 @@ VectorXd MarkModel::unknowns(const MarkLaws& laws) const {
             .solve(padded(laws.half_width, layout_.half + 1).tail(layout_.half));
     x[layout_.widest()] = laws.widest_per_half;
     x[layout_.front()] = laws.front_per_half;
-    return x.cwiseMax(least());
+    return x;
 }
 
 VectorXd MarkModel::least() const {

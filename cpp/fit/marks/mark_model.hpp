@@ -46,8 +46,9 @@ class MarkModel {
     std::size_t rings(Index mark) const { return painted_[std::size_t(mark)].rings.size() - 1; }
     std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
 
-    /// The shared unknowns of laws, and back.
-    VectorXd unknowns(const MarkLaws& laws) const;
+    /// The shared unknowns of laws, wherever they lie; at their least values or above; and back.
+    VectorXd unbounded(const MarkLaws& laws) const;
+    VectorXd unknowns(const MarkLaws& laws) const { return unbounded(laws).cwiseMax(least()); }
     MarkLaws laws(const VectorXd& shared) const;
     /// d(what MarkFit::covariance is about) / d(shared unknowns).
     MatrixXd to_coefficients() const;

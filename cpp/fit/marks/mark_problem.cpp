@@ -93,6 +93,17 @@ std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd
     return std::make_unique<ceres::NormalPrior>(weight, value);
 }
 
+/// LawPrior's rows, over the shared unknowns.
+MatrixXd law_rows(const LawPrior& known, const MarkModel& model) {
+    const Index laws = model.layout().front();
+    MatrixXd rows(Index(known.rows.size()), laws);
+    for (Index i = 0; i < rows.rows(); ++i)
+        rows.row(i) = Eigen::Map<const Eigen::RowVectorXd>(known.rows[std::size_t(i)].data(), laws);
+    MatrixXd out = MatrixXd::Zero(rows.rows(), model.layout().size());
+    out.leftCols(laws) = rows * model.to_coefficients().topLeftCorner(laws, laws);
+    return out;
+}
+
 double machine_sigma(const MarkOptions& options, int number) {
     if (number < MachineAt::scale) return options.lean_mm_per_mm;
     if (number < MachineAt::tilt) return options.axes;
@@ -112,6 +123,10 @@ MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOption
     priors_[std::size_t(at.turn())] = {0.0, options.turn_rad};
     for (int i = 0; i < at.machine_numbers; ++i)
         priors_[std::size_t(at.machine() + i)] = {0.0, machine_sigma(options, i)};
+    if (options.laws && !options.laws->rows.empty()) {
+        law_rows_ = law_rows(*options.laws, model);
+        law_mean_ = model.unbounded(options.laws->laws);
+    }
     hold_shape(false);
     shared = VectorXd::Zero(at.size());
     own.assign(std::size_t(model.marks()), Eigen::Vector2d::Zero());
@@ -212,6 +227,10 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     }
     priors.push_back(prior(value, sigma));
     problem.AddResidualBlock(priors.back().get(), nullptr, shared.data());
+    if (law_rows_.rows() > 0) {
+        priors.push_back(std::make_unique<ceres::NormalPrior>(law_rows_, law_mean_));
+        problem.AddResidualBlock(priors.back().get(), nullptr, shared.data());
+    }
     order->AddElementToGroup(shared.data(), 1);
     const VectorXd least = model.least();
     for (Index i = 0; i < shared.size(); ++i)
@@ -230,10 +249,13 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     return summary.IsSolutionUsable() && summary.termination_type == ceres::CONVERGENCE;
 }
 
-VectorXd MarkProblem::known() const {
+void MarkProblem::add_known(MatrixXd& to) const {
     VectorXd sigma = VectorXd::Constant(shared.size() + 2 * model.marks(), displacement_mm_);
     for (Index i = 0; i < shared.size(); ++i) sigma[i] = priors_[std::size_t(i)].sigma;
-    return sigma.unaryExpr([](double s) { return s == 0.0 ? 1e12 : 1.0 / (s * s); });
+    to.diagonal() += sigma.unaryExpr([](double s) { return s == 0.0 ? 1e12 : 1.0 / (s * s); });
+    if (law_rows_.rows() == 0) return;
+    const Index g = shared.size();
+    to.topLeftCorner(g, g) += law_rows_.transpose() * law_rows_;
 }
 
 }  // namespace brushsvg::fit

@@ -27,8 +27,8 @@ class MarkProblem {
     double loss() const;
     /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
     bool solve(int most_iterations, double tolerance);
-    /// Information that the priors add, for every shared unknown and then for both displacements of every mark.
-    VectorXd known() const;
+    /// Adds the information of the priors, over every shared unknown and then both displacements of every mark.
+    void add_known(MatrixXd& to) const;
 
     MarkModel model;
     Weighing weighing;
@@ -43,6 +43,8 @@ class MarkProblem {
 
     double displacement_mm_;
     std::vector<Prior> priors_;
+    MatrixXd law_rows_;  ///< of LawPrior, over the shared unknowns; none where nothing is known
+    VectorXd law_mean_;
     std::vector<bool> held_;
 };
 

@@ -66,7 +66,7 @@ MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, co
         const MatrixXd& by = marks[std::size_t(i)].by;
         add(slope, weight * (by.transpose() * by), i, g);
     }
-    slope.diagonal() += at.known();
+    at.add_known(slope);
     // in units of the unknowns' own sizes, or a polynomial's powers would drown each other
     const VectorXd unit = slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
     const MatrixXd scaled = unit.asDiagonal() * slope * unit.asDiagonal();
@@ -202,7 +202,7 @@ MatrixXd covariance(const MarkProblem& at) {
         add(spread, by.transpose() * erring, i, g);
     }
     spread /= std::pow(weighing.noise_mm * weighing.repeats, 2);
-    spread.diagonal() += at.known();
+    at.add_known(spread);
     const MatrixXd inverse = inverse_slope(at, marks, weighing);
     return inverse.topRows(g) * spread * inverse.leftCols(g);
 }

@@ -89,18 +89,22 @@ def calibrate_marks(
     fit, gain = _likelier_tail(painted.marks, options)
     astray = tuple(strays(painted.marks, fit))
     if leave_out_strays and astray:
-        _refuse_many(astray, painted)
+        refuse_many(astray, painted)
         gone = {each.mark.stroke for each in astray}
         painted = painted.without(gone)
         fit, gain = _likelier_tail(painted.marks, options, fit.laws)
     scale = _scale(fit, painted)
     refuse_scale(scale)
-    _refuse_unlike(fit, painted)
+    refuse_unlike(fit, painted)
     covariance = np.array(fit.covariance)
     if edge_mm > 0:
-        moved = _moved_by_edges(fit, painted.marks, options, edge_mm)
+        usual = options.widest_per_half
+        if fit.laws.round_tail:
+            options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
+        moved = moved_by_edges(fit, painted.marks, options, edge_mm)
+        options.round_tail, options.widest_per_half = False, usual
         covariance += np.outer(moved, moved)
-        wetter = _wetter_where_wider(fit, deepest, edge_mm)
+        wetter = wetter_where_wider(fit, deepest, edge_mm)
         covariance += np.outer(wetter, wetter)
     brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
@@ -121,7 +125,7 @@ def calibrate_marks(
     )
 
 
-def _refuse_many(astray: tuple[Stray, ...], painted: Painted) -> None:
+def refuse_many(astray: tuple[Stray, ...], painted: Painted) -> None:
     most = math.floor(MOST * len(painted.marks))
     if len(astray) > most:
         raise Error(
@@ -134,7 +138,7 @@ def _refuse_many(astray: tuple[Stray, ...], painted: Painted) -> None:
         )
 
 
-def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
+def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
     """By how much all that is fitted changes where every edge lies edge_mm farther out, in the covariance's order."""
     wider = [
         _core.PaintedMark(
@@ -145,16 +149,10 @@ def _moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float
         )
         for mark in marks
     ]
-    usual = options.widest_per_half
-    options.round_tail = fit.laws.round_tail
-    if options.round_tail:
-        options.widest_per_half = _core.Prior(*ROUND_TAIL)
-    other = _core.fit_marks(wider, fit.laws, options)
-    options.round_tail, options.widest_per_half = False, usual
-    return _all_fitted(other) - _all_fitted(fit)
+    return _all_fitted(_core.fit_marks(wider, fit.laws, options)) - _all_fitted(fit)
 
 
-def _wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
+def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
     """The same where edges lie the farther out the wider a mark is, by edge_mm at the greatest depth: more paint runs
     farther. The fit would take edges that all lie as far out for a paper that lies higher; these are wider marks."""
     half = np.array(fit.laws.half_width)
@@ -318,7 +316,7 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
         "in front of it."
     )
     if covariance is not None:
-        whole = _over_brush(laws, covariance)
+        whole = over_brush(laws, covariance)
         brush.covariance = whole.tolist()
         half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
@@ -327,7 +325,7 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     return brush
 
 
-def _over_brush(laws, covariance: np.ndarray) -> np.ndarray:
+def over_brush(laws, covariance: np.ndarray) -> np.ndarray:
     """From the fit's unknowns to a brush's coefficients; x_w = ratio h."""
     lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
     rows = lag + gap + 1 + 2 * (half + 1)
@@ -357,7 +355,7 @@ def _scale(fit, painted: Painted) -> SheetScale | None:
     return sheet_scale(*map(np.array, zip(*like, strict=True))) if like else None
 
 
-def _refuse_unlike(fit, painted: Painted) -> None:
+def refuse_unlike(fit, painted: Painted) -> None:
     outliers, marks = sum(found.outlier for found in fit.marks), len(painted.marks)
     if 2 * outliers > marks:
         raise Error(

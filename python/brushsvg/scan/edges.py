@@ -280,15 +280,19 @@ def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, hei
     columns = slice(max(left, 0), min(right, part.shape[1]))
     seen, here = part[rows, columns], owner[rows, columns] == number
     mine = own[seen] & (here | ~cut[seen])
-    amount = paint[rows, columns]
+    corner = columns.start / fine, height_mm - rows.start / fine
+    return outlines_of(paint[rows, columns], mine, (seen > 0) & ~mine, usual, fine, corner)
+
+
+def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -> list[np.ndarray]:
+    """Rings round one mark, half way between paper and its paint. amount (rows, columns): of paint; mine, foreign:
+    where it certainly lies, and that of others; usual: paint of a mark; left_top_mm: of the part of the sheet."""
     level = 0.5 * _amount_of(amount, mine, usual, fine)
     reach = max(1, round(EDGE_MM * fine))
     ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
     near = cv2.dilate(np.uint8(mine), ellipse) == 1
-    foreign = (seen > 0) & ~mine
     amount = np.where(near & ~foreign, amount, 0.0)
-    corner = columns.start / fine, height_mm - rows.start / fine
-    rings = mask_outlines(amount, level, 1.0 / fine, corner, LEAST_MM2)
+    rings = mask_outlines(amount, level, 1.0 / fine, left_top_mm, LEAST_MM2)
     sizes = [_area(ring) for ring in rings]
     least = BLOT * max(sizes, default=0.0)
     return [_even(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]

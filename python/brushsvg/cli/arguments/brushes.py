@@ -62,15 +62,27 @@ def _check_chart(args) -> None:
 
 
 def add_calibrate(commands) -> None:
-    fit = commands.add_parser("calibrate", help="make a brush of what was measured, or of a painted chart")
+    fit = commands.add_parser(
+        "calibrate", help="make a brush of what was measured, or of a painted chart or job"
+    )
     fit.add_argument(
         "inputs",
         metavar="IN",
         nargs="+",
-        help=f"what was measured (.json .csv), or photographs of one painted chart ({' '.join(PHOTOS)})",
+        help=f"what was measured (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
     )
     fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
     _add_photo(fit, False)
+    fit.add_argument(
+        "--plan",
+        metavar="FILE",
+        help="for photographs of a painted job (convert --page): the plan.json that was painted; needs --prior",
+    )
+    fit.add_argument(
+        "--prior",
+        metavar="NAME|FILE",
+        help="with --plan: the brush that painted it, as it is known up to now",
+    )
     fit.add_argument(
         "--norm",
         choices=("squares", "absolute"),
@@ -126,6 +138,9 @@ def _add_photo(command, needed: bool) -> None:
 def _check_calibrate(args) -> None:
     args.input = args.inputs[0]
     args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
+    if args.plan is not None or args.prior is not None:
+        _check_update(args)
+        return
     if args.photos:
         _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
         return
@@ -142,6 +157,19 @@ def _check_calibrate(args) -> None:
     if len(args.inputs) > 1:
         args.parser.error("only photographs can be several")
     check_files(args, [(args.input, (".json", ".csv"))], [(args.output, (".json",)), (args.plot, PICTURES)])
+
+
+def _check_update(args) -> None:
+    if args.plan is None or args.prior is None:
+        args.parser.error("--plan and --prior go together: what was painted, and by which brush")
+    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "machine", "brush", "plot"):
+        if getattr(args, flag):
+            args.parser.error(f"--{flag} is not for a job (--plan)")
+    if args.norm != "squares":
+        args.parser.error("--norm is not for a job (--plan)")
+    _refuse_heic(args, args.inputs)
+    read = [*((path, PHOTOS) for path in args.inputs), (args.plan, (".json",)), (args.prior, None)]
+    check_files(args, read, [(args.output, (".json",))])
 
 
 def add_scan(commands) -> None:
@@ -163,11 +191,15 @@ def _check_scan(args) -> None:
     _check_photos(args, [args.input], [(args.output, (".json",))])
 
 
-def _check_photos(args, photos: list[str], written) -> None:
+def _refuse_heic(args, photos: list[str]) -> None:
     if any(suffix_of(path) in (".heic", ".heif") for path in photos):
         args.parser.error(
             "HEIC pictures are not read: export them as JPEG (iPhone: Settings, Camera, Formats, Most Compatible)"
         )
+
+
+def _check_photos(args, photos: list[str], written) -> None:
+    _refuse_heic(args, photos)
     if args.chart is None:
         args.parser.error("photographs need --chart, the chart.json that was written with the page")
     if args.dpi is not None and (len(photos) > 1 or args.bar is not None):

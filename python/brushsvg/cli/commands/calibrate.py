@@ -1,4 +1,4 @@
-"""brushsvg calibrate: a brush of what was measured, or of photographs of a painted chart."""
+"""brushsvg calibrate: a brush of what was measured, or of photographs of a painted chart or job."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from ..._core import remarks, write_brush
 from ...brush.library import find_brush
 from ...errors import Error
 from ...files import read_bytes
+from ...pipeline.json_files import read_plan
 from ..console import about, stage, tell, warn
 from ..steps.output_places import check_places, suffix_of, write
 from .scan import read_photographs
@@ -20,6 +21,9 @@ def calibrate_file(args) -> None:
     from ...calibration.measurements import read_measurements
 
     check_places(args.output, args.plot, args.picture)
+    if args.plan is not None:
+        update_file(args)
+        return
     name = os.path.splitext(os.path.basename(args.output))[0]
     read = read_photographs(args, args.photos) if args.photos else None
     if read and _is_of_dabs(args, read):
@@ -127,3 +131,30 @@ def _from_photo(read, name: str, machine: tuple[str, ...]):
     ask_for(options, machine)
     made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture
+
+
+def update_file(args) -> None:
+    """A brush that is known, updated by photographs of a painted job."""
+    import hashlib
+
+    from ...calibration.from_prior import refuse_learned, refuse_other_brush, with_lineage
+    from ...calibration.update_report import report
+    from ...painted.learning import learn
+
+    before, plan = find_brush(args.prior), read_plan(args.plan)
+    photos = [(path, read_bytes(path)) for path in args.photos]
+    of_photos = [hashlib.sha256(data).hexdigest() for _, data in photos]
+    with about(args.prior):
+        refuse_learned(before, of_photos)
+    with about(args.plan):
+        refuse_other_brush(plan, before)
+    name = os.path.splitext(os.path.basename(args.output))[0]
+    with about(args.photos[0]):
+        stage("reading the photographs and fitting the brush")
+        learnt = learn(plan, before, photos, name)
+    made = learnt.updated
+    with_lineage(made.brush, before, of_photos)
+    warn(args.photos[0], list(learnt.notices))
+    warn(args.output, remarks(made.brush))
+    write(args, {args.output: write_brush(made.brush)})
+    tell(report(made))

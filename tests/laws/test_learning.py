@@ -1,0 +1,243 @@
+"""A painted word updates the brush that painted it: painted in small steps by another simulator with a brush that
+differs from its file, photographed by a camera of its own kind."""
+
+import json
+
+import numpy as np
+import painter
+import photograph
+import pytest
+from diagnostics import in_json, is_told
+from numpy.polynomial.polynomial import polyval
+from photograph import BLUE, INK, Camera
+
+core = pytest.importorskip("brushsvg._core")
+if not hasattr(core, "fit_marks"):
+    pytest.skip("built without Ceres", allow_module_level=True)
+
+from brushsvg import find_brush  # noqa: E402
+from brushsvg.brush.confidence import LAWS, law_band  # noqa: E402
+from brushsvg.brush.library import save_brush  # noqa: E402
+from brushsvg.calibration.from_marks import brush_of  # noqa: E402
+from brushsvg.cli import main  # noqa: E402
+from brushsvg.painted.job_page import job_page  # noqa: E402
+from brushsvg.pipeline.json_files import read_plan  # noqa: E402
+
+HEAD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
+<title>word</title><g fill="none" stroke="#000" stroke-linecap="round">"""
+WORD = """<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="5"/>
+<path id="line" d="M14 78 L60 74" stroke-width="3"/>
+<path id="wave" d="M72 76 C84 56 96 92 110 72 S128 66 132 76" stroke-width="2.5"/>
+<path id="hook" d="M70 12 L98 12 C106 12 106 34 92 34 L78 34" stroke-width="4"/>
+<path id="loop" d="M34 46 a9 9 0 1 1 -0.01 0" stroke-width="2"/>
+<path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/>"""
+ONE_DEPTH = """<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="4"/>
+<path id="hook" d="M70 12 L98 12 C106 12 106 34 92 34 L78 34" stroke-width="4"/>
+<path id="knee" d="M70 48 L94 48 L112 24" stroke-width="4"/><path id="line" d="M14 78 L60 74" stroke-width="4"/>"""
+BARS = "".join(
+    f'<path id="bar-{k}" d="M20 {20 * k} L{80 + 10 * k} {20 * k}" stroke-width="4"/>' for k in (1, 2, 3, 4)
+)
+CAMERA = Camera(size_px=(1800, 1170), fill=0.95)
+ASIDE = Camera(size_px=(1800, 1170), tilt_deg=(-6.0, 5.0), fill=0.9)
+FAULTS = painter.Faults(
+    noise=0.05, noise_length=0.5, displacement=0.2, placement=0.6, turn=0.006, height=0.15
+)
+LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005])
+WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
+DEPTHS = np.linspace(1, DEEPEST, 10)
+
+
+def known_brush(sure):
+    """The brush as its file has it: each number known to a share `sure` of it (standard deviation)."""
+    laws = core.MarkLaws(LAG.tolist(), GAP.tolist(), HALF.tolist(), WIDEST, FRONT)
+    numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
+    covariance = np.diag((sure * numbers) ** 2)
+    covariance[0, 5] = covariance[5, 0] = 0.3 * np.sqrt(covariance[0, 0] * covariance[5, 5])
+    brush = brush_of(laws, "mine", (0.0, DEEPEST), covariance)
+    brush.max_speed_mm_s = 25.0
+    return brush
+
+
+def along(one):
+    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
+    poses, arcs = np.array(one.poses_mm), {k: arc for arc in one.arcs for k in range(arc.first, arc.last)}
+    out = [poses[:1]]
+    for k in range(len(poses) - 1):
+        angle, count = 0.0, 2
+        if k in arcs:
+            centre, way = np.array(arcs[k].centre_mm), np.sign(arcs[k].direction)
+            spoke, last = ((poses[j, :2] - centre) @ [1, 1j] for j in (k, k + 1))
+            angle = np.angle(last / spoke)
+            angle += 2 * np.pi * way * (np.sign(angle) != way)
+            count += int(abs(angle * spoke) / 0.8)
+        share = np.linspace(0, 1, count)[1:, None]
+        steps = poses[k] + share * (poses[k + 1] - poses[k])
+        if angle:
+            place = spoke * np.exp(1j * angle * share[:, 0])
+            steps[:, :2] = centre + np.column_stack([place.real, place.imag])
+        out.append(steps)
+    return np.vstack(out)
+
+
+class Studio:
+    """A folder with a drawing, a brush file, the plan, and the photograph of what another brush painted of it."""
+
+    def __init__(self, folder, drawing=WORD, sure=0.08):
+        self.folder = folder
+        save_brush(known_brush(sure), folder / "mine.json")
+        (folder / "word.svg").write_text(HEAD + drawing + "</g></svg>")
+        self.convert("word.json")
+
+    def convert(self, name, *flags):
+        words = [
+            "convert",
+            self.folder / "word.svg",
+            self.folder / name,
+            "--brush",
+            self.folder / "mine.json",
+        ]
+        assert main([*map(str, [*words, "--quiet", *flags])]) == 0
+        return name
+
+    def paint(self, seed, truth, plan="word.json", photo="photo.jpg", faults=FAULTS):
+        plan = read_plan(self.folder / plan)
+        strokes = [(one.stroke, along(one)) for one in plan.passes]
+        painted = painter.paint(np.random.default_rng(seed), truth, strokes, faults)
+        page = job_page(plan)
+        sheet = photograph.page(page.printed)
+        for tick in page.ticks:
+            sheet.paint([tick], INK)
+        for _, _, rings in painted.marks:
+            sheet.paint([ring + page.frame_mm for ring in rings], BLUE)
+        for name, camera in ((photo, CAMERA), (f"aside-{photo}", ASIDE)):
+            (self.folder / name).write_bytes(photograph.photograph(sheet, camera))
+
+    def words(self, out="mine-2.json", photo="photo.jpg", plan="word.json", prior="mine.json"):
+        files = [self.folder / name for name in (photo, plan, prior, out)]
+        words = ("calibrate", files[0], "--plan", files[1], "--prior", files[2], "-o", files[3])
+        return tuple(map(str, words))
+
+    def brush(self, name="mine-2.json"):
+        return find_brush(self.folder / name)
+
+
+def true_brush(lag=1.0, half=1.0):
+    return painter.TrueBrush(DEEPEST, lag * LAG, GAP, half * HALF, WIDEST, FRONT)
+
+
+def deepest(plan):
+    return max(float(-np.array(one.poses_mm)[:, 2].min()) for one in plan.passes)
+
+
+# seed: truth, and how sure the file is: the second lies five standard deviations from what it says
+STUDIOS = {1: (true_brush(1.18, 0.9), 0.08), 2: (true_brush(0.83, 0.86), 0.03)}
+
+
+@pytest.fixture(scope="module", params=STUDIOS)
+def learnt(request, tmp_path_factory):
+    truth, sure = STUDIOS[request.param]
+    studio = Studio(tmp_path_factory.mktemp("studio"), sure=sure)
+    studio.paint(request.param, truth)
+    assert main([*studio.words(), "--quiet"]) == 0
+    return studio, truth
+
+
+def test_a_word_brings_the_brush_nearer_to_the_truth(learnt):
+    studio, truth = learnt
+    depths = np.linspace(1, deepest(read_plan(studio.folder / "word.json")), 10)
+    before, now = studio.brush("mine.json"), studio.brush()
+    for law in ("lag", "half_width"):
+        true = truth.law(law)(depths)
+        off = [
+            np.abs(np.array([getattr(each, law)(d) for d in depths]) / true - 1).mean()
+            for each in (before, now)
+        ]
+        assert off[1] < 0.2 * off[0] and off[1] < 0.03, (law, off)
+        values = np.array([getattr(now, law)(d) for d in depths])
+        band = law_band(now, law, depths)[0]
+        assert np.mean(np.abs(values - true) <= band) > 0.7, (law, values - true, band)
+        assert np.all(band < 0.1 * true), law
+
+
+def test_told_twice_it_is_refused(learnt, capsys):
+    studio, _ = learnt
+    status, _, told = in_json(capsys, *studio.words("mine-3.json", prior="mine-2.json"))
+    assert status == 1 and is_told(told, "photo-learned-twice mine-2"), told
+    assert not (studio.folder / "mine-3.json").exists()
+
+
+def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, capsys):
+    studio = Studio(tmp_path, BARS, 0.004)
+    studio.paint(3, true_brush())
+    assert in_json(capsys, *studio.words())[0] == 0
+    before, now = studio.brush("mine.json"), studio.brush()
+    assert np.array_equal(now.covariance, before.covariance)
+    for law in LAWS:
+        assert getattr(now, law).coefficients == getattr(before, law).coefficients
+        assert law_band(now, law, DEPTHS)[0] == pytest.approx(law_band(before, law, DEPTHS)[0])
+
+
+def test_one_depth_says_less_of_others(tmp_path, capsys):
+    """What is told at one depth and above it leaves what lies far below it open, and the truth within."""
+    studio = Studio(tmp_path, ONE_DEPTH, 0.08)
+    studio.paint(3, true_brush(1.06, 0.96))
+    assert in_json(capsys, *studio.words())[0] == 0
+    before, now = studio.brush("mine.json"), studio.brush()
+    for law in ("lag", "half_width"):
+        was, is_now = (law_band(each, law, DEPTHS)[0] for each in (before, now))
+        true = true_brush(1.06, 0.96).law(law)(DEPTHS)
+        off = np.abs([getattr(now, law)(d) for d in DEPTHS] - true)
+        assert np.all(off < is_now), (law, off, is_now)
+        assert is_now[3] < 0.6 * was[3] and is_now[-1] > 2 * is_now[3], (law, was, is_now)
+
+
+def test_what_is_not_this_job_is_refused(tmp_path, capsys):
+    studio = Studio(tmp_path)
+    studio.paint(4, true_brush())
+    (tmp_path / "other.svg").write_text((HEAD + WORD + "</g></svg>").replace("M14 34", "M15 34"))
+    words = ["convert", tmp_path / "other.svg", tmp_path / "other.json", "--brush", tmp_path / "mine.json"]
+    assert main([*map(str, words), "--quiet"]) == 0
+    status, _, told = in_json(capsys, *studio.words(plan="other.json"))
+    assert status == 1 and is_told(told, "photo-of-another-chart"), told
+    save_brush(known_brush(0.01), tmp_path / "thine.json")
+    status, _, told = in_json(capsys, *studio.words(prior="thine.json"))
+    assert status == 1 and is_told(told, "plan-of-other-brush mine"), told
+    assert main([*studio.words(), "--chart", "chart.json"]) == 2
+    assert main([*studio.words()[:4], "-o", str(tmp_path / "out.json")]) == 2
+    assert not (tmp_path / "mine-2.json").exists()
+
+
+def test_strokes_that_share_paint_are_left_out_by_name(tmp_path, capsys):
+    studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
+    studio.paint(5, true_brush(1.05, 0.95))
+    status, _, told = in_json(capsys, *studio.words())
+    assert status == 0
+    named = sorted(notice.where for _, notice in told if notice.code == "marks-touch")
+    assert named == ["line", "slash"], told
+    brush = studio.brush()
+    assert abs(brush.lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
+
+
+def test_the_plan_of_a_corrected_word_says_where_the_tool_went(tmp_path, capsys):
+    studio = Studio(tmp_path)
+    shift = [
+        {
+            "stroke": one.stroke,
+            "correction": {
+                "start_mm": np.array(one.poses_mm)[0, :2].tolist(),
+                "middle_mm": [75.0, 45.0],
+                "shift_mm": [1.5 * (-1) ** k, 1.0],
+                "turn_deg": 0.0,
+            },
+        }
+        for k, one in enumerate(read_plan(tmp_path / "word.json").passes)
+    ]
+    (tmp_path / "c.json").write_text(
+        json.dumps({"format": "brushsvg/comparison", "version": 1, "strokes": shift})
+    )
+    plan = studio.convert("led.json", "--corrections", str(tmp_path / "c.json"))
+    truth = true_brush(1.15, 0.9)
+    studio.paint(6, truth, plan)
+    words = studio.words(plan=plan)
+    assert in_json(capsys, *words[:2], tmp_path / "aside-photo.jpg", *words[2:])[0] == 0
+    assert abs(studio.brush().lag(4.0) / truth.law("lag")(4.0) - 1) < 0.03
