@@ -44,10 +44,7 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
 
 
 def unseen_mm(brush, depth_mm: float) -> float:
-    """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares: a quarter of what the
-    lag is known to with 95 %. 0 where nothing is known."""
+    """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares: a quarter of what
+    law_band says of it. 0 where nothing is known."""
     known = law_band(brush, "lag", np.array([depth_mm]))
-    if known is None:
-        return 0.0
-    half_mm, how = float(known[0][0]), known[1]
-    return 0.25 * half_mm * (_core.deviations_of_95(None) if how.startswith("RMSE") else 1.0)
+    return 0.0 if known is None else 0.25 * float(known[0][0])

@@ -8,9 +8,7 @@ from .. import _core
 from ..brush.confidence import unseen_mm
 from ..drawing.design import Notice
 
-BESIDE = (
-    0.5  # of half the width: paint that lies farther outside of what was drawn is seen as a bulge or a thorn
-)
+BESIDE = 0.5  # of half the width: paint farther outside of what was drawn is seen as a bulge or a thorn
 _SWEPT_MM = 0.05
 
 
