@@ -316,7 +316,7 @@ def _low(way: Way, job: Job):
     sideways = np.linalg.norm(way.ends[:, :2] - way.starts[:, :2], axis=1)
     bad = (
         (low < safe - 0.05 - job.servo_mm[0] / 2)
-        & (high > job.touch_mm + job.servo_mm[1])
+        & (high > job.touch_mm + job.servo_mm[1] + 1e-6)
         & (sideways > OFF_MM)
     )
     for k in np.flatnonzero(bad):

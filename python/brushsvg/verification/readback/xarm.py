@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
 from ...errors import Error
 from ...machine.cell import Cell
 from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, NAMES_LETTERS, XARM_END, upright_deg
-from . import Readback
+from . import Act, Readback
 from .script import N, Script, place, read_script
 
 _FIXED = "|".join(
@@ -31,6 +32,15 @@ _LINES = tuple(
     )
 )
 
+_NOTHING = re.compile(r"(?<=[\[ (])-0(?=[],)])")  # of a setting
+_LEFT_OUT = re.compile(r"(set_(?:mode|state))\(\)")  # 0 is what the SDK takes then
+# Runs of lines that do the same in any order: what is imported and named; where the tool is and how the arm moves,
+# between switching it on and letting it move.
+_ANY_ORDER = (
+    re.compile(r"import |from |UPRIGHT = |TOOL = |at most"),
+    re.compile(r"done\(arm\.set_(?:world_offset|tcp_offset|mode)\("),
+)
+
 
 def read_xarm(text: str, cell: Cell) -> Readback:
     """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
@@ -47,4 +57,34 @@ def read_xarm(text: str, cell: Cell) -> Readback:
         turned_deg=tuple(upright_deg(cell).tolist()),
         is_indented=True,
     )
-    return read_script(text, script, Readback(blends_by_radius=True))
+    lines = (_spelled(line) if line.startswith("done(arm.set_") else line for line in text.splitlines())
+    out = read_script("\n".join(lines), script, Readback(blends_by_radius=True))
+    out.acts = _with_runs_sorted(_without_idle_stops(out.acts))
+    return out
+
+
+def _spelled(line: str) -> str:
+    return _LEFT_OUT.sub(r"\1(0)", _NOTHING.sub("0", line))
+
+
+def _without_idle_stops(acts: list[Act]) -> list[Act]:
+    """To wait where the arm stops anyway, before it goes on, is nothing."""
+    kept = []
+    for act, then in zip(acts, [*acts[1:], None], strict=True):
+        stands = bool(kept) and kept[-1].kind == "move" and not any(kept[-1].same)
+        goes_on = then is not None and then.kind == "move"
+        if not (act.text == "arrive()" and stands and goes_on):
+            kept.append(act)
+    return kept
+
+
+def _with_runs_sorted(acts: list[Act]) -> list[Act]:
+    out = []
+    for run, group in itertools.groupby(acts, _run):
+        lines = list(group)
+        out += lines if run is None else sorted(lines, key=lambda act: act.text)
+    return out
+
+
+def _run(act: Act) -> int | None:
+    return next((k for k, these in enumerate(_ANY_ORDER) if these.match(act.text)), None)
