@@ -8,8 +8,9 @@ from programs import problems
 
 from brushsvg import _core, cli, compensate, find_brush, find_cell
 from brushsvg.machine.preflight import as_exact_as
+from brushsvg.pipeline.paint_astray import off_middle_line, outside
 from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import Options, _tracking_notices, prepare
+from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.planning.refinement import towards_reach
 
 BRUSH = find_brush("round-6")
@@ -59,22 +60,22 @@ def test_outlines_within_reach_and_a_little_beyond_are_refined_towards():
     assert not towards_reach(bar(greatest), bar(1.2 * greatest), BRUSH).wanted_mm
 
 
-@pytest.mark.parametrize(("away_mm", "is_told"), [(1.0, [True, False]), (2.5, [True, True])])
+@pytest.mark.parametrize(("away_mm", "is_told"), [(0.8, [True, False]), (2.5, [True, True])])
 def test_a_refined_mark_beside_its_stroke_is_told_of(away_mm, is_told):
     """Two strokes 4 mm wide: the miss of one in closed form counts from the tolerance on, that of a refined one from
-    where its middle leaves the stroke."""
+    where its paint lies half its half width outside."""
     stroke = bar(2.0, wanted=False)
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
     miss = _core.miss_of(a_pass, stroke, BRUSH)
-    told = [bool(_tracking_notices([stroke], [miss], [moved], BRUSH, 0.05)) for moved in (False, True)]
-    assert told == is_told
+    in_closed_form = off_middle_line([stroke], [miss], BRUSH, 0.05)
+    assert [bool(in_closed_form), bool(outside([stroke], [a_pass], BRUSH))] == is_told
 
 
 def test_a_refined_plan_tells_of_strokes_left_in_closed_form(tmp_path):
     """Nothing is refined on a thread, and its misses were told with --compensation closed only."""
     text = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"><path id="z"
-        d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.2"/></svg>"""
+        d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.4"/></svg>"""
     closed, refined = works(tmp_path, text, corners="turn")
     assert any("turns too sharply" in notice.sentence for notice in closed.notices)
     assert refined.notices == closed.notices

@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..machine.arc_chords import with_chords
-from ..machine.cell import Cell
+from ..machine.cell import Cell, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
 from .simulate_program import Problems, Ran, chords, slack_mm
@@ -89,8 +89,9 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     in which it should, or not as fast."""
     meant = _with_circles_of(a_pass, meant)
     limit_mm = max(STRAY_MM, slack_mm(cell))
-    # a servo's height goes in steps, beside the line by half of one
-    steepness = limit_mm / (limit_mm + cell.servo.step_mm) if cell.servo else 1.0
+    # a servo's height goes in steps of whole values, beside the line by half of both
+    beside_mm = (cell.servo.step_mm + value_mm(cell)) / 2 if cell.servo else 0.0
+    steepness = limit_mm / (limit_mm + beside_mm)
     problems = []
     if _pose_by_pose(a_pass, meant) > limit_mm:  # it may yet be the same path, with other poses on it
         (found, owner), (asked, _) = _round(a_pass), _round(meant)
