@@ -155,7 +155,7 @@ def test_our_own_layer_is_not_what_is_selected(plugin, tmp_path):
     assert again.stdout == shown.read_bytes(), again.stderr
 
 
-def test_refined_marks_leave_their_lines_on_purpose(plugin, tmp_path):
+def test_of_refined_marks_those_are_red_that_lie_elsewhere(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm"))
     plugin.set(preview__compensation="refined")
@@ -167,7 +167,8 @@ def test_refined_marks_leave_their_lines_on_purpose(plugin, tmp_path):
     layer = preview(shown.read_text())
     assert "round-6, refined: 4 strokes, " in layer.get(f"{INKSCAPE}label")
     assert "tolerance" not in layer.get(f"{INKSCAPE}label")
-    assert not [path for path in layer.iter(f"{SVG}path") if "#d4351c" in path.get("style")]
+    red = ["#d4351c" in path.get("style") for path in layer.iter(f"{SVG}path")]
+    assert red == [False, False, True, False], "the one that turns too sharply, which refinement left as it was"
 
 
 def test_what_the_dialog_says_wins(plugin, tmp_path):
