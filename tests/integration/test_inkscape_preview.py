@@ -168,7 +168,9 @@ def test_of_refined_marks_those_are_red_that_lie_elsewhere(plugin, tmp_path):
     assert "round-6, refined: 4 strokes, " in layer.get(f"{INKSCAPE}label")
     assert "tolerance" not in layer.get(f"{INKSCAPE}label")
     red = ["#d4351c" in path.get("style") for path in layer.iter(f"{SVG}path")]
-    assert red == [False, False, True, False], "the one that turns too sharply, which refinement left as it was"
+    assert red == [False, False, True, False], (
+        "the one that turns too sharply, which refinement left as it was"
+    )
 
 
 def test_what_the_dialog_says_wins(plugin, tmp_path):
