@@ -238,11 +238,16 @@ VectorXd solve_floored(const Problem& problem) {
     VectorXd best, kept(a.rows()), wanted = problem.value;
     double least = std::numeric_limits<double>::infinity();
     for (const std::vector<Side>& way : ways) {
+        double floored = 0.0;  // what the values on and below the floor cost, whatever the polynomial
         for (Index i = 0; i < a.rows(); ++i) {
             const Side side = way[place[std::size_t(i)]];
             kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
             wanted[i] = side == Side::on ? shape.floor : problem.value[i];
+            const double off = std::abs(problem.value[i] - shape.floor);
+            if (side != Side::above) floored += shape.norm == Norm::squares ? off * off : off;
         }
+        // The best law lies one of these ways and costs at least that: with all but a few ways it is already too much.
+        if (floored > least) continue;
         const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
             const VectorXd both = weight.cwiseProduct(kept);
             return (both.asDiagonal() * a).colPivHouseholderQr().solve(both.cwiseProduct(wanted));
