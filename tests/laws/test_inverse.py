@@ -507,8 +507,17 @@ def test_compensation_turns_with_the_sheet():
 # Beginnings ---------------------------------------------------------------------------------------
 
 
-def painted_region(poses, per_pose=40, from_x=-np.inf):
-    """The mark by the slow reference: footprints placed along its events and between them, swept. from_x: of P."""
+def every(poses, step):
+    """Instants of a pass (fractional poses): each pose, and none farther than `step` [mm] from the next."""
+    counts = np.maximum(1, np.ceil(np.linalg.norm(np.diff(poses, axis=0), axis=1) / step)).astype(int)
+    return np.append(np.concatenate([k + np.arange(n) / n for k, n in enumerate(counts)]), len(poses) - 1.0)
+
+
+def painted_region(poses, step=0.25, from_x=-np.inf):
+    """The mark by the slow reference: footprints placed along its events and between them, swept. from_x: of P.
+
+    Steps of 0.25 mm miss less than a ten thousandth of the area of a dot, and 0.02 mm at an edge.
+    """
     reference = oracle.Reference(poses, LAG)
     dragged = [
         (d, np.asarray(each.outline_mm))
@@ -516,9 +525,7 @@ def painted_region(poses, per_pose=40, from_x=-np.inf):
     ]
     outlines = []
     heading = None
-    for pose in np.unique(
-        np.concatenate([np.linspace(0, len(poses) - 1, per_pose * len(poses)), reference.events()])
-    ):
+    for pose in np.unique(np.concatenate([every(poses, step), reference.events()])):
         contact, now, _, pull = reference.at(pose)
         heading = now if np.isfinite(now) else heading
         depth = float(np.interp(pose, np.arange(len(poses)), -poses[:, 2]))
@@ -677,7 +684,7 @@ def end_of_bar(half_width, slope, **options):
     assert (poses[1:-1, 2] < 0.0).all()  # one touch
     wanted = shapely.Polygon(cut_bar(half_width, slope))
     near = shapely.box(40 - half_width, 0, 100, 40)
-    here, meant = painted_region(poses, 10, 40 - 3 * half_width) & near, wanted & near
+    here, meant = painted_region(poses, from_x=40 - 3 * half_width) & near, wanted & near
     beyond = shapely.hausdorff_distance(here | meant, meant)
     return (here & meant).area / (here | meant).area, beyond, poses
 
@@ -723,7 +730,7 @@ def beginning_of_bar(half_width, slope, poses):
 
     wanted = shapely.Polygon(begun_bar(half_width, slope))
     near = shapely.box(0, 0, 20 + 3 * half_width, 40)
-    here, meant = painted_region(poses, 10) & near, wanted & near
+    here, meant = painted_region(poses) & near, wanted & near
     beyond = shapely.hausdorff_distance(here | meant, meant)
     return (here & meant).area / (here | meant).area, beyond
 
