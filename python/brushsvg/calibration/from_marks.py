@@ -226,32 +226,39 @@ def expected_brush(
     noise_mm: float = 0.1,
     noise_length_mm: float = 1.0,
     options: _core.MarkOptions | None = None,
+    painted: list[_core.PaintedMark] | None = None,
 ) -> tuple[_core.Brush, list[str]]:
     """What marks of this plan will say of such a brush, before anyone paints: the brush as the fit sees it, with
     the covariance and intervals to expect, and in words what the strokes cannot tell apart.
 
     noise_mm: standard deviation of a painted edge, which forgets itself over noise_length_mm along the outline.
     options: sigmas of sheet, displacement and height, as for calibrate_marks.
+    painted: expected_marks(plan, brush), where it is at hand.
     """
-    fit = _expected_fit(plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
+    painted = painted or expected_marks(plan, brush)
+    fit = _expected_fit(painted, plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
     return brush_of(fit.laws, brush.name, brush.depth_range_mm, np.array(fit.covariance)), fit.remarks
 
 
 def expected_machine(
-    plan: _core.Plan, brush: _core.Brush, noise_mm: float = 0.1, parts: tuple[str, ...] = tuple(PARTS)
+    plan: _core.Plan,
+    brush: _core.Brush,
+    noise_mm: float = 0.1,
+    parts: tuple[str, ...] = tuple(PARTS),
+    painted: list[_core.PaintedMark] | None = None,
 ) -> list[Number]:
     """What such marks will say of a machine that does as it is told: each number with half its 95 % interval."""
     options = _core.MarkOptions()
     ask_for(options, parts)
-    fit = _expected_fit(plan, brush, noise_mm, 1.0, options)
+    painted = painted or expected_marks(plan, brush)
+    fit = _expected_fit(painted, plan, brush, noise_mm, 1.0, options)
     return numbers(fit, np.array(fit.covariance), options)
 
 
-def _expected_fit(plan, brush, noise_mm: float, noise_length_mm: float, options):
+def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMark]:
+    """The marks of a plan by such a brush, as the fit sees it: outlines in mm of the paper, without noise."""
     need_fits()
-    least, deepest = brush.depth_range_mm
-    laws = laws_of(brush)
-    seen = brush_of(laws, brush.name, (least, deepest))
+    seen = brush_of(laws_of(brush), brush.name, brush.depth_range_mm)
     marks = _core.simulate(plan, seen)
     _core.trace_outlines(marks, seen)
     painted = [
@@ -261,7 +268,11 @@ def _expected_fit(plan, brush, noise_mm: float, noise_length_mm: float, options)
     ]
     if not painted:
         raise Error("the plan paints nothing", "plan", code="nothing-painted")
-    options.deepest_mm = deepest
+    return painted
+
+
+def _expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, options):
+    options.deepest_mm = brush.depth_range_mm[1]
     depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
     options.lag_terms = min(LAG_TERMS, depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)

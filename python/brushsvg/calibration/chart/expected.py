@@ -7,7 +7,7 @@ import numpy as np
 from ... import _core
 from ...brush.confidence import law_band
 from ...brush.describe import LAWS
-from ..from_marks import expected_brush, expected_machine
+from ..from_marks import expected_brush, expected_machine, expected_marks
 
 ROWS = 4
 
@@ -23,7 +23,8 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     ]
     if not hasattr(_core, "fit_marks"):
         return "\n".join([*lines, "no confidence intervals: this brushsvg was built without fits", ""])
-    expected, remarks = expected_brush(chart.plan, brush, noise_mm)
+    painted = expected_marks(chart.plan, brush)
+    expected, remarks = expected_brush(chart.plan, brush, noise_mm, painted=painted)
     at = np.linspace(depths[0], depths[-1], ROWS)
     bands = {name: law_band(expected, name, at)[0] for name, _ in LAWS}
     lines += [
@@ -35,6 +36,7 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         cells = [f"{getattr(expected, name)(depth):.2f} +- {bands[name][i]:.2f}" for name, _ in LAWS]
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
     lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
-    told = [f"{one.name} +- {one.half:.2g}" for one in expected_machine(chart.plan, brush, noise_mm)]
+    machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
+    told = [f"{one.name} +- {one.half:.2g}" for one in machine]
     lines += ["Of the machine, with calibrate --machine lean,axes,tilt,backlash:", "  " + ", ".join(told)]
     return "\n".join([*lines, ""])
