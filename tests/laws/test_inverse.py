@@ -377,11 +377,10 @@ def test_ends_of_the_mark(half_width, seed):
         rows[np.hypot(*(painted.widest[rows] - p).T) < 12] for rows, p in zip(near, (start, end), strict=True)
     ]
     beyond = 2e-3 if half_width < 3 else 0.01  # a blunt front's corner, where the line bends
-    assert reach(painted, end, last, halves[1]) <= half_width + beyond
-    assert reach(painted, start, -first, halves[0]) <= half_width + 2e-3
     depth = half_width / 0.42
-    assert reach(painted, end, last, halves[1]) >= half_width - 0.06
-    assert reach(painted, start, -first, halves[0]) >= min(half_width, WIDEST(depth)) - 0.06
+    assert half_width - 0.06 <= reach(painted, end, last, halves[1]) <= half_width + beyond
+    least = min(half_width, WIDEST(depth)) - 0.06
+    assert least <= reach(painted, start, -first, halves[0]) <= half_width + 2e-3
     lifting = np.flatnonzero(painted.rows.depth_mm < 0.999 * depth)
     lifting = lifting[lifting > len(painted.rows.pose) // 2]
     held = painted.rows.contact_mm[lifting[0]]
