@@ -16,6 +16,7 @@ LEAST_SHARE = 0.01  # of its shape
 _CORNER = 0.69
 _LIMB_SHARE = 0.8  # of a disc in it, beyond: see shape_to_strokes.LEAST_SHARE
 MISSED_SHARE = 0.03  # of its shape, beside which strokes run: pointed beginnings leave some of every letter
+_STILL_BLANK = 0.5  # of a piece: what is left of a corner beside the mark in it is less
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
 _PX_PER_MM, _SIDE_PX = 6.0, 4000  # for a first look: a piece wider than twice _EDGE_MM is several pixels wide
@@ -83,6 +84,28 @@ def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list
                 continue
         found.append(_blank(element, piece, whole))
     return found
+
+
+def left_blank(found: list[Blank], painted: list, traces: list, brush) -> list[Blank]:
+    """Of pieces that no stroke's discs reach, those that its mark does not paint either: the way of a squared end runs
+    into corners.
+
+    painted, traces: as for `missed`.
+    """
+    if not found:
+        return []
+    marks = {piece.element: _core.Marks() for piece in found}
+    for element, of in marks.items():
+        pairs = zip(painted, traces, strict=True)
+        of.passes = [trace for stroke, trace in pairs if stroke.origin.element == element]
+        _core.trace_outlines(of, brush)
+    blank = [_core.area(piece.rings) for piece in found]
+    bare = [
+        area - _core.area(_core.intersect(piece.rings, marks[piece.element].outline_mm))
+        for piece, area in zip(found, blank, strict=True)
+    ]
+    rows = zip(found, blank, bare, strict=True)
+    return [piece for piece, area, left in rows if left > _STILL_BLANK * area]
 
 
 def missed(drawn: list, painted: list, traces: list, known: list[Blank], brush) -> list[Blank]:
