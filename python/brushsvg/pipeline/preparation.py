@@ -23,6 +23,7 @@ from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
 from ..strokes.joining import joined
+from ..strokes.outline_corners import squared_at_corners
 from ..strokes.unreached import left_blank, missed, unreached
 from ..strokes.unreached import notices as blank_notices
 from ..strokes.wide_shapes import within_reach
@@ -98,6 +99,8 @@ def prepare(
         notices += joints
     if options.corners == "auto" and options.compensation in ("closed", "refined"):
         strokes = lifted_at_corners(strokes, brush)
+        if (options.start, options.end) == ("auto", "auto"):
+            strokes = squared_at_corners(strokes, brush)
     refused, left_out, drawn = [], [], tuple(strokes)
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _sorted_out(

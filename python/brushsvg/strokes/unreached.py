@@ -51,7 +51,7 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
     return [
         piece
         for element, rings in parts.items()
-        if all(stroke.origin.lane == 1 for stroke in paint[element])
+        if all(stroke.wanted_mm for stroke in paint[element])  # else filled in passes
         for piece in _pieces(element, _core.unite(rings), paint[element], brush)
     ]
 

@@ -128,7 +128,7 @@ def add_corners(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--corners",
         choices=("auto", "turn"),
-        help="sharp corners of drawn lines: the brush turns in place; default: auto, it is lifted where that is better",
+        help="corners: the brush turns in place; default: auto, it is lifted where that is better",
     )
 
 
