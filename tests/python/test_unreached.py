@@ -63,6 +63,11 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
     work = prepared(tmp_path, WIDE, wide="clamp")
     assert sum(piece.share for piece in work.unreached) > 0.3
     assert is_told(work.notices, "unreached", "p")
+    assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
+    rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
+    assert agrees(*notices(rim.unreached), "unreached narrow", "p")
+    (row,), _ = report.measure(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
+    assert row.worst.code == "wider-than-brush"
     filled = prepared(tmp_path, WIDE, wide="passes")
     assert filled.unreached == ()
 

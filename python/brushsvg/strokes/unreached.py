@@ -3,7 +3,7 @@ of its stroke, as at blunt ends, where it begins pointed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,12 +24,14 @@ _PX_PER_MM, _SIDE_PX = 6.0, 4000  # for a first look: a piece wider than twice _
 
 @dataclass(frozen=True)
 class Blank:
-    """A connected piece of an element's shape: at_mm (x, y) lies in it; share of the shape; rings [mm]."""
+    """A connected piece of an element's shape: at_mm (x, y) lies in it; share of the shape; rings [mm]; is_rim: of a
+    stroke that is wider than the brush."""
 
     element: str
     at_mm: tuple[float, float]
     share: float
     rings: list[np.ndarray]
+    is_rim: bool = False
 
 
 def unreached(drawn: list, painted: list, brush) -> list[Blank]:
@@ -45,6 +47,7 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
         if stroke.origin.repeat == 1 and stroke.wanted_mm:
             parts.setdefault(stroke.origin.element, []).extend(stroke.wanted_mm)
     paint: dict[str, list] = {element: [] for element in parts}
+    found_as = {stroke.id: stroke for stroke in drawn}
     for stroke in painted:
         if stroke.origin.element in paint:
             paint[stroke.origin.element].append(stroke)
@@ -52,19 +55,32 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
         piece
         for element, rings in parts.items()
         if all(stroke.wanted_mm for stroke in paint[element])  # else filled in passes
-        for piece in _pieces(element, _core.unite(rings), paint[element], brush)
+        for piece in _told_rims(
+            _pieces(element, _core.unite(rings), paint[element], brush),
+            [found_as[stroke.id] for stroke in paint[element] if stroke.id in found_as],
+        )
     ]
+
+
+def _told_rims(pieces: list[Blank], strokes: list) -> list[Blank]:
+    """Those of which most is reached by discs of the strokes as they were found are rims."""
+    if not pieces:
+        return []
+    discs = _discs(strokes)
+    return [
+        replace(piece, is_rim=_core.area(_core.intersect(piece.rings, discs)) > 0.5 * _core.area(piece.rings))
+        for piece in pieces
+    ]
+
+
+def _discs(strokes: list) -> list[np.ndarray]:
+    bare = [stroke.replaced(wanted_mm=[]) for stroke in strokes]
+    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, _SWEPT_MM)])
 
 
 def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list[Blank]:
     """Of one element; without shapely where the strokes leave too little."""
-    discs = _core.unite(
-        [
-            ring
-            for stroke in strokes
-            for ring in _core.wanted_outline(stroke.replaced(wanted_mm=[]), _SWEPT_MM)
-        ]
-    )
+    discs = _discs(strokes)
     whole = _core.area(rings)
     finest, greatest = _finest(brush), brush.half_width_range_mm()[1]
     least = max(LEAST_SHARE * whole, np.pi / 4 * finest**2)
@@ -187,12 +203,13 @@ def _blank(element: str, piece, whole_mm2: float) -> Blank:
 
 
 def notices(found: list[Blank], is_reached: bool = False) -> list[Notice]:
-    """One for each element: where its largest piece lies, and the share of all of them. is_reached: by a stroke."""
-    by_element: dict[str, list[Blank]] = {}
+    """One for each element, and one for its rims: where its largest piece lies, and the share of all of them.
+    is_reached: by a stroke."""
+    by_element: dict[tuple[str, bool], list[Blank]] = {}
     for piece in found:
-        by_element.setdefault(piece.element, []).append(piece)
+        by_element.setdefault((piece.element, piece.is_rim), []).append(piece)
     told = []
-    for element, pieces in by_element.items():
+    for (element, _), pieces in by_element.items():
         x, y = pieces[0].at_mm
         share = 100 * sum(piece.share for piece in pieces)
         where = f"near x {x:.1f}, y {y:.1f} mm"
@@ -201,6 +218,9 @@ def notices(found: list[Blank], is_reached: bool = False) -> list[Notice]:
         if is_reached:
             said = f"the mark leaves at least {share:.2g} % of its shape blank, {where}"
             told.append(Notice(element, said, code="mark-misses"))
+        elif pieces[0].is_rim:
+            said = f"the brush is too narrow for {share:.2g} % of its shape, {where}"
+            told.append(Notice(element, said, code="unreached"))
         else:
             said = f"no stroke reaches {share:.2g} % of its shape, {where}"
             told.append(Notice(element, said, code="unreached"))

@@ -120,7 +120,7 @@ def add_wide(command: argparse.ArgumentParser) -> None:
         "--wide",
         choices=("auto", "clamp", "passes", "refuse"),
         help="shapes wider than the brush: its greatest width, several passes, or refuse; default: auto, passes where "
-        "the mark of its greatest width overlaps with a shape by less than 0.8",
+        "the mark of its greatest width overlaps with a shape by less than 0.8, or with all of them by 0.1 less",
     )
 
 
