@@ -12,6 +12,7 @@
 #include "half_painted.hpp"
 #include "hidden_beginning.hpp"
 #include "stroke_ends.hpp"
+#include "turned_beginning.hpp"
 
 namespace brushsvg {
 namespace {
@@ -93,8 +94,8 @@ Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush
                          double step_tolerance) {
     const double last_mm = painted_stretch(stroke, brush, line.length())[1];
     const std::optional<Dot> dot = dot_of(wanted, brush);
-    if (!dot && !hidden_beginning(stroke, brush, line, InverseLag(line, brush), last_mm, step_tolerance))
-        return Beginning::exposed;
+    const bool hides = dot || hidden_beginning(stroke, brush, line, InverseLag(line, brush), last_mm, step_tolerance);
+    if (!hides && !turned_beginning(stroke, brush, line)) return Beginning::exposed;
     bool turns = false;
     Pass exposed, hidden;
     closed_form(stroke, brush, line, Beginning::exposed, step_tolerance, turns).into(exposed);
@@ -104,7 +105,9 @@ Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush
                  made = kMade * half + 4.0 * brush.lag(depth);
     const View view(wanted, line.at(0.0).middle, half, greatest_half_mm(stroke, half), brush);
     const bool is_better =
-        dot ? view.is_better(hidden, exposed) : view.is_better(beginning_of(hidden, made), beginning_of(exposed, made));
+        dot ? view.is_better(hidden, exposed)
+            : view.is_better(beginning_of(hidden, made + (hides ? 0.0 : way_of(hidden) - way_of(exposed))),
+                             beginning_of(exposed, made));
     return is_better ? Beginning::hidden : Beginning::exposed;
 }
 

@@ -8,6 +8,7 @@
 #include "inverse_lag.hpp"
 #include "landing.hpp"
 #include "stroke_ends.hpp"
+#include "turned_beginning.hpp"
 
 namespace brushsvg {
 namespace {
@@ -64,18 +65,24 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     const InverseLag inverse(line, brush);
     std::optional<HiddenBeginning> hidden;
     if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
+    std::optional<TurnedBeginning> turned;
+    if (start == Beginning::hidden && !hidden) turned = turned_beginning(stroke, brush, line);
     std::optional<Vector2d> first;
     if (hidden) {
         s0 = hidden->on_from_mm;
         first = hidden->on_along;
+    } else if (turned) {
+        s0 = turned->on_from_mm;
+        first = turned->on_along;
     }
-    const Stroke& painted = hidden ? hidden->onward : stroke;
+    const Stroke& painted = hidden ? hidden->onward : turned ? turned->onward : stroke;
     const Line onward(painted, brush);
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)
         samples = onward.coarse(s0, s1, places_of_depths(painted, brush, line.length(), inverse.crossings()));
     if (samples.size() < 2) {
         hidden.reset();
+        turned.reset();
         samples = dab(stroke, line);
         inverse(samples);
     } else {
@@ -86,6 +93,9 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
         land(stance_of(hidden->back.front()), brush, out);
         for (const Sample& sample : hidden->back) out.add(sample.tcp, sample.depth);
         turn_over(stance_of(hidden->back.back()), stance_of(samples.front()), brush, out);
+    } else if (turned) {
+        turn(*turned, brush, out);
+        turn_over({turned->at_mm, turned->on_along, turned->depth_mm}, stance_of(samples.front()), brush, out);
     } else {
         land(stance_of(samples.front()), brush, out);
     }

@@ -17,8 +17,6 @@ using Eigen::Vector2d;
 constexpr double kLongest = 1.4;
 /// Of a half width: a hole about P, where the whole footprint lies ahead of it.
 constexpr double kLargestHole = 0.1;
-/// A little less than all round: an arc that ends where it began would say nothing.
-constexpr double kTurnRad = 356.0 * EIGEN_PI / 180.0;
 /// What counts as turned round on the spot, and how far P may creep meanwhile.
 constexpr double kRoundRad = 6.0, kRestsMm = 0.02;
 constexpr int kHalvings = 40;
@@ -49,6 +47,14 @@ std::optional<double> depth_of_reach(const Brush& brush, double half_width_mm) {
     return lo;
 }
 
+}  // namespace
+
+std::optional<double> depth_of_dot(const Brush& brush, double half_width_mm) {
+    const auto depth = depth_of_reach(brush, half_width_mm);
+    if (!depth || -brush.tip_gap(*depth) > kLargestHole * half_width_mm) return {};
+    return depth;
+}
+
 void turn_round(const Vector2d& contact_mm, double first_rad, double depth, const Brush& brush, PoseList& out) {
     const int n = int(std::ceil(kTurnRad / kTurnChordRad));
     const std::int64_t before = out.last();
@@ -59,17 +65,13 @@ void turn_round(const Vector2d& contact_mm, double first_rad, double depth, cons
     out.arc(before, contact_mm, kTurnRad);
 }
 
-}  // namespace
-
 std::optional<Dot> dot_of(const Stroke& stroke, const Brush& brush) {
     if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
     const double length_mm = Line(stroke, brush).length();
     const double from_half_mm = half_width_at(stroke, 0.0), to_half_mm = half_width_at(stroke, 1.0);
     if (length_mm > kLongest * std::min(from_half_mm, to_half_mm)) return {};
-    const auto from = depth_of_reach(brush, from_half_mm), to = depth_of_reach(brush, to_half_mm);
+    const auto from = depth_of_dot(brush, from_half_mm), to = depth_of_dot(brush, to_half_mm);
     if (!from || !to) return {};
-    if (-brush.tip_gap(*from) > kLargestHole * from_half_mm || -brush.tip_gap(*to) > kLargestHole * to_half_mm)
-        return {};
     const Vector2d a = point_at(stroke.middle_mm, {0, 0.0});
     const Vector2d b = point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0});
     const bool is_point = (b - a).norm() <= 1e-6;

@@ -23,6 +23,14 @@ std::optional<Dot> dot_of(const Stroke& stroke, const Brush& brush);
 
 PoseList poses_of(const Dot& dot, const Brush& brush);
 
+/// Press depth at which a footprint that is turned on the spot reaches so far; none where that leaves a hole about P,
+/// or the least depth reaches farther already; the greatest depth where none reaches so far.
+std::optional<double> depth_of_dot(const Brush& brush, double half_width_mm);
+
+/// The brush turned round P, the heading from `first_rad` on by a little less than all round.
+void turn_round(const Eigen::Vector2d& contact_mm, double first_rad, double depth, const Brush& brush, PoseList& out);
+inline constexpr double kTurnRad = 356.0 * EIGEN_PI / 180.0;  ///< an arc that ends where it began would say nothing
+
 /// Whether the brush is turned round on the spot: then P follows the line, and the widest section goes round it.
 bool is_dot(const PassMarks& marks);
 

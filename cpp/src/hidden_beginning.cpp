@@ -22,8 +22,8 @@ constexpr double kWithinReach = 0.999;
 /// Steps of the depth and of the way in which the mark is narrowed for that, as shares of the whole.
 constexpr double kNarrowingDepths = 1.0 / 64.0, kNarrowingWay = 1.0 / 12.0;
 
-/// Arc length from which on the rear of a footprint as wide as the stroke lies behind `from_mm`, and the stroke
-/// narrowed up to there so that narrower ones do too. None where no depth does.
+}  // namespace
+
 std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Brush& brush, double length_mm,
                                                   double from_mm) {
     const double step_mm = kNarrowingWay * brush.tip_to_widest(depth_of(stroke, brush, 0.0));
@@ -45,8 +45,6 @@ std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Br
     }
     return {};
 }
-
-}  // namespace
 
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
                                                 const InverseLag& inverse, double last_mm, double step_tolerance) {

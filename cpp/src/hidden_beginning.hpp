@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "inverse_lag.hpp"
 
@@ -15,6 +16,11 @@ struct HiddenBeginning {
     double on_from_mm;         ///< arc length where the widest section goes on
     Eigen::Vector2d on_along;  ///< and the heading there
 };
+
+/// The arc length from which on the rear of a footprint as wide as the stroke lies behind `from_mm`, and the stroke
+/// narrowed up to there so that narrower ones do too. None where no depth does.
+std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Brush& brush, double length_mm,
+                                                  double from_mm);
 
 /// None where the brush cannot hide: too thin a mark, whose widest section trails P, or too short a stroke.
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/thin_out.hpp"
@@ -19,9 +20,16 @@ inline Pass thin_out_after_turn(const Pass& pass, const Brush& brush, double tol
         if (pass.poses_mm(i, 2) >= pass.poses_mm(kept, 2)) kept = i;
     Pass rest = pass;
     rest.poses_mm = pass.poses_mm.bottomRows(pass.poses_mm.rows() - kept);
-    for (Arc& arc : rest.arcs) {
+    std::vector<Arc> before;
+    rest.arcs.clear();
+    for (Arc arc : pass.arcs) {
+        if (arc.last <= kept) {
+            before.push_back(arc);
+            continue;
+        }
         arc.first -= kept;
         arc.last -= kept;
+        rest.arcs.push_back(arc);
     }
     rest = thin_out(rest, brush, tolerance_mm);
     Pass out = rest;
@@ -31,6 +39,7 @@ inline Pass thin_out_after_turn(const Pass& pass, const Brush& brush, double tol
         arc.first += kept;
         arc.last += kept;
     }
+    out.arcs.insert(out.arcs.begin(), before.begin(), before.end());
     return out;
 }
 

@@ -91,7 +91,7 @@ std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const 
 }
 
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
-                                const std::optional<SquaredBeginning>& beginning = {},
+                                bool turns, const std::optional<SquaredBeginning>& beginning = {},
                                 const std::optional<SquaredEnd>& squared = {}) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     // on its way back to a hidden beginning a blunt front goes beyond the path's
@@ -130,7 +130,9 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     }
     for (const TurnOver& turn : turns_over(marks)) {
         if (turn.first < begin) continue;
-        look(begin, turn.first, before_turn);
+        if (!turns)
+            look(begin, turn.first, before_turn);  // of a dot the widest section goes round the line's beginning
+        turns = false;
         begin = turn.last;
     }
     if (squared) {
@@ -151,16 +153,18 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     check(stroke);
     require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
-    const Ring widest = is_dot(marks) ? marks.contact_mm : widest_points(marks, brush);
+    // a dot, or a stroke that begins with one
+    const bool turns = is_dot(marks), is_all = turns && turns_over(marks).empty();
+    const Ring widest = is_all ? marks.contact_mm : widest_points(marks, brush);
     // a blunt front goes beyond the path's end
     const Stroke whole = up_to_its_end(stroke, brush);
-    const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm);
+    const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, turns);
     if (miss.within_tolerance) return miss;
     const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush);
     std::optional<SquaredEnd> end = squared_end(stroke, brush);
     if (end && !ends_squared(marks, widest, *end)) end.reset();
     if (!beginning && !end) return miss;
-    return tracking_error_of(marks, widest, end ? stroke : whole, tolerance_mm, beginning, end);
+    return tracking_error_of(marks, widest, end ? stroke : whole, tolerance_mm, turns, beginning, end);
 }
 
 }  // namespace brushsvg

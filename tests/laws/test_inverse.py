@@ -585,13 +585,40 @@ def poses_of(middle, half_width, **options):
     [
         (line((20, 20), (60, 20)), [(0.0, 0.4)]),  # the widest section trails
         (line((20, 20), (60, 20)), [(0.0, 0.15), (0.5, 2.0), (1.0, 2.0)]),  # a taper
-        (line((20, 20), (22, 20), (22, 50)), [(0.0, 3.0)]),  # the tip would come out beyond the corner
     ],
 )
 def test_what_cannot_be_hidden_is_exposed(middle, half_width):
     exposed = poses_of(middle, half_width)
     for start in ("hidden", "auto"):
         np.testing.assert_array_equal(poses_of(middle, half_width, start=start), exposed)
+
+
+@pytest.mark.parametrize(
+    ("middle", "half_width", "least"),
+    [
+        (arc(6.0, 1.2), [(0.0, 3.0), (0.5, 2.0), (1.0, 0.5)], 0.96),  # a comma
+        (arc(14.0, 1.0), [(0.0, 3.5), (0.2, 2.8), (0.5, 1.2), (1.0, 1.2)], 0.96),  # the ball of an f
+        (line((20, 20), (22, 20), (22, 50)), [(0.0, 3.0)], 0.94),  # the tip would come out beyond the corner
+    ],
+)
+def test_what_has_no_room_for_a_way_back_is_turned_round_first(middle, half_width, least):
+    import shapely
+
+    stroke = stroke_of(middle, half_width)
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="hidden")
+    assert found.misses[0].within_tolerance
+    turned = np.asarray(found.plan.passes[0].poses_mm)
+    assert turned[0, 2] == turned[-1, 2] == 0.0
+    assert (turned[1:-1, 2] < 0.0).all()  # one touch
+    np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), turned)
+    wanted = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.01)])
+    near = shapely.Point(middle[0, :2]).buffer(2 * half_width[0][1])
+
+    def overlap(poses):
+        mark = painted_region(poses)
+        return (mark & wanted & near).area / ((mark | wanted) & near).area
+
+    assert overlap(turned) > least > overlap(poses_of(middle, half_width)) + 0.04
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,12 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.__main__ import main
+from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.strokes import corners
 from brushsvg.strokes.corners import lifted_at_corners
 from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.outline_corners import squared_at_corners
+from brushsvg.strokes.trial_mark import trial_mark
 
 LINE = 'fill="none" stroke="black" stroke-width="4"'
 RECT = "M15 15H55V45H15Z"
@@ -143,3 +146,48 @@ def test_parts_of_two_lines_have_names_of_their_own(brush):
     drawn = strokes(read(f'<path id="a~2" d="{APEX}" {LINE}/><path id="a" d="{APEX}" {LINE}/>'))[0]
     names = [stroke.id for stroke in lifted_at_corners(drawn, brush)]
     assert len(names) == 4 and len(set(names)) == 4, names
+
+
+FILL = 'fill="black" stroke="none"'
+EL = "M20 5H28V42H45V49H20Z"
+
+
+def test_an_outline_that_turns_in_a_corner_is_two_strokes_whose_marks_fill_it(brush):
+    """Turned in one stroke the outer corner is as round as the stem is wide."""
+    whole = of(EL, FILL)
+    assert len(whole) == 1
+    parts = squared_at_corners(whole, brush)
+    assert [str(part.id) for part in parts] == ["p", "p~2"]
+    assert parts[0].settings.start is None
+    assert parts[1].settings.start == "exposed"
+    shape = whole[0].wanted_mm
+    assert _core.area(_core.unite([ring for part in parts for ring in part.wanted_mm])) == pytest.approx(
+        _core.area(shape), abs=1e-3
+    )
+
+    def bare_mm2(some) -> float:
+        corner = [np.array([(19.0, 0.0), (24.0, 0.0), (24.0, 5.0), (19.0, 5.0)])]
+        wanted = _core.intersect(shape, corner)
+        assert _core.area(wanted) == pytest.approx(16, abs=0.1)
+        mark = trial_mark(some, brush)
+        return _core.area(wanted) - _core.area(_core.intersect(wanted, mark))
+
+    assert bare_mm2(parts) < 0.3 * bare_mm2(whole)
+
+
+def test_bends_and_shapes_wider_than_the_brush_stay_one_stroke(brush):
+    bend = of("M20 5H28V30Q28 42 40 42H45V50H40Q20 50 20 30Z", FILL)
+    wide = of("M20 5H31V36H55V47H20Z", FILL)
+    for some in (bend, wide):
+        assert len(squared_at_corners(some, brush)) == len(some)
+
+
+def test_corners_of_outlines_are_cut_unless_said_otherwise(tmp_path):
+    file = tmp_path / "l.svg"
+    file.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
+        f'<path id="p" d="{EL}"/></svg>'
+    )
+    assert len(prepare(file, Options()).plan.passes) == 2
+    assert len(prepare(file, Options(corners="turn")).plan.passes) == 1
+    assert len(prepare(file, Options(end="lifted")).plan.passes) == 1

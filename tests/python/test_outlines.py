@@ -8,6 +8,7 @@ from svg_text import read
 from brushsvg import _core
 from brushsvg.errors import Error
 from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.skeleton.cut_ends import run_to_cut
 
 BAR = "M10 20H60V26H10Z"
 
@@ -45,15 +46,29 @@ def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
     assert _core.area(bar.wanted_mm) == pytest.approx(300)
 
 
-@pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, False)])
-def test_a_leg_stays_straight_to_a_cut_that_is_nearly_square_and_runs_into_a_sharp_corner(
-    slant_mm, is_straight
-):
-    """Cut at 84, 70 and 45 degrees. Towards a corner of 70 degrees, as an A's feet have, the leg made a hook."""
+@pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, True), (10.0, False)])
+def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(slant_mm, is_straight):
+    """Cut at 84, 70, 45 and 31 degrees. Towards a corner of 70 degrees, as an A's feet have, the leg made a hook, and
+    to that of 45 degrees, as a k's arms have, it ran as a leaf."""
     (leg,) = painted(path(f"M40 5V{40 + slant_mm}L46 40V5Z"))
     line = _core.flatten(leg, 0.01)[:, :2]
     assert (np.abs(line[:, 0] - 43).max() < 0.35) == is_straight
     assert (line[-1, 1] < 50 - 40) == (not is_straight)
+
+
+def test_a_last_step_aside_is_left_out():
+    """As the axis of an s ends: what squares ends looks for the cut along the last direction."""
+    bar = np.array([(0.0, -3.0), (40.0, -3.0), (40.6, 3.0), (0.0, 3.0)])
+    along = np.column_stack([np.linspace(5, 37, 33), np.zeros(33), np.full(33, 3.0)])
+    line = run_to_cut(np.vstack([along, (37.1, 0.1, 2.9)]), [bar])
+    assert line[-1] - line[-2] == pytest.approx((line[-1, 0] - line[-2, 0], 0, 0), abs=1e-9)
+    assert line[-1] == pytest.approx((40.3 - 3 * np.hypot(1, 0.1), 0, 3), abs=0.01)
+
+
+def test_a_pointed_end_keeps_its_point():
+    (leaf,) = painted(path("M10 30Q30 20 60 30Q30 40 10 30Z"))
+    assert min(half for _, half in leaf.half_width) < 0.2
+    assert sorted(x for x, _ in ends(leaf)) == pytest.approx([10, 60], abs=1.5)
 
 
 @pytest.mark.parametrize("inner_mm", [12, 14, 16])
@@ -74,13 +89,14 @@ def test_the_legs_of_an_apex_are_straight_and_begin_beside_each_other(blunt_mm, 
 @pytest.mark.parametrize(
     ("d", "least"),
     [
-        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.968),  # 0.959 beside each other
-        ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.958),  # 0.935 towards one place
+        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 beside each other
+        ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.968),  # 0.948 towards one place
     ],
 )
 def test_lines_that_meet_in_a_round_corner_cover_it_either_way(d, least):
+    """Below the ends of the lines, which discs leave blunt."""
     made = painted(path(d))
-    shape = wanted(made)
+    shape = _core.intersect(wanted(made), [np.array([(0.0, 0.0), (60.0, 0.0), (60.0, 38.0), (0.0, 38.0)])])
     assert _core.area(_core.intersect(marks(made), shape)) > least * _core.area(shape)
 
 

@@ -116,6 +116,18 @@ def test_passes_are_taken_where_the_mark_at_the_nearest_width_overlaps_too_littl
     assert agrees(notices[0], f"width-out-of-reach {nearest:.2f}")
 
 
+def test_passes_are_taken_where_they_paint_clearly_more(brush):
+    """A bold word was clamped to 0.844 where passes paint 0.965: no letter of it was below 0.8."""
+    made = of("M10 10H90V20.3H10Z")
+    shape = made[0].wanted_mm
+    nearest = overlap(within_reach(made, brush, "clamp")[0], shape, brush)
+    passes, _, notices = within_reach(made, brush)
+    assert nearest > 0.8
+    assert len(passes) > 1
+    assert overlap(passes, shape, brush) > nearest + 0.1
+    assert agrees(notices[0], f"width-out-of-reach {nearest:.2f}")
+
+
 def test_the_stems_of_a_drawing_are_of_one_weight(brush):
     """Of h66 in a bold serif the h was filled with 11 mm wide stems, the 6 kept to 8.4 mm."""
     slim, wide = "M10 40H90V49H10Z", "M10 5H90V29H10Z"

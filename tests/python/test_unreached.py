@@ -51,10 +51,23 @@ def test_blunt_corners_are_not_named(tmp_path):
     assert prepared(tmp_path, "M20 5H28V25H20Z").unreached == ()
 
 
+def test_corners_that_a_squared_end_runs_into_are_not_named(tmp_path):
+    """Discs leave them, and a corner of 45 degrees counts as a limb."""
+    work = prepared(tmp_path, "M8 10H19L51 42H40Z")
+    assert len(unreached(list(work.drawn), work.strokes, work.brush)) == 2
+    assert work.unreached == ()
+    assert not is_told(work.notices, "unreached")
+
+
 def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path):
     work = prepared(tmp_path, WIDE, wide="clamp")
     assert sum(piece.share for piece in work.unreached) > 0.3
     assert is_told(work.notices, "unreached", "p")
+    assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
+    rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
+    assert agrees(*notices(rim.unreached), "unreached narrow", "p")
+    (row,), _ = report.measure(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
+    assert row.worst.code == "wider-than-brush"
     filled = prepared(tmp_path, WIDE, wide="passes")
     assert filled.unreached == ()
 

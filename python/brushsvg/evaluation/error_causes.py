@@ -39,8 +39,8 @@ def cause(
     """The first of the causes that holds near a place, the gravest first.
 
     stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; place: of the
-    stroke's verdict, size_mm: side of its square; where: "bare" where no stroke reaches, "corner" where discs of this
-    one's widths do not, else ""; miss: of the pass.
+    stroke's verdict, size_mm: side of its square; where: "bare" where no stroke reaches, "rim" where one that is wider
+    than the brush would, "corner" where discs of this one's widths do not, else ""; miss: of the pass.
     """
     is_missing = place.is_missing
     at = int(np.hypot(line[:, 0] - place.at_mm[0], line[:, 1] - place.at_mm[1]).argmin())
@@ -53,7 +53,11 @@ def cause(
         least, greatest = brush.half_width_range_mm()
         finest = max(least, _finest_measured(brush))
         beside_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
-        if is_missing and half > greatest + SLIGHT and beside_mm2 > EXPLAINS * place.area_mm2:
+        if (
+            is_missing
+            and half > greatest + SLIGHT
+            and (where == "rim" or beside_mm2 > EXPLAINS * place.area_mm2)
+        ):
             words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
             return Cause(words, code="wider-than-brush")
         if where == "bare":

@@ -124,12 +124,15 @@ def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: 
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
         size_mm = max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
-        is_bare = place.is_missing and any(
-            piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
+        here = [
+            piece
             for piece in unreached
-        )
+            if piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
+        ]
+        is_bare = place.is_missing and any(not piece.is_rim for piece in here)
+        is_rim = place.is_missing and bool(here)
         is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
-        where = "bare" if is_bare else "corner" if is_corner else ""
+        where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
         why = cause(stroke, line, brush, place, size_mm, where, miss, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(

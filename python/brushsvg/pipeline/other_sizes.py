@@ -17,7 +17,7 @@ def advice(work: Work) -> str:
     if not work.drawn or options.layout.width_mm is not None:
         return ""
     outlines = {stroke.origin.element for stroke in work.drawn if stroke.wanted_mm}
-    in_lanes = {stroke.origin.element for stroke in work.strokes if stroke.origin.lane > 1}
+    in_lanes = {each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.wanted_mm}
     is_filled = options.wide == "passes" or not outlines.isdisjoint(in_lanes)
     if options.wide == "auto" and not is_filled:
         options = replace(options, wide="clamp")  # strokes are tried alone, and shapes are filled whole

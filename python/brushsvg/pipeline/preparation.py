@@ -23,7 +23,8 @@ from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
 from ..strokes.joining import joined
-from ..strokes.unreached import missed, unreached
+from ..strokes.outline_corners import squared_at_corners
+from ..strokes.unreached import left_blank, missed, unreached
 from ..strokes.unreached import notices as blank_notices
 from ..strokes.wide_shapes import within_reach
 from .json_files import read_plan
@@ -98,6 +99,8 @@ def prepare(
         notices += joints
     if options.corners == "auto" and options.compensation in ("closed", "refined"):
         strokes = lifted_at_corners(strokes, brush)
+        if (options.start, options.end) == ("auto", "auto"):
+            strokes = squared_at_corners(strokes, brush)
     refused, left_out, drawn = [], [], tuple(strokes)
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _sorted_out(
@@ -129,12 +132,15 @@ def prepare(
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     planned = [stroke for stroke in drawn if stroke.id not in without]
-    bare = unreached(planned, painted, brush)
+    bare, blank = unreached(planned, painted, brush), []
+    leads = options.compensation in ("closed", "refined")
+    traces = _core.simulate(plan, brush).passes if leads else []
+    if leads:
+        bare = left_blank(bare, painted, traces, brush)
     notices += blank_notices(bare)
-    blank = []
     astray = _astray(painted, strokes, plan, tracking_errors, moved, brush, options)
-    if options.compensation in ("closed", "refined"):
-        blank = missed(planned, painted, _core.simulate(plan, brush).passes, bare, brush)
+    if leads:
+        blank = missed(planned, painted, traces, bare, brush)
         notices += blank_notices(blank, is_reached=True) + astray
     return Work(
         design.title,

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..errors import Error, need
-from ..geometry.arc_length import knots
+from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import split
 
 _CORNER_RAD = np.radians(20)
@@ -20,7 +20,7 @@ _WORTH = 0.05  # a lift, in squares of the width: paint out of place that it tak
 
 
 @dataclass(frozen=True)
-class _Line:
+class Line:
     """cubics (n, 4, 2), none without length; half_width: [(fraction of arc length, mm)]."""
 
     cubics: np.ndarray
@@ -32,7 +32,7 @@ class _Line:
         lengths = knots(self.cubics)[:, -1]
         return np.append(np.cumsum(lengths) - lengths, lengths.sum()) / lengths.sum()
 
-    def between(self, first: int, last: int) -> _Line:
+    def between(self, first: int, last: int) -> Line:
         """From the beginning of a cubic to that of another."""
         begin, end = self.at[first], self.at[last]
         fractions, halves = np.array(self.half_width).T
@@ -40,15 +40,31 @@ class _Line:
         at = np.concatenate([[begin], fractions[inside], [end]])
         cut = np.column_stack([(at - begin) / (end - begin), np.interp(at, fractions, halves)])
         widths = cut if np.ptp(cut[:, 1]) else cut[:1]
-        return _Line(self.cubics[first:last], [tuple(knot) for knot in widths.tolist()])
+        return Line(self.cubics[first:last], [tuple(knot) for knot in widths.tolist()])
 
-    def begun_at(self, first: int) -> _Line:
+    def begun_at(self, first: int) -> Line:
         """A closed line from the beginning of a cubic on."""
         head, tail = self.between(0, first), self.between(first, len(self.cubics))
         at = 1 - self.at[first]
         widths = [(f * at, half) for f, half in tail.half_width]
         widths += [(at + f * (1 - at), half) for f, half in head.half_width[1:]]
-        return _Line(np.concatenate([tail.cubics, head.cubics]), widths)
+        return Line(np.concatenate([tail.cubics, head.cubics]), widths)
+
+    def stretch(self, from_mm: float, to_mm: float) -> tuple[np.ndarray, list]:
+        """Cubics and half widths between two arc lengths."""
+        known = knots(self.cubics)
+        length_mm = known[:, -1].sum()
+        (first, last), (t0, t1) = parameters_at(self.cubics, known, np.array([from_mm, to_mm]))
+        cubics = self.cubics[first : last + 1].copy()
+        cubics[-1] = split(cubics[-1], float(t1))[0]
+        rest = t0 / t1 if first == last else t0
+        cubics[0] = split(cubics[0], float(rest))[1]
+        fractions, halves = np.array(self.half_width).T
+        at_mm = fractions * length_mm
+        inside = at_mm[(at_mm > from_mm) & (at_mm < to_mm)]
+        at = np.concatenate([[from_mm], inside, [to_mm]])
+        cut = np.column_stack([(at - from_mm) / (to_mm - from_mm), np.interp(at, at_mm, halves)])
+        return cubics, [tuple(knot) for knot in cut.tolist()]
 
     def turn_rad(self, joint: int) -> float:
         """How far it turns where a cubic begins; at 0, if it is closed."""
@@ -59,13 +75,13 @@ class _Line:
 def begun_amid_a_side(cubics: np.ndarray, half_width: list) -> tuple[np.ndarray, list]:
     """The closed line of cubics (n, 4, 2) and half widths [(fraction, mm)] from the middle of its longest straight side
     on, if it begins at a corner and has such a side; else as it is. A mark begins pointed, which shows at a corner."""
-    line = _line(cubics, half_width)
+    line = drawn_line(cubics, half_width)
     sides = [k for k in range(len(line.cubics)) if _is_straight(line.cubics[k])]
     if not sides or line.turn_rad(0) < _CORNER_RAD:
         return cubics, half_width
     longest = max(sides, key=lambda k: round(line.at[k + 1] - line.at[k], 6))
     before, after = line.cubics[:longest], line.cubics[longest + 1 :]
-    whole = _Line(np.concatenate([before, split(line.cubics[longest], 0.5), after]), half_width)
+    whole = Line(np.concatenate([before, split(line.cubics[longest], 0.5), after]), half_width)
     begun = whole.begun_at(longest + 1)
     return begun.cubics, begun.half_width
 
@@ -85,7 +101,7 @@ def lifted_at_corners(strokes: list, brush) -> list:
 def _parts(stroke, brush) -> list:
     if stroke.wanted_mm or len(stroke.middle_mm) < 2 or not stroke.half_width:
         return [stroke]
-    line = _line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
+    line = drawn_line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
     if not len(line.cubics):
         return [stroke]
     sharp = [k for k in range(1, len(line.cubics)) if line.turn_rad(k) > _SHARP_RAD]
@@ -107,23 +123,25 @@ def _parts(stroke, brush) -> list:
         line = line.begun_at(lifts[0])
         lifts = [at - lifts[0] for at in lifts[1:]]
     ends = [0, *lifts, len(line.cubics)]
-    return [_stroke(line.between(*pair), stroke, lane) for lane, pair in enumerate(pairwise(ends), start=1)]
+    return [
+        line_stroke(line.between(*pair), stroke, lane) for lane, pair in enumerate(pairwise(ends), start=1)
+    ]
 
 
-def _is_better_lifted(line: _Line, before: int, corner: int, after: int, brush) -> bool:
+def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -> bool:
     from .. import _core
 
-    whole = _stroke(line.between(before, after))
-    parts = [_stroke(line.between(before, corner)), _stroke(line.between(corner, after))]
+    whole = line_stroke(line.between(before, after))
+    parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
     wanted = _core.wanted_outline(whole, 0.01)
     try:
-        gain_mm2 = _misplaced_mm2([whole], wanted, brush) - _misplaced_mm2(parts, wanted, brush)
+        gain_mm2 = misplaced_mm2([whole], wanted, brush) - misplaced_mm2(parts, wanted, brush)
     except Error:
         return False
     return gain_mm2 > _WORTH * (2 * max(half for _, half in whole.half_width)) ** 2
 
 
-def _misplaced_mm2(strokes: list, wanted: list, brush) -> float:
+def misplaced_mm2(strokes: list, wanted: list, brush) -> float:
     """Area of what is wanted and not painted, and of what is painted and not wanted."""
     from .. import _core
     from .trial_mark import trial_mark
@@ -132,11 +150,11 @@ def _misplaced_mm2(strokes: list, wanted: list, brush) -> float:
     return _core.area(mark) + _core.area(wanted) - 2 * _core.area(_core.intersect(mark, wanted))
 
 
-def _line(cubics: np.ndarray, half_width: list) -> _Line:
-    return _Line(cubics[knots(cubics)[:, -1] > 0], half_width)
+def drawn_line(cubics: np.ndarray, half_width: list) -> Line:
+    return Line(cubics[knots(cubics)[:, -1] > 0], half_width)
 
 
-def _stroke(line: _Line, like=None, lane: int = 1):
+def line_stroke(line: Line, like=None, lane: int = 1):
     from .. import _core
 
     made = _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width)

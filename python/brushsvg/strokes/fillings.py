@@ -73,10 +73,10 @@ def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
     """What the first of the lines is meant to paint of a part: its own discs, and what those of all lines leave."""
     whole = region(part)
     share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
-    return _rings(share)
+    return rings_of(share)
 
 
-def _rings(shape) -> list[np.ndarray]:
+def rings_of(shape) -> list[np.ndarray]:
     polygons = [
         one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"
     ]
@@ -94,7 +94,7 @@ def _is_better(one: Filling, other: Filling) -> bool:
 
 def _tried(shape, passes, meant, narrow: list) -> Filling:
     left = unpainted(shape, [*narrow, *(line for lines in passes.values() for line in lines)])
-    rings = _rings(shape)
+    rings = rings_of(shape)
     return Filling(passes, meant, left.area / shape.area, _gap_mm(left), rings, narrow)
 
 

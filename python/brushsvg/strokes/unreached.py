@@ -3,7 +3,7 @@ of its stroke, as at blunt ends, where it begins pointed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ LEAST_SHARE = 0.01  # of its shape
 _CORNER = 0.69
 _LIMB_SHARE = 0.8  # of a disc in it, beyond: see shape_to_strokes.LEAST_SHARE
 MISSED_SHARE = 0.03  # of its shape, beside which strokes run: pointed beginnings leave some of every letter
+_STILL_BLANK = 0.5  # of a piece: what is left of a corner beside the mark in it is less
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
 _PX_PER_MM, _SIDE_PX = 6.0, 4000  # for a first look: a piece wider than twice _EDGE_MM is several pixels wide
@@ -23,12 +24,14 @@ _PX_PER_MM, _SIDE_PX = 6.0, 4000  # for a first look: a piece wider than twice _
 
 @dataclass(frozen=True)
 class Blank:
-    """A connected piece of an element's shape: at_mm (x, y) lies in it; share of the shape; rings [mm]."""
+    """A connected piece of an element's shape: at_mm (x, y) lies in it; share of the shape; rings [mm]; is_rim: of a
+    stroke that is wider than the brush."""
 
     element: str
     at_mm: tuple[float, float]
     share: float
     rings: list[np.ndarray]
+    is_rim: bool = False
 
 
 def unreached(drawn: list, painted: list, brush) -> list[Blank]:
@@ -44,26 +47,40 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
         if stroke.origin.repeat == 1 and stroke.wanted_mm:
             parts.setdefault(stroke.origin.element, []).extend(stroke.wanted_mm)
     paint: dict[str, list] = {element: [] for element in parts}
+    found_as = {stroke.id: stroke for stroke in drawn}
     for stroke in painted:
         if stroke.origin.element in paint:
             paint[stroke.origin.element].append(stroke)
     return [
         piece
         for element, rings in parts.items()
-        if all(stroke.origin.lane == 1 for stroke in paint[element])
-        for piece in _pieces(element, _core.unite(rings), paint[element], brush)
+        if all(stroke.wanted_mm for stroke in paint[element])  # else filled in passes
+        for piece in _told_rims(
+            _pieces(element, _core.unite(rings), paint[element], brush),
+            [found_as[stroke.id] for stroke in paint[element] if stroke.id in found_as],
+        )
     ]
+
+
+def _told_rims(pieces: list[Blank], strokes: list) -> list[Blank]:
+    """Those of which most is reached by discs of the strokes as they were found are rims."""
+    if not pieces:
+        return []
+    discs = _discs(strokes)
+    return [
+        replace(piece, is_rim=_core.area(_core.intersect(piece.rings, discs)) > 0.5 * _core.area(piece.rings))
+        for piece in pieces
+    ]
+
+
+def _discs(strokes: list) -> list[np.ndarray]:
+    bare = [stroke.replaced(wanted_mm=[]) for stroke in strokes]
+    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, _SWEPT_MM)])
 
 
 def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list[Blank]:
     """Of one element; without shapely where the strokes leave too little."""
-    discs = _core.unite(
-        [
-            ring
-            for stroke in strokes
-            for ring in _core.wanted_outline(stroke.replaced(wanted_mm=[]), _SWEPT_MM)
-        ]
-    )
+    discs = _discs(strokes)
     whole = _core.area(rings)
     finest, greatest = _finest(brush), brush.half_width_range_mm()[1]
     least = max(LEAST_SHARE * whole, np.pi / 4 * finest**2)
@@ -83,6 +100,28 @@ def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list
                 continue
         found.append(_blank(element, piece, whole))
     return found
+
+
+def left_blank(found: list[Blank], painted: list, traces: list, brush) -> list[Blank]:
+    """Of pieces that no stroke's discs reach, those that its mark does not paint either: the way of a squared end runs
+    into corners.
+
+    painted, traces: as for `missed`.
+    """
+    if not found:
+        return []
+    marks = {piece.element: _core.Marks() for piece in found}
+    for element, of in marks.items():
+        pairs = zip(painted, traces, strict=True)
+        of.passes = [trace for stroke, trace in pairs if stroke.origin.element == element]
+        _core.trace_outlines(of, brush)
+    blank = [_core.area(piece.rings) for piece in found]
+    bare = [
+        area - _core.area(_core.intersect(piece.rings, marks[piece.element].outline_mm))
+        for piece, area in zip(found, blank, strict=True)
+    ]
+    rows = zip(found, blank, bare, strict=True)
+    return [piece for piece, area, left in rows if left > _STILL_BLANK * area]
 
 
 def missed(drawn: list, painted: list, traces: list, known: list[Blank], brush) -> list[Blank]:
@@ -164,12 +203,13 @@ def _blank(element: str, piece, whole_mm2: float) -> Blank:
 
 
 def notices(found: list[Blank], is_reached: bool = False) -> list[Notice]:
-    """One for each element: where its largest piece lies, and the share of all of them. is_reached: by a stroke."""
-    by_element: dict[str, list[Blank]] = {}
+    """One for each element, and one for its rims: where its largest piece lies, and the share of all of them.
+    is_reached: by a stroke."""
+    by_element: dict[tuple[str, bool], list[Blank]] = {}
     for piece in found:
-        by_element.setdefault(piece.element, []).append(piece)
+        by_element.setdefault((piece.element, piece.is_rim), []).append(piece)
     told = []
-    for element, pieces in by_element.items():
+    for (element, _), pieces in by_element.items():
         x, y = pieces[0].at_mm
         share = 100 * sum(piece.share for piece in pieces)
         where = f"near x {x:.1f}, y {y:.1f} mm"
@@ -178,6 +218,9 @@ def notices(found: list[Blank], is_reached: bool = False) -> list[Notice]:
         if is_reached:
             said = f"the mark leaves at least {share:.2g} % of its shape blank, {where}"
             told.append(Notice(element, said, code="mark-misses"))
+        elif pieces[0].is_rim:
+            said = f"the brush is too narrow for {share:.2g} % of its shape, {where}"
+            told.append(Notice(element, said, code="unreached"))
         else:
             said = f"no stroke reaches {share:.2g} % of its shape, {where}"
             told.append(Notice(element, said, code="unreached"))

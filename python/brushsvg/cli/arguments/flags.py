@@ -120,7 +120,7 @@ def add_wide(command: argparse.ArgumentParser) -> None:
         "--wide",
         choices=("auto", "clamp", "passes", "refuse"),
         help="shapes wider than the brush: its greatest width, several passes, or refuse; default: auto, passes where "
-        "the mark of its greatest width overlaps with a shape by less than 0.8",
+        "the mark of its greatest width overlaps with a shape by less than 0.8, or with all of them by 0.1 less",
     )
 
 
@@ -128,7 +128,7 @@ def add_corners(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--corners",
         choices=("auto", "turn"),
-        help="sharp corners of drawn lines: the brush turns in place; default: auto, it is lifted where that is better",
+        help="corners: the brush turns in place; default: auto, it is lifted where that is better",
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from ... import _core
 from ...errors import Error
 from ...geometry.rings import with_holes
+from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
 from .writing_order import in_rows, joined, ordered
 
@@ -62,7 +63,7 @@ def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[
             OutlineStroke(np.array([[x, y] * 4]), [(0.0, r)], False, area)
             for x, y, r in found.dabs[:1].tolist()
         ]
-    chains = ordered(joined(found.pieces, found))
+    chains = [run_to_cuts(chain, area) for chain in ordered(joined(found.pieces, found))]
     if len(chains) == 1:
         return [_stroke(chains[0], area)]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT

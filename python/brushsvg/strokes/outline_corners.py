@@ -1,0 +1,188 @@
+"""Corners of strokes found in outlines, as of L and E: one line that turns there is as round outside as it is wide; a
+line that ends square in the corner, and one that begins on what that painted, fill it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+
+from ..errors import need
+from ..geometry.arc_length import knots, parameters_at
+from ..geometry.cubics import split
+from .corners import Line, drawn_line, line_stroke, misplaced_mm2
+
+# Turns of less are bends, and of more have two legs side by side, of which the second begins on none of the first.
+LEAST_RAD, MOST_RAD = np.radians(60), np.radians(120)
+# In half widths: how far from its corner a line is as straight as its leg, and how long a leg is at least, in which
+# a square end has room.
+AWAY, LEG = 1.2, 3.0
+WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
+HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
+
+
+def squared_at_corners(strokes: list, brush) -> list:
+    """The strokes, those of outlines cut at each corner of 60 to 120 degrees where two marks lie nearer to the shape by
+    0.15 squares of the half width, in paint missing and too much. The parts of `id` are called id, id~2, id~3 ...; the
+    later ones begin pointed, on what those before painted."""
+    from .. import _core
+
+    need(brush, _core.Brush, "a brush")
+    widest: dict = defaultdict(float)
+    for stroke in strokes:
+        need(stroke, _core.Stroke, "a stroke")
+        widest[stroke.origin.element] = max(
+            [widest[stroke.origin.element], *(half for _, half in stroke.half_width)]
+        )
+    if not brush.width_follows_depth():
+        return strokes
+    most = HARDLY_WIDER * brush.half_width_range_mm()[1]
+    return [
+        part
+        for stroke in strokes
+        for part in (_parts(stroke, brush) if widest[stroke.origin.element] <= most else [stroke])
+    ]
+
+
+def _parts(stroke, brush) -> list:
+    if not stroke.wanted_mm or stroke.closed or len(stroke.middle_mm) < 2:
+        return [stroke]
+    line = drawn_line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
+    turning = [k for k in range(1, len(line.cubics)) if LEAST_RAD < line.turn_rad(k) < MOST_RAD]
+    length_mm = knots(line.cubics)[:, -1].sum()
+    at_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
+    half_mm = max(half for _, half in line.half_width)
+    roomy = [
+        at
+        for before, at, after in zip(at_mm, at_mm[1:], at_mm[2:], strict=False)
+        if min(at - before, after - at) > LEG * half_mm
+    ]
+    if not roomy:
+        return [stroke]
+    whole_mm2 = misplaced_mm2([_paintable(stroke, brush)], stroke.wanted_mm, brush)
+    better = []
+    for at in roomy:
+        parts = _cut(stroke, line, [at])
+        if parts and whole_mm2 - misplaced_mm2(
+            [_paintable(p, brush) for p in parts], stroke.wanted_mm, brush
+        ) > (WORTH * half_mm**2):
+            better.append(at)
+    return _cut(stroke, line, better) or [stroke] if better else [stroke]
+
+
+def _paintable(stroke, brush):
+    from .offset_passes import clamped
+
+    return stroke.replaced(half_width=clamped(stroke, *brush.half_width_range_mm()).half_width)
+
+
+def _cut(stroke, line: Line, at_mm: list[float]) -> list:
+    """The stroke in parts, cut at arc lengths; empty where its shape does not fall into two at each."""
+    import shapely
+
+    from .contour_fill import region
+
+    length_mm = knots(line.cubics)[:, -1].sum()
+    legs, left, tip = [], region(stroke.wanted_mm), None
+    begin_mm = 0.0
+    for at in at_mm:
+        away = [AWAY * each for each in _halves(line, at / length_mm, at / length_mm)]
+        first, second = _at(line, at - away[0]), _at(line, at + away[1])
+        corner = _meet(first, second)
+        if corner is None:
+            return []
+        halves = _halves(line, (at - away[0]) / length_mm, (at + away[1]) / length_mm)
+        sides = _sides(left, corner, first[1], second[1], halves, first[0])
+        if sides is None:
+            return []
+        done, left, shared = sides
+        end = _end(region(stroke.wanted_mm), first, halves[0])
+        start = _end(region(stroke.wanted_mm), (second[0], -second[1]), halves[1])
+        if end is None or start is None:
+            return []
+        legs.append((begin_mm, at - away[0], tip, end, shapely.union(done, shared)))
+        left, tip, begin_mm = shapely.union(left, shared), start, at + away[1]
+    legs.append((begin_mm, length_mm, tip, None, left))
+    return [_leg(stroke, line, number, *leg) for number, leg in enumerate(legs, start=1)]
+
+
+def _halves(line: Line, *fractions: float) -> list[float]:
+    return [float(np.interp(at, *np.array(line.half_width).T)) for at in fractions]
+
+
+def _at(line: Line, at_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """Place and direction at an arc length."""
+    known = knots(line.cubics)
+    (cubic,), (t,) = parameters_at(line.cubics, known, np.array([at_mm]))
+    p = line.cubics[cubic]
+    first, second = split(p, float(t))
+    step = second[1] - second[0] if t < 0.5 else first[3] - first[2]
+    return second[0], step / np.hypot(*step)
+
+
+def _meet(first, second) -> np.ndarray | None:
+    """Where a straight line on from one place meets one back from another."""
+    (a, along), (b, onward) = first, second
+    cross = along[0] * onward[1] - along[1] * onward[0]
+    if abs(cross) < 0.5:
+        return None
+    off = b - a
+    return a + along * (off[0] * onward[1] - off[1] * onward[0]) / cross
+
+
+def _sides(shape, corner, along, onward, halves, before):
+    """A shape cut from its inner to its outer corner: what lies before, what after, and what both legs have."""
+    import shapely
+    import shapely.ops
+
+    half = max(halves)
+    inwards = (onward - along) / np.hypot(*(onward - along))
+    knife = shapely.LineString([corner - 2.2 * half * inwards, corner + 2.2 * half * inwards])
+    parts = shapely.get_parts(shapely.ops.split(shape, knife)) if shape.geom_type == "Polygon" else []
+    if len(parts) != 2:
+        return None
+    first = int(
+        shapely.distance(parts[1], shapely.Point(before)) < shapely.distance(parts[0], shapely.Point(before))
+    )
+    sine = abs(along[0] * onward[1] - along[1] * onward[0])
+    a, b = 1.05 * halves[1] / sine * along, 1.05 * halves[0] / sine * onward
+    both = shapely.intersection(
+        shape, shapely.Polygon([corner + a + b, corner + a - b, corner - a - b, corner - a + b])
+    )
+    return parts[first], parts[1 - first], both
+
+
+def _end(shape, place, half_mm: float) -> np.ndarray | None:
+    """Where a line that goes straight on from a place ends, half a width before the shape does."""
+    import shapely
+
+    at, along = place
+    ray = shapely.LineString([at, at + 6 * half_mm * along])
+    inside = shapely.get_parts(shapely.intersection(ray, shape))
+    near = [part for part in inside if shapely.distance(part, shapely.Point(at)) < 1e-6]
+    if not near or not half_mm < near[0].length < 5 * half_mm:
+        return None
+    return at + (near[0].length - half_mm) * along
+
+
+def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, shape):
+    from .fillings import rings_of
+
+    cubics, halves = line.stretch(from_mm, to_mm)
+    length_mm = knots(cubics)[:, -1].sum()
+    knots_mm = [(at * length_mm, half) for at, half in halves]
+    if tip is not None:
+        cubics = np.concatenate([[np.linspace(tip, cubics[0, 0], 4)], cubics])
+        on = np.hypot(*(tip - cubics[0, 3]))
+        knots_mm = [(0.0, knots_mm[0][1]), *((on + at, half) for at, half in knots_mm)]
+        length_mm += on
+    if end is not None:
+        on = np.hypot(*(end - cubics[-1, 3]))
+        cubics = np.concatenate([cubics, [np.linspace(cubics[-1, 3], end, 4)]])
+        length_mm += on
+        knots_mm = [*knots_mm, (length_mm, knots_mm[-1][1])]
+    made = line_stroke(Line(cubics, [(at / length_mm, half) for at, half in knots_mm]), stroke, lane)
+    made.wanted_mm = rings_of(shape)
+    if lane > 1 and made.settings.start in (None, "auto"):
+        made.settings = made.settings.replaced(start="exposed")
+    return made
