@@ -12,6 +12,7 @@ import types
 
 TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slow to import
 if TYPE_CHECKING:  # what the table below resolves to
+    from . import laws
     from ._core import (
         Brush,
         Compensated,
@@ -97,6 +98,8 @@ _HOME = {
     "_core",
 )
 
+_MODULES = ("laws",)
+
 __all__ = [
     "Arc",
     "Brush",
@@ -118,6 +121,7 @@ __all__ = [
     "find_brush",
     "find_cell",
     "flatten",
+    "laws",
     "lifted_at_corners",
     "marks_png",
     "marks_svg",
@@ -159,6 +163,8 @@ def __getattr__(name: str):
         from importlib.metadata import version
 
         value = version("brushsvg")
+    elif name in _MODULES:
+        value = importlib.import_module(f".{name}", __name__)
     elif name in _HOME:
         value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     else:

@@ -6,6 +6,7 @@ TypeError.
 
 import inspect
 import itertools
+import operator
 import sys
 import tempfile
 from dataclasses import replace
@@ -196,6 +197,34 @@ FONT = (
     '<glyph unicode="A" d="M0 0L5 9"/></font></svg>'
 )
 
+ANGLES = [1.0, [0.1, 0.5], np.zeros((2, 0)), [NAN, 1], [1, 2, 3], 1j, np.zeros(2, "M8[s]"), *NUMBERS]
+WAYS = [3.0, [1, 2], [], [[1], [2]], [INF, 1], *NUMBERS]
+FUNCTIONS = [
+    np.ones_like,
+    lambda z: 0 * z,
+    lambda z: np.full_like(z, NAN),
+    lambda z: z[:2],
+    lambda z: "x",
+    lambda z: np.abs(z - 0.3),
+    lambda z: 1e300 * z,
+    lambda z: 1e-300 + 0 * z,
+]
+
+
+def some_laws():
+    yield 4.0
+    yield brush().lag
+    yield brushsvg.laws.Profile([])
+    yield brushsvg.laws.Profile([0, 1])
+    yield brushsvg.laws.Profile([1, -1])
+    yield brushsvg.laws.Profile([0.1] * 20)
+    yield brushsvg.laws.Profile([1, 1], floor=-5, floor_slope=NAN)
+    for value in NUMBERS[:-1]:
+        yield brushsvg.laws.Profile([value])
+        yield brushsvg.laws.Profile([1], floor=value, floor_slope=value)
+    yield from NUMBERS
+
+
 # public name: what each of its arguments is, the first a sound one; all others are tried one at a time
 ARGUMENTS = {
     "Arc": [[1, *NUMBERS], [2, *NUMBERS], [(0, 0), (NAN, INF), (1e300, 0)], [1, *NUMBERS]],
@@ -264,6 +293,32 @@ ARGUMENTS = {
     "write_cell": [cells],
     "write_marks": [marks],
     "write_plan": [plans],
+    "laws.Bristle": [],
+    "laws.Followed": [],
+    "laws.FromAngles": [],
+    "laws.LawFit": [],
+    "laws.Profile": [[[3.0], [], [NAN], [1e300] * 5000]],
+    "laws.alpha_after": [ANGLES, WAYS, WAYS],
+    "laws.alpha_after_turn": [ANGLES, WAYS, WAYS],
+    "laws.alpha_on_ramp": [ANGLES, WAYS, lambda: some_laws(), WAYS, WAYS],
+    "laws.bristle": [FUNCTIONS, FUNCTIONS, ["shear_free", "third_derivative", "varnish"]],
+    "laws.bristle_of_article": [[0.5, *NUMBERS], ["shear_free", "varnish", *NUMBERS]],
+    "laws.contact_offset": [ANGLES, WAYS],
+    "laws.fit_law": [lambda: readings(), lambda: readings(), [1, 0, -1, 8, 9, 10**9, 2**70, 1.5]],
+    "laws.follow": [
+        [[[0, 0], [9, 0], [9, 9]], [[0, 0]], [], [[0, 0, 0]], [[0, NAN]], [[0, 0], [1e300, 0]], [[0, 0]] * 3],
+        [2.0, [1, 2, 3], [0, 0, 0], [1, 2], *NUMBERS],
+        lambda: some_laws(),
+        [None, (-1, 0), (0, 0), (-50, 0), (NAN, 0), *NUMBERS],
+    ],
+    "laws.from_angles": [
+        [1.5, [1.5, 1.2], *NUMBERS],
+        [[1, 3, 6], [0, 0, 0], [], [[1, 3, 6]] * 2, *NUMBERS],
+        [[1.2, 0.9, 0.5], [0.5, 0.9, 1.2], [], *NUMBERS],
+        [None, [2.3, 2.0, 1.6], [], *NUMBERS],
+    ],
+    "laws.tip_direction": [ANGLES, ANGLES, WAYS, WAYS, WAYS],
+    "laws.tip_offset": [ANGLES, WAYS, WAYS],
     "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
 }
 
@@ -423,7 +478,7 @@ def outcome(call, words) -> str | None:
 
 def main(names):
     for name in names:
-        public = getattr(_core if name in FITS else brushsvg, name)
+        public = operator.attrgetter(name)(_core if name in FITS else brushsvg)
         if not callable(public):
             continue
         for count, arguments in enumerate(calls(name)):
