@@ -33,7 +33,10 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
-    from .brush.library import brush_names, find_brush
+    from .brush.library import brush_names, find_brush, save_brush
+    from .calibration.chart.layout import chart
+    from .calibration.from_file import calibrate
+    from .calibration.from_widths import new_brush
     from .drawing import ReadOptions, read_drawing
     from .drawing.text import text_svg
     from .errors import Error
@@ -66,6 +69,10 @@ _HOME = {
     "read_cell": "machine.cell_file",
     "write_cell": "machine.cell_file",
     "find_brush": "brush.library",
+    "save_brush": "brush.library",
+    "new_brush": "calibration.from_widths",
+    "calibrate": "calibration.from_file",
+    "chart": "calibration.chart.layout",
     "read_marks": "pipeline.json_files",
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
@@ -115,7 +122,9 @@ __all__ = [
     "__version__",
     "area",
     "brush_names",
+    "calibrate",
     "cell_names",
+    "chart",
     "compensate",
     "coverage",
     "find_brush",
@@ -125,6 +134,7 @@ __all__ = [
     "lifted_at_corners",
     "marks_png",
     "marks_svg",
+    "new_brush",
     "overlap",
     "path_from_pass",
     "path_from_stroke",
@@ -132,6 +142,7 @@ __all__ = [
     "read_drawing",
     "read_marks",
     "read_plan",
+    "save_brush",
     "simulate",
     "stroke_from_path",
     "strokes",

@@ -163,6 +163,9 @@ OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewB
 (FOLDER / "noise.dxf").write_bytes(bytes(range(256)) * 50)
 (FOLDER / "broken.toml").write_text("name = [[[[")
 (FOLDER / "broken.json").write_text("[" * 100_000)
+(FOLDER / "m.csv").write_text(
+    "\n".join(["kind,depth_mm,value_mm", *(f"{k},{d},{d}" for d in range(1, 7) for k in ("lag", "width"))])
+)
 FILES = [FOLDER / name for name in ("broken.svg", "none.svg", "noise.dxf", "missing.svg", "broken.toml")]
 PATHS = [
     *FILES,
@@ -244,7 +247,14 @@ ARGUMENTS = {
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
     "brush_names": [],
+    "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
     "cell_names": [],
+    "chart": [
+        lambda: brushes(),
+        [(210, 297), *SHEETS, (1e5, 1e5)],
+        [None, "few", "varnish"],
+        [5.0, *NUMBERS],
+    ],
     "compensate": [
         lambda: ([each] for each in some_strokes()),
         brushes,
@@ -265,6 +275,24 @@ ARGUMENTS = {
     "flatten": [some_strokes, [0.01, *NUMBERS]],
     "marks_png": [marks, brushes, SHEETS, COLOURS],
     "marks_svg": [marks, SHEETS, COLOURS],
+    "new_brush": [
+        ["a", *TEXTS],
+        [5.0, *NUMBERS],
+        [
+            [(3, 2), (8, 7)],
+            [],
+            [(3, 2)],
+            [(0, 0)],
+            [(NAN, 1)],
+            [(3, INF)],
+            [(3,)],
+            [(3, 2, 1)],
+            [3, 2],
+            [("x", 2)],
+        ],
+        [None, 9.0, *NUMBERS],
+        [25.0, *NUMBERS],
+    ],
     "overlap": [rings, rings],
     "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
@@ -272,6 +300,7 @@ ARGUMENTS = {
     "read_drawing": [[FOLDER / "d.svg", *PATHS]],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
     "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
+    "save_brush": [brushes, [FOLDER / "b.json", *PATHS]],
     "simulate": [plans, brushes, [0.02, *NUMBERS]],
     "stroke_from_path": [
         ["M0 0 L9 9", "", "M0 0", "M0 0 L1e300 0", *TEXTS, np.zeros((0, 8)), [[NAN] * 8]],

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
-from ..calibration.from_widths import need_fits
 from ..errors import Error
+from .fitted import need_fits
 from .numbers import FARTHEST_MM, frozen, numbers, together
 
 TURN = 2 * np.pi

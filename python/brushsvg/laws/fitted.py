@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from .. import _core
-from ..calibration.from_widths import need_fits
-from ..errors import need
+from ..errors import Error, need
 from .numbers import DEEPEST_MM, FARTHEST_MM, numbers
 
 
@@ -43,3 +42,11 @@ def fit_law(
         norm=_core.Norm.absolute if absolute else _core.Norm.squares,
     )
     return _core.fit_law(depth, value, shape)
+
+
+def need_fits() -> None:
+    """Error where the library was built without Ceres."""
+    if not hasattr(_core, "fit_law"):
+        raise Error(
+            "this brushsvg was built without fits; build it with Ceres (libceres-dev)", code="package-missing"
+        )

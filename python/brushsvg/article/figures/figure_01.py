@@ -29,9 +29,9 @@ for k in range(4):
     right.plot(laws.bristle(lambda z, k=k: np.exp(k * (1 - z)), of_article)(z), z, label=f"k = {k}")
 for axes, title in ((left, "EI = q = exp(1 - z)"), (right, "EI = exp(k (1 - z)), q = exp(1 - z)")):
     axes.set(title=title, xlabel="w, in lengths of the bristle")
-    axes.invert_yaxis()
     axes.legend(frameon=False, fontsize=8)
 left.set_ylabel("z: root 0, tip 1")
+left.invert_yaxis()  # of both
 line = np.polynomial.Polynomial.fit(z, of_article(z), 1)
 rows = [
     ("w(1), w'''(1) = 0", None, laws.bristle_of_article(1.0)),

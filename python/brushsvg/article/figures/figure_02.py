@@ -19,9 +19,10 @@ left, right = figure.subplots(1, 2)
 left.fill(*outline.T, color="#c9d3e8")
 for x, name in ((0, "tip"), (b, "p"), (w, "widest"), (r + b, "q")):
     left.plot(x, 0, "o", color="#2b3a67")
-    left.annotate(name, (x, 0), (0, 8), textcoords="offset points", ha="center")
+    left.annotate(name, (x, 0), (0, 8 if name != "p" else -14), textcoords="offset points", ha="center")
 left.annotate("", (b, -3), (r + b, -3), arrowprops={"arrowstyle": "<->"})
-left.text(b + r / 2, -2.8, "r", ha="center", va="bottom")
+left.text(b + r / 2, -2.9, "r", ha="center", va="bottom")
+left.set_ylim(-4, 3)
 for s in np.arange(0, 17, 2.0):
     alpha = laws.alpha_after(np.pi / 2, s, r)
     turn = np.array([[np.cos(alpha), np.sin(alpha)], [-np.sin(alpha), np.cos(alpha)]])

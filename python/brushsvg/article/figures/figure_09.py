@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import brushsvg
 
 brush = brushsvg.find_brush("round-6")
-figure = Figure(figsize=(8, 2.2), layout="constrained")
+figure = Figure(figsize=(8, 1.5), layout="constrained")
 axes = figure.subplots()
 for k, shape in enumerate(brush.footprints.dragged):
     x, y = shape.outline_mm.T

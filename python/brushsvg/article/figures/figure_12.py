@@ -15,7 +15,7 @@ lines = {}
 for r in (13.0, 13.7):
     alpha = laws.alpha_after(np.pi / 2, s, r)
     lines[r] = np.column_stack([s, 0 * s]) + laws.contact_offset(alpha, r)
-figure = Figure(figsize=(8, 2.6), layout="constrained")
+figure = Figure(figsize=(8, 2.4), layout="constrained")
 axes = figure.subplots()
 axes.plot(s, 0 * s, "k", lw=2, label="handle")
 axes.plot([0, 0], [-30, -13], color="0.7", lw=2)

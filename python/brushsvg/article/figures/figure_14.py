@@ -16,7 +16,7 @@ drawn = {
     "i": ("M58 42 C57 34 54 26 54 18 C54 10 62 10 70 22", 3.2),
     "n": ("M74 42 C73 32 71 22 70 12 C74 26 82 42 90 42 C98 42 92 24 93 16 C94 8 102 12 106 20", 3.2),
     "c": ("M124 36 C120 46 106 40 108 24 C110 8 120 10 128 18", 3.4),
-    "ent": ("M128 18 C140 24 146 32 140 40 C132 44 126 22 136 12 C144 8 152 18 160 34", 3.0),
+    "e": ("M128 18 C140 24 146 32 140 40 C132 44 126 22 136 12 C144 8 152 18 160 34", 3.0),
 }
 strokes = [brushsvg.stroke_from_path(d, width, name) for name, (d, width) in drawn.items()]
 brush = brushsvg.find_brush("round-6")
@@ -32,7 +32,7 @@ for one in plan.passes:
 rings = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in marks.outline_mm]
 below.add_patch(PathPatch(Path.make_compound_path(*rings), color="k", lw=0))
 for stroke in strokes:
-    below.plot(*brushsvg.flatten(stroke, 0.05).T, color="#d1495b", lw=0.8)
+    below.plot(*brushsvg.flatten(stroke, 0.05)[:, :2].T, color="#d1495b", lw=0.8)
 for axes, title in ((above, "(a) the handle"), (below, "(b) the paint, and what was drawn")):
     axes.set(aspect="equal", title=title)
 wanted = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])

@@ -22,7 +22,7 @@ strokes = [brushsvg.stroke_from_path(path, width, f"w{width:g}") for width, path
 done = brushsvg.compensate(strokes, brush, sheet_mm=(170, 80))
 marks = brushsvg.simulate(done.plan, brush)
 brushsvg.trace_outlines(marks, brush)
-figure = Figure(figsize=(8, 4), layout="constrained")
+figure = Figure(figsize=(8, 3), layout="constrained")
 left, right = figure.subplots(1, 2, sharey=True)
 for stroke, way, mark in zip(strokes, done.plan.passes, marks.passes, strict=True):
     d = np.asarray(mark.depth_mm)

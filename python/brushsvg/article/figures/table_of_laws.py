@@ -12,34 +12,22 @@ from matplotlib.figure import Figure
 
 from brushsvg import laws
 
-ten, canvases = np.arange(1, 11.0), np.array([*range(11), *range(0, 11, 2)], float)
-printed = {  # coefficients, their intervals, R^2, RMSE, depths, keywords of the fit
-    "r, canvas": (
-        [3.1, 0.86, 0.31, -5e-2, 2.1e-3],
-        (0.9, 1.57, 0.68, 0.103, 0.0051),
-        0.98,
-        0.58,
-        canvases,
-        {},
-    ),
-    "w": ([-2.35, 2.75, -0.42, 0.024], (), 0.98, 0.51, ten, {"floor_mm": 0}),
-    "b, video": ([0, 0.52], (0, 0.09), 0.83, 0.85, np.linspace(1, 10, 12), {"through_zero": True}),
-    "b, canvas": ([0, 0.46], (0, 0.11), 0.78, 0.95, ten, {"through_zero": True}),
-    "r, angles": (
-        [3.4, 1.39, 0.047, -4.56e-3, -4.56e-4],
-        (10, 16.13, 6.457, 0.8754, 0.0396),
-        0.82,
-        1.98,
-        ten,
-        {},
-    ),
-    "b, angles": ([0, 0.21], (0, 0.14), 0.39, 1.21, ten, {"through_zero": True}),
-}
+ten, both = np.arange(1, 11.0), np.array([*range(11), *range(0, 11, 2)], float)
+through, video = {"through_zero": True}, np.linspace(1, 10, 12)
+angular = (10, 16.13, 6.457, 0.8754, 0.0396)  # intervals of r
+printed = [  # law, its intervals, R^2, RMSE, depths, keywords of the fit
+    ("r, canvas", [3.1, 0.86, 0.31, -5e-2, 2.1e-3], (0.9, 1.57, 0.68, 0.103, 0.0051), 0.98, 0.58, both),
+    ("w", [-2.35, 2.75, -0.42, 0.024], (), 0.98, 0.51, ten, {"floor_mm": 0}),
+    ("b, video", [0, 0.52], (0, 0.09), 0.83, 0.85, video, through),
+    ("b, canvas", [0, 0.46], (0, 0.11), 0.78, 0.95, ten, through),
+    ("r, angles", [3.4, 1.39, 0.047, -4.56e-3, -4.56e-4], angular, 0.82, 1.98, ten),
+    ("b, angles", [0, 0.21], (0, 0.14), 0.39, 1.21, ten, through),
+]
 rng, rows = np.random.default_rng(1), []
 figure = Figure(figsize=(8, 4.6), layout="constrained")
-for axes, (name, (law, halves, r2, rmse, z, how)) in zip(
-    figure.subplots(2, 3).flat, printed.items(), strict=True
-):
+panels = figure.subplots(2, 3).flat
+for axes, (name, law, halves, r2, rmse, z, *how) in zip(panels, printed, strict=True):
+    how = how[0] if how else {}
     exact = np.maximum(np.polynomial.polynomial.polyval(z, law), how.get("floor_mm", -np.inf))
     sheets = exact + rng.normal(0, rmse, (300, z.size))
     fits = [laws.fit_law(z, sheet, len(law) - 1, **how) for sheet in sheets]
@@ -51,6 +39,6 @@ for axes, (name, (law, halves, r2, rmse, z, how)) in zip(
         if half:
             rows.append((f"{name}: +- of z^{power}", half, of_fits[power]))
     for fit in fits[::30]:
-        axes.plot(z[np.argsort(z)], fit.law(np.sort(z)), color="#3f8fd9", alpha=0.2)
+        axes.plot(np.sort(z), fit.law(np.sort(z)), color="#3f8fd9", alpha=0.3)
     axes.plot(np.sort(z), exact[np.argsort(z)], "k")
     axes.set(title=name, xlabel="z, mm", ylabel="mm")
