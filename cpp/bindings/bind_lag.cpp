@@ -14,7 +14,7 @@ constexpr double kFarthestMm = 1e6;  // a longer way is damage
 LagLaw<double> law_between(const Profile& profile, double depth0, double depth1) {
     if (profile.coefficients.empty() || int(profile.coefficients.size()) > kMaxLawDegree + 1)
         throw Error("law-terms", "a lag has 1 to " + std::to_string(kMaxLawDegree + 1) + " coefficients, not " +
-                                       std::to_string(profile.coefficients.size()));
+                                     std::to_string(profile.coefficients.size()));
     for (const double c : profile.coefficients)
         require_within(c, {-kFarthestMm, kFarthestMm}, "a coefficient of the lag");
     for (const double depth : {depth0, depth1}) require_within(depth, {0.0, 1000.0}, "the depth");
@@ -27,7 +27,7 @@ LagLaw<double> law_between(const Profile& profile, double depth0, double depth1)
         const bool falls = !zeros.empty() && !(zeros.size() == 1 && zeros[0] <= 1e-12);  // 0 at touch-down is sound
         if (falls || piece.at(0.5 * (piece.lo + piece.hi)) < 0.0)
             throw Error("law-negative", "the lag is not positive at all depths from " + std::to_string(lo) + " to " +
-                                           std::to_string(hi) + " mm");
+                                            std::to_string(hi) + " mm");
     }
     return law;
 }
