@@ -1,9 +1,122 @@
 #include "bindings.hpp"
 #include "brushsvg/lag_arc.hpp"
+#include "within.hpp"
+
+namespace {
+
+using namespace brushsvg;
+using Eigen::Vector2d;
+
+constexpr double kFarthestMm = 1e6;  // a longer way is damage
+
+/// A lever that can be followed from the least of these depths to the greatest. Error where it is negative, or 0 in
+/// part: only a rigid pen's is 0 everywhere.
+LagLaw<double> law_between(const Profile& profile, double depth0, double depth1) {
+    if (profile.coefficients.empty() || int(profile.coefficients.size()) > kMaxLawDegree + 1)
+        throw Error("law-terms", "a lag has 1 to " + std::to_string(kMaxLawDegree + 1) + " coefficients, not " +
+                                     std::to_string(profile.coefficients.size()));
+    for (const double c : profile.coefficients)
+        require_within(c, {-kFarthestMm, kFarthestMm}, "a coefficient of the lag");
+    for (const double depth : {depth0, depth1}) require_within(depth, {0.0, 1000.0}, "the depth");
+    const double lo = std::min(depth0, depth1), hi = std::max(depth0, depth1) + 1e-9;
+    LagLaw<double> law = make_law(pieces(profile, lo, hi));
+    if (law.rigid) return law;
+    for (const auto& piece : law.pieces) {
+        const std::vector<double> own(piece.coefficients.begin(), piece.coefficients.begin() + piece.degree + 1);
+        const std::vector<double> zeros = real_roots(own, piece.lo, piece.hi);
+        const bool falls = !zeros.empty() && !(zeros.size() == 1 && zeros[0] <= 1e-12);  // 0 at touch-down is sound
+        if (falls || piece.at(0.5 * (piece.lo + piece.hi)) < 0.0)
+            throw Error("law-negative", "the lag is not positive at all depths from " + std::to_string(lo) + " to " +
+                                            std::to_string(hi) + " mm");
+    }
+    return law;
+}
+
+/// Goes through the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1).
+template <class Visit>
+void along_pieces(const LagLaw<double>& law, double depth0, double depth1, Visit&& visit) {
+    double from = 0.0;
+    for (std::size_t k = 0; k < law.pieces.size(); ++k) {
+        const auto& piece = law.pieces[depth1 >= depth0 ? k : law.pieces.size() - 1 - k];
+        const double end = depth1 >= depth0 ? piece.hi : piece.lo;
+        const double to = k + 1 == law.pieces.size() ? 1.0 : (end - depth0) / (depth1 - depth0);
+        visit(piece, from, to);
+        from = to;
+    }
+}
+
+/// Article (7), its exponential given.
+double alpha_after(double alpha0, double exponent) {
+    const Vector2d turned = drag_heading<double>({std::cos(alpha0), std::sin(alpha0)}, {1.0, 0.0}, std::exp(-exponent));
+    return std::atan2(turned.y(), turned.x());
+}
+
+double exponent(double s_mm, double depth0, double depth1, const Profile& profile) {
+    require_within(s_mm, {0.0, kFarthestMm}, "the way s [mm]");
+    const LagLaw<double> law = law_between(profile, depth0, depth1);
+    if (s_mm == 0.0) return 0.0;
+    if (law.rigid) return std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    along_pieces(law, depth0, depth1, [&](const auto& piece, double from, double to) {
+        const auto depth = [&](double t) { return depth0 + t * (depth1 - depth0); };
+        sum += lag_exponent(piece, depth(from), depth(to), s_mm * (to - from));
+    });
+    return sum;
+}
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+/// Taut and loose along straight moves, from touch-down or from a contact.
+py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const Profile& profile,
+                const std::optional<Vector2d>& contact_mm) {
+    const auto n = std::size_t(tcp_mm.rows());
+    if (n == 0 || depth_mm.size() != n)
+        throw Error("sizes-differ", "each of the TCP's " + std::to_string(n) +
+                                        " places, at least one, needs its depth; there are " +
+                                        std::to_string(depth_mm.size()) + " depths");
+    for (std::size_t k = 0; k < n; ++k) {
+        require_within(depth_mm[k], {0.0, 1000.0}, "depth " + std::to_string(k));
+        for (int axis = 0; axis < 2; ++axis)
+            require_within(tcp_mm(Eigen::Index(k), axis), {-kFarthestMm, kFarthestMm}, "place " + std::to_string(k));
+    }
+    const auto [lo, hi] = std::minmax_element(depth_mm.begin(), depth_mm.end());
+    const LagLaw<double> law = law_between(profile, *lo, *hi);
+    LagState<double> state = touch_down<double>(tcp_mm.row(0));
+    if (contact_mm) {
+        const double lag = law.at(depth_mm[0]), reach = (tcp_mm.row(0).transpose() - *contact_mm).norm();
+        require_within(reach, {0.0, lag * (1.0 + 1e-9) + 1e-12}, "the distance [mm] of the contact from the TCP");
+        state.contact = *contact_mm;
+        if (reach > 0.0) state.heading = (tcp_mm.row(0).transpose() - *contact_mm) / reach;
+        state.heading_known = reach > 0.0;
+        state.taut = reach >= lag * (1.0 - 1e-9);
+    }
+    Rows contact(tcp_mm.rows(), 2);
+    Eigen::VectorXd heading(tcp_mm.rows());
+    Eigen::Array<bool, Eigen::Dynamic, 1> taut(tcp_mm.rows());
+    std::optional<double> first;
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto row = Eigen::Index(k);
+        if (k > 0) {
+            const Vector2d from = tcp_mm.row(row - 1), to = tcp_mm.row(row);
+            advance(law, Move<double>(from, to, depth_mm[k - 1], depth_mm[k]), state);
+        }
+        contact.row(row) = state.contact;
+        heading[row] = std::atan2(state.heading.y(), state.heading.x());
+        if (!state.heading_known) continue;
+        if (!first) heading.head(row).setConstant(*(first = heading[row]));
+    }
+    for (Eigen::Index k = 0; k < contact.rows(); ++k)  // as far from the TCP as the lag reaches
+        taut[k] = (tcp_mm.row(k) - contact.row(k)).norm() >= law.at(depth_mm[std::size_t(k)]) * (1.0 - 1e-9) - 1e-12;
+    py::dict rows;
+    rows["contact_mm"] = contact;
+    rows["heading_rad"] = heading;
+    rows["taut"] = taut;
+    return rows;
+}
+
+}  // namespace
 
 void bind_lag(py::module_& m) {
-    using namespace brushsvg;
-    using Eigen::Vector2d;
     py::module_ lag = m.def_submodule("lag", "The law by which the contact patch trails the handle.");
     lag.def(
         "drag_straight",
@@ -11,19 +124,14 @@ void bind_lag(py::module_& m) {
            const Profile& profile) {
             const LagLaw<double> law =
                 make_law(pieces(profile, std::min(depth0, depth1), std::max(depth0, depth1) + 1e-9));
-            LagState<double> start;
-            start.contact = contact;
-            start.heading = (tcp0 - contact).normalized();
-            start.taut = start.heading_known = true;
-            LagState<double> state = start;
-            double from = 0.0;  // piece by piece, in the order of travel
-            for (std::size_t k = 0; k < law.pieces.size(); ++k) {
-                const auto& piece = law.pieces[depth1 >= depth0 ? k : law.pieces.size() - 1 - k];
-                const double end = depth1 >= depth0 ? piece.hi : piece.lo;
-                const double to = k + 1 == law.pieces.size() ? 1.0 : (end - depth0) / (depth1 - depth0);
-                detail::drag(piece, Move<double>(tcp0, tcp1, depth0, depth1), from, to, state);
-                from = to;
-            }
+            LagState<double> state;
+            state.contact = contact;
+            state.heading = (tcp0 - contact).normalized();
+            state.taut = state.heading_known = true;
+            const Move<double> move(tcp0, tcp1, depth0, depth1);
+            along_pieces(law, depth0, depth1, [&](const auto& piece, double from, double to) {
+                detail::drag(piece, move, from, to, state);
+            });
             return state.contact;
         },
         py::arg("contact_mm"), py::arg("tcp0_mm"), py::arg("tcp1_mm"), py::arg("depth0_mm"), py::arg("depth1_mm"),
@@ -31,6 +139,20 @@ void bind_lag(py::module_& m) {
         "Contact [mm] after a straight move of a taut brush, article (5) to (7); the loose rule is not applied.");
     lag.def("drag_arc", &drag_arc<double>, py::arg("psi0_rad"), py::arg("curvature_per_mm"), py::arg("lag_mm"),
             py::arg("length_mm"), "psi [rad] after an arc of the TCP at constant lag, taut.");
-    lag.def("tip_direction", &tip_direction<double>, py::arg("alpha0_rad"), py::arg("alpha1_rad"), py::arg("s_mm"),
-            py::arg("lag_mm"), py::arg("tip_gap_mm"), "beta [rad], article (11), (12).");
+    lag.def("tip_direction", py::vectorize(&tip_direction<double>), py::arg("alpha0_rad"), py::arg("alpha1_rad"),
+            py::arg("s_mm"), py::arg("lag_mm"), py::arg("tip_gap_mm"), "beta [rad], article (11), (12).");
+    lag.def("alpha_after", py::vectorize(&alpha_after), py::arg("alpha0_rad"), py::arg("exponent"),
+            "alpha [rad] once the integral of ds / r is `exponent`, article (7).");
+    lag.def(
+        "exponent",
+        [](const Numbers& s_mm, const Numbers& depth0_mm, const Numbers& depth1_mm, const Profile& profile) {
+            return py::vectorize([&](double s, double d0, double d1) { return exponent(s, d0, d1, profile); })(
+                s_mm.values, depth0_mm.values, depth1_mm.values);
+        },
+        py::arg("s_mm"), py::arg("depth0_mm"), py::arg("depth1_mm"), py::arg("profile"),
+        "Integral of ds / r over straight moves with depth linear along them, article (7); beyond 50 it stops "
+        "counting.");
+    lag.def("follow", &follow, py::arg("tcp_mm"), py::arg("depth_mm"), py::arg("profile"),
+            py::arg("contact_mm") = py::none(),
+            "Contact, heading and tension at each place of the TCP, taut and loose (article 2.1, 2.2).");
 }

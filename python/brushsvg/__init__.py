@@ -12,6 +12,7 @@ import types
 
 TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slow to import
 if TYPE_CHECKING:  # what the table below resolves to
+    from . import laws
     from ._core import (
         Brush,
         Compensated,
@@ -32,7 +33,10 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
-    from .brush.library import brush_names, find_brush
+    from .brush.library import brush_names, find_brush, save_brush
+    from .calibration.chart.layout import chart
+    from .calibration.from_file import calibrate
+    from .calibration.from_widths import new_brush
     from .drawing import ReadOptions, read_drawing
     from .drawing.text import text_svg
     from .errors import Error
@@ -65,6 +69,10 @@ _HOME = {
     "read_cell": "machine.cell_file",
     "write_cell": "machine.cell_file",
     "find_brush": "brush.library",
+    "save_brush": "brush.library",
+    "new_brush": "calibration.from_widths",
+    "calibrate": "calibration.from_file",
+    "chart": "calibration.chart.layout",
     "read_marks": "pipeline.json_files",
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
@@ -97,6 +105,8 @@ _HOME = {
     "_core",
 )
 
+_MODULES = ("laws",)
+
 __all__ = [
     "Arc",
     "Brush",
@@ -112,15 +122,19 @@ __all__ = [
     "__version__",
     "area",
     "brush_names",
+    "calibrate",
     "cell_names",
+    "chart",
     "compensate",
     "coverage",
     "find_brush",
     "find_cell",
     "flatten",
+    "laws",
     "lifted_at_corners",
     "marks_png",
     "marks_svg",
+    "new_brush",
     "overlap",
     "path_from_pass",
     "path_from_stroke",
@@ -128,6 +142,7 @@ __all__ = [
     "read_drawing",
     "read_marks",
     "read_plan",
+    "save_brush",
     "simulate",
     "stroke_from_path",
     "strokes",
@@ -159,6 +174,8 @@ def __getattr__(name: str):
         from importlib.metadata import version
 
         value = version("brushsvg")
+    elif name in _MODULES:
+        value = importlib.import_module(f".{name}", __name__)
     elif name in _HOME:
         value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     else:

@@ -6,8 +6,10 @@ for words of a sentence.
 
 from __future__ import annotations
 
+import math
 import sys
 from dataclasses import dataclass
+from numbers import Real
 
 
 class Error(ValueError):
@@ -95,6 +97,22 @@ def need(value, kind: type | tuple[type, ...], what: str) -> None:
     """Error for a value of another Python type than what it should be, in words."""
     if not isinstance(value, kind):
         raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
+
+
+def need_number(value, what: str, least: float, greatest: float) -> float:
+    """The number itself. Error for what is none, and outside of [least, greatest]."""
+    need(value, Real, f"a number, which {what} is")
+    try:
+        number = float(value)
+    except OverflowError:  # an integer of hundreds of digits
+        number = math.inf if value > 0 else -math.inf
+    if not least <= number <= greatest:
+        raise Error(
+            f"{what}, {number:g}, is outside the range [{least:g}, {greatest:g}]",
+            range=(least, greatest),
+            code="out-of-range",
+        )
+    return number
 
 
 def need_one_of(value, choices: tuple, what: str) -> None:

@@ -6,6 +6,7 @@ TypeError.
 
 import inspect
 import itertools
+import operator
 import sys
 import tempfile
 from dataclasses import replace
@@ -162,6 +163,9 @@ OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewB
 (FOLDER / "noise.dxf").write_bytes(bytes(range(256)) * 50)
 (FOLDER / "broken.toml").write_text("name = [[[[")
 (FOLDER / "broken.json").write_text("[" * 100_000)
+(FOLDER / "m.csv").write_text(
+    "\n".join(["kind,depth_mm,value_mm", *(f"{k},{d},{d}" for d in range(1, 7) for k in ("lag", "width"))])
+)
 FILES = [FOLDER / name for name in ("broken.svg", "none.svg", "noise.dxf", "missing.svg", "broken.toml")]
 PATHS = [
     *FILES,
@@ -196,6 +200,34 @@ FONT = (
     '<glyph unicode="A" d="M0 0L5 9"/></font></svg>'
 )
 
+ANGLES = [1.0, [0.1, 0.5], np.zeros((2, 0)), [NAN, 1], [1, 2, 3], 1j, np.zeros(2, "M8[s]"), *NUMBERS]
+WAYS = [3.0, [1, 2], [], [[1], [2]], [INF, 1], *NUMBERS]
+FUNCTIONS = [
+    np.ones_like,
+    lambda z: 0 * z,
+    lambda z: np.full_like(z, NAN),
+    lambda z: z[:2],
+    lambda z: "x",
+    lambda z: np.abs(z - 0.3),
+    lambda z: 1e300 * z,
+    lambda z: 1e-300 + 0 * z,
+]
+
+
+def some_laws():
+    yield 4.0
+    yield brush().lag
+    yield brushsvg.laws.Profile([])
+    yield brushsvg.laws.Profile([0, 1])
+    yield brushsvg.laws.Profile([1, -1])
+    yield brushsvg.laws.Profile([0.1] * 20)
+    yield brushsvg.laws.Profile([1, 1], floor=-5, floor_slope=NAN)
+    for value in NUMBERS[:-1]:
+        yield brushsvg.laws.Profile([value])
+        yield brushsvg.laws.Profile([1], floor=value, floor_slope=value)
+    yield from NUMBERS
+
+
 # public name: what each of its arguments is, the first a sound one; all others are tried one at a time
 ARGUMENTS = {
     "Arc": [[1, *NUMBERS], [2, *NUMBERS], [(0, 0), (NAN, INF), (1e300, 0)], [1, *NUMBERS]],
@@ -215,7 +247,14 @@ ARGUMENTS = {
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
     "brush_names": [],
+    "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
     "cell_names": [],
+    "chart": [
+        lambda: brushes(),
+        [(210, 297), *SHEETS, (1e5, 1e5)],
+        [None, "few", "varnish"],
+        [5.0, *NUMBERS],
+    ],
     "compensate": [
         lambda: ([each] for each in some_strokes()),
         brushes,
@@ -236,6 +275,24 @@ ARGUMENTS = {
     "flatten": [some_strokes, [0.01, *NUMBERS]],
     "marks_png": [marks, brushes, SHEETS, COLOURS],
     "marks_svg": [marks, SHEETS, COLOURS],
+    "new_brush": [
+        ["a", *TEXTS],
+        [5.0, *NUMBERS],
+        [
+            [(3, 2), (8, 7)],
+            [],
+            [(3, 2)],
+            [(0, 0)],
+            [(NAN, 1)],
+            [(3, INF)],
+            [(3,)],
+            [(3, 2, 1)],
+            [3, 2],
+            [("x", 2)],
+        ],
+        [None, 9.0, *NUMBERS],
+        [25.0, *NUMBERS],
+    ],
     "overlap": [rings, rings],
     "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
@@ -243,6 +300,7 @@ ARGUMENTS = {
     "read_drawing": [[FOLDER / "d.svg", *PATHS]],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
     "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
+    "save_brush": [brushes, [FOLDER / "b.json", *PATHS]],
     "simulate": [plans, brushes, [0.02, *NUMBERS]],
     "stroke_from_path": [
         ["M0 0 L9 9", "", "M0 0", "M0 0 L1e300 0", *TEXTS, np.zeros((0, 8)), [[NAN] * 8]],
@@ -264,6 +322,32 @@ ARGUMENTS = {
     "write_cell": [cells],
     "write_marks": [marks],
     "write_plan": [plans],
+    "laws.Bristle": [],
+    "laws.Followed": [],
+    "laws.FromAngles": [],
+    "laws.LawFit": [],
+    "laws.Profile": [[[3.0], [], [NAN], [1e300] * 5000]],
+    "laws.alpha_after": [ANGLES, WAYS, WAYS],
+    "laws.alpha_after_turn": [ANGLES, WAYS, WAYS],
+    "laws.alpha_on_ramp": [ANGLES, WAYS, lambda: some_laws(), WAYS, WAYS],
+    "laws.bristle": [FUNCTIONS, FUNCTIONS, ["shear_free", "third_derivative", "varnish"]],
+    "laws.bristle_of_article": [[0.5, *NUMBERS], ["shear_free", "varnish", *NUMBERS]],
+    "laws.contact_offset": [ANGLES, WAYS],
+    "laws.fit_law": [lambda: readings(), lambda: readings(), [1, 0, -1, 8, 9, 10**9, 2**70, 1.5]],
+    "laws.follow": [
+        [[[0, 0], [9, 0], [9, 9]], [[0, 0]], [], [[0, 0, 0]], [[0, NAN]], [[0, 0], [1e300, 0]], [[0, 0]] * 3],
+        [2.0, [1, 2, 3], [0, 0, 0], [1, 2], *NUMBERS],
+        lambda: some_laws(),
+        [None, (-1, 0), (0, 0), (-50, 0), (NAN, 0), *NUMBERS],
+    ],
+    "laws.from_angles": [
+        [1.5, [1.5, 1.2], *NUMBERS],
+        [[1, 3, 6], [0, 0, 0], [], [[1, 3, 6]] * 2, *NUMBERS],
+        [[1.2, 0.9, 0.5], [0.5, 0.9, 1.2], [], *NUMBERS],
+        [None, [2.3, 2.0, 1.6], [], *NUMBERS],
+    ],
+    "laws.tip_direction": [ANGLES, ANGLES, WAYS, WAYS, WAYS],
+    "laws.tip_offset": [ANGLES, WAYS, WAYS],
     "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
 }
 
@@ -423,7 +507,7 @@ def outcome(call, words) -> str | None:
 
 def main(names):
     for name in names:
-        public = getattr(_core if name in FITS else brushsvg, name)
+        public = operator.attrgetter(name)(_core if name in FITS else brushsvg)
         if not callable(public):
             continue
         for count, arguments in enumerate(calls(name)):

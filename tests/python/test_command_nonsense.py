@@ -166,7 +166,8 @@ def test_no_command_is_forgotten():
                 found |= {f"{name} {each}".strip() for each in names(below) or {""}}
         return found
 
-    assert names(_parser()) - {"brush list", "cell list"} == {
+    reads_nothing = {"brush list", "cell list", "article"}  # test_article.py has the places of the last
+    assert names(_parser()) - reads_nothing == {
         next(name for name in names(_parser()) if f"{command} ".startswith(f"{name} "))
         for command in COMMANDS
     }

@@ -30,7 +30,7 @@ def test_every_public_name_is_there(name):
 
 
 def test_names_and_table_agree():
-    assert set(brushsvg.__all__) == {*brushsvg._HOME, "__version__"}
+    assert set(brushsvg.__all__) == {*brushsvg._HOME, *brushsvg._MODULES, "__version__"}
     with pytest.raises(AttributeError, match="varnish"):
         brushsvg.varnish  # noqa: B018
 

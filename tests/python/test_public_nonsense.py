@@ -9,12 +9,14 @@ from nonsense import ARGUMENTS, FITS
 
 import brushsvg
 
+MODULES = ("laws",)
 BATCHES = 6
 LONG_S = 300  # a hang, and not a measure of speed
 
 
 def test_no_public_name_is_forgotten():
-    assert set(ARGUMENTS) == set(brushsvg.__all__) - {"__version__"}
+    inside = {f"{module}.{name}" for module in MODULES for name in getattr(brushsvg, module).__all__}
+    assert set(ARGUMENTS) == (set(brushsvg.__all__) | inside) - {"__version__", *MODULES}
 
 
 @pytest.mark.parametrize("batch", range(BATCHES))

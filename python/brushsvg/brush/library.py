@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, need
 from ..files import find_file, names_in, read_bytes, write_files
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
@@ -39,7 +39,11 @@ def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
 def save_brush(brush: _core.Brush, path: str | os.PathLike) -> None:
     """Write a brush as .json, whole or not at all.
 
-    Raises Error when the brush is refused or the place cannot be written.
+    path: ends in .json. Raises Error when the brush is refused or the place cannot be written.
     """
+    need(brush, _core.Brush, "a brush")
+    need(path, (str, os.PathLike), "a path")
+    if Path(path).suffix.lower() != ".json":
+        raise Error(f"{str(path)[:80]!r} does not end in .json, as brush files do", code="brush-format")
     _core.check(brush)
     write_files({path: _core.write_brush(brush)})

@@ -11,8 +11,8 @@ import numpy as np
 from .. import _core
 from ..brush.confidence import places
 from ..errors import Error, Notice
+from ..laws.fitted import need_fits
 from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
-from .from_widths import need_fits
 
 # a law bends enough that lies so near to the mean of each depth, or so many errors of that mean
 CLOSE_MM, CHANCE = 0.03, 2.0

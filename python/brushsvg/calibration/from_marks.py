@@ -12,7 +12,8 @@ from .. import _core
 from ..brush import footprint_shapes
 from ..brush.confidence import half_interval_mm, places
 from ..errors import Error
-from .from_widths import need_fits, outlines_assumed
+from ..laws.fitted import need_fits
+from .from_widths import outlines_assumed
 from .machine_found import PARTS, Number, ask_for, numbers
 from .mark_input import Painted, depths_painted, middle
 from .plausibility import BEYOND

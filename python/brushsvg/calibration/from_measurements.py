@@ -11,8 +11,9 @@ from .. import _core
 from ..brush import footprint_shapes
 from ..brush.confidence import places
 from ..errors import Error
+from ..laws.fitted import need_fits
 from . import plausibility
-from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, need_fits, outlines_assumed
+from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, outlines_assumed
 from .measurements import Measurements, Row
 
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")

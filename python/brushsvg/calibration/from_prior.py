@@ -12,6 +12,7 @@ from numpy.polynomial.polynomial import polyval
 from .. import _core
 from ..brush.confidence import LAWS, half_interval_mm, law_band, places
 from ..errors import Error
+from ..laws.fitted import need_fits
 from .from_marks import (
     GAP_TERMS,
     HALF_TERMS,
@@ -24,7 +25,6 @@ from .from_marks import (
     refuse_unlike,
     wetter_where_wider,
 )
-from .from_widths import need_fits
 from .mark_input import Painted, depths_painted
 from .prior import DEPTHS, KnownLaws, known_laws, numbers_of, root_of_inverse
 from .stray_marks import Stray, strays

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+from numbers import Real
 
 from .. import _core
 from ..brush import footprint_shapes
-from ..errors import Error
+from ..errors import Error, need, need_number
+from ..laws.fitted import need_fits
 from . import plausibility
 
 # The shape of a round brush's footprint in half widths, near what the article's brush has at depths 4 to 10 mm.
@@ -19,6 +21,7 @@ CLOSE_MM, FAR_MM = 0.05, 0.5
 BENDS = 1e-3  # weight of a law's bends against the data: small, it only decides where the data leave it open
 DEPTHS = 10  # outlines, evenly spaced
 LONGEST_MM = 1000.0
+MOST = 1e9  # what is farther out is damage; closer bounds are those of brushes
 
 
 def new_brush(
@@ -34,6 +37,11 @@ def new_brush(
     default. A lag of 0 makes a pen with a round nib. Raises Error for numbers that no brush can have.
     """
     need_fits()
+    need(name, str, "the name of a brush")
+    lag_mm = need_number(lag_mm, "the lag [mm]", -MOST, MOST)
+    speed_mm_s = need_number(speed_mm_s, "the speed [mm/s]", -MOST, MOST)
+    if depth_max_mm is not None:
+        depth_max_mm = need_number(depth_max_mm, "the greatest depth [mm]", -MOST, MOST)
     widths = _sound(widths_mm)
     if lag_mm > 0:
         plausibility.refuse_width(*widths[-1])
@@ -78,15 +86,13 @@ def outlines_assumed(source: str) -> str:
     return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})
 
 
-def need_fits() -> None:
-    """Error where the library was built without Ceres."""
-    if not hasattr(_core, "fit_law"):
-        raise Error(
-            "this brushsvg was built without fits; build it with Ceres (libceres-dev)", code="package-missing"
-        )
-
-
 def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    need(widths_mm, (list, tuple), "a list of (depth, width)")
+    for pair in widths_mm:
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+            raise Error(f"{str(pair)[:40]} is no (depth, width) in mm", "width", code="wrong-type")
+        for number in pair:
+            need(number, Real, "a depth or a width in mm")
     if not widths_mm:
         raise Error(
             "there is no width: at least one is needed, for example 5 mm at depth 4 mm",

@@ -18,7 +18,7 @@ import numpy as np
 
 from ... import _core
 from ...brush.perturbed import with_lag
-from ...errors import Error
+from ...errors import Error, need, need_number, need_one_of
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
 
 SETS = {"few": 4, "normal": 6, "many": 9}  # depths
@@ -52,6 +52,7 @@ TICK_MM = 2.2  # height of the bar's ends
 # Eight markers of a thousand: which eight is the chart's, so that another chart is told from it
 DICTIONARY, GROUP, GROUPS = "DICT_5X5_1000", 8, 125
 PAINT_MM_S = 20.0
+LARGEST_SHEET_MM = 10_000.0
 
 
 @dataclass(frozen=True)
@@ -148,6 +149,15 @@ def chart(
     less than the brush; dabs: of a brush whose lag is known, for its outlines. Error for a pen, and where the sheet is
     too small, with the size that would do.
     """
+    need(brush, _core.Brush, "a brush")
+    _core.check(brush)
+    if not isinstance(sheet_mm, (list, tuple)) or len(sheet_mm) != 2:
+        raise Error("a sheet is (width, height) in mm", "sheet", code="wrong-type")
+    sheet_mm = tuple(
+        need_number(side, "a side of the sheet [mm]", 0.0, LARGEST_SHEET_MM) for side in sheet_mm
+    )
+    need_one_of(strokes, (None, *SETS), "how many strokes")
+    deepest_mm = need_number(deepest_mm, "how deep the machine reaches [mm]", 0.0, math.inf)
     if brush.is_rigid():
         raise Error(
             f"brush {brush.name} is a pen: it has no lag that could be calibrated",

@@ -1,4 +1,4 @@
-"""The commands about brushes: chart, calibrate, brush."""
+"""The commands about brushes: chart, calibrate, brush, article."""
 
 from __future__ import annotations
 
@@ -239,6 +239,13 @@ def add_brush(commands) -> None:
     plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_quiet(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
+
+
+def add_article(commands) -> None:
+    article = commands.add_parser("article", help="draw the article's figures and tables anew, as a page")
+    article.add_argument("output", metavar="OUTDIR", help="a folder; gets article.md and article/*.png")
+    add_quiet(article)
+    article.set_defaults(run="article_files", parser=article)
 
 
 def _check_brush_new(args) -> None:

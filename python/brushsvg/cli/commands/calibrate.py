@@ -6,7 +6,6 @@ import os
 
 from ..._core import remarks, write_brush
 from ...brush.library import find_brush
-from ...errors import Error
 from ...files import read_bytes
 from ...pipeline.json_files import read_plan
 from ..console import about, stage, tell, warn
@@ -15,10 +14,10 @@ from .scan import read_photographs
 
 
 def calibrate_file(args) -> None:
-    from ...calibration.from_measurements import calibrate
+    from ...calibration.from_file import calibrate
+    from ...calibration.from_marks import MarkCalibration
     from ...calibration.law_report import report, report_picture
     from ...calibration.machine_found import doubts
-    from ...calibration.measurements import read_measurements
 
     check_places(args.output, args.plot, args.picture)
     if args.plan is not None:
@@ -33,18 +32,13 @@ def calibrate_file(args) -> None:
         if read:
             made, report, report_picture = _from_photo(read, name, args.machine)
         else:
-            measured = read_measurements(read_bytes(args.input), suffix_of(args.input))
-            name = measured.name or name
-            if measured.marks is not None:
-                made, report, report_picture = _from_marks(args, measured, name)
+            made = calibrate(
+                args.input, name, absolute=args.norm == "absolute", total=args.total, machine=args.machine
+            )
+            if isinstance(made, MarkCalibration):
+                from ...calibration.mark_report import report, report_picture
+
                 warn(args.input, doubts(made.painted, made.expected))
-            elif args.machine:
-                raise Error(
-                    "--machine needs painted marks: measured numbers say nothing of the machine",
-                    code="options-contradict",
-                )
-            else:
-                made = calibrate(measured, name, args.norm == "absolute", args.total)
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, suffix_of(args.plot))
@@ -97,21 +91,6 @@ def _calibrate_dabs(args, read, name: str) -> None:
     warn(args.output, remarks(made.brush))
     write(args, files, more=told(read))
     tell(report(made))
-
-
-def _from_marks(args, measured, name: str):
-    """A brush from painted marks, and what tells of it in words and as a picture."""
-    from ...calibration.from_marks import calibrate_marks, options_for
-    from ...calibration.machine_found import ask_for
-    from ...calibration.mark_input import read_painted
-    from ...calibration.mark_report import report, report_picture
-
-    folder = os.path.dirname(args.input)
-    painted = read_painted(measured.plan, measured.marks, lambda path: read_bytes(os.path.join(folder, path)))
-    options = options_for(measured.expected)
-    ask_for(options, args.machine)
-    made = calibrate_marks(painted, name, measured.depth_range_mm, measured.max_speed_mm_s, options)
-    return made, report, report_picture
 
 
 def _from_photo(read, name: str, machine: tuple[str, ...]):

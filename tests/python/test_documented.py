@@ -1,0 +1,49 @@
+"""Nothing public is undocumented: what the package offers, what it takes and gives, and the errors it raises."""
+
+import inspect
+import re
+from operator import attrgetter
+
+import pytest
+
+import brushsvg
+
+MODULES = ("laws",)
+NAMES = sorted(
+    {name for name in brushsvg.__all__ if name not in ("__version__", *MODULES)}
+    | {f"{module}.{name}" for module in MODULES for name in getattr(brushsvg, module).__all__}
+)
+FUNCTIONS = [name for name in NAMES if not inspect.isclass(attrgetter(name)(brushsvg))]
+IN_PYTHON = [name for name in FUNCTIONS if inspect.isfunction(attrgetter(name)(brushsvg))]
+OF_LAWS = [name for name in IN_PYTHON if name.startswith("laws.")]
+
+
+def words_of(name: str) -> str:
+    found = inspect.getdoc(attrgetter(name)(brushsvg)) or ""
+    return re.sub(r"^\w+\(.*\) -> .*$", "", found, flags=re.M).strip()  # without pybind11's signature
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_name_says_what_it_is(name):
+    assert len(words_of(name).split()) >= 3, f"{name}: {words_of(name)!r}"
+    if inspect.isclass(attrgetter(name)(brushsvg)):
+        assert not words_of(name).startswith(f"{name.split('.')[-1]}("), "that is its signature"
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name in FUNCTIONS or name.startswith("laws.B")])
+def test_every_method_says_what_it_is(name):
+    thing = attrgetter(name)(brushsvg)
+    for method, body in vars(thing).items() if inspect.isclass(thing) else ():
+        if not method.startswith("_") and inspect.isfunction(body):
+            assert body.__doc__, f"{name}.{method}"
+
+
+@pytest.mark.parametrize("name", OF_LAWS)
+def test_a_law_tells_shapes_errors_and_each_of_its_arguments(name):
+    law = attrgetter(name)(brushsvg)
+    told = words_of(name)
+    assert "Raises Error" in told
+    assert re.search(r"\(\.\.\.|\(n", told), "no shape"
+    for argument in inspect.signature(law).parameters:
+        assert re.search(rf"\b{argument}\b", told), f"{argument} is not told of"
+    assert re.search(r"\((\d+)\)|section \d|Theorem \d|Lemma", told), "no source"
