@@ -436,7 +436,11 @@ def test_wrong_usage(desk, capsys, words):
     ("out", "flags", "cells"),
     [
         ("x.script", "", "ur5e"),
-        ("x.nc", "--cell ur5e", "grbl-3axis or grbl-servo or linuxcnc-3axis"),
+        (
+            "x.nc",
+            "--cell ur5e",
+            "fluidnc-3axis or grbl-3axis or grbl-servo or klipper-3axis or linuxcnc-3axis or marlin-3axis",
+        ),
         ("X.SCRIPT", "--cell grbl-servo", "ur5e"),
     ],
 )
@@ -731,7 +735,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         assert run(capsys, "cell", "show", name)[0] == 0
         status, out, err = run(capsys, "cell", "check", name)
         assert (status, out) == (0, f"{name}: cell {name} can be used\n")
-        assert bool(err) == (not name.startswith(("linuxcnc", "grbl"))), "a robot's paper is an example"
+        assert bool(err) == (not name.endswith(("-3axis", "-servo"))), "a robot's paper is an example"
     assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis", "--quiet") == (0, "", [])
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)

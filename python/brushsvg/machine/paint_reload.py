@@ -15,7 +15,7 @@ from .cell import Cell, Station, robot_from_paper
 from .distortion import is_similar
 from .frames import is_upright
 from .pass_way import on_way
-from .posts import POSTS
+from .posts import POSTS, circles_by
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,9 @@ def _is_told_circles(cell: Cell) -> bool:
     post = POSTS.get(cell.language)
     if not is_similar(cell.machine):
         return False
-    if not post or not post.circles_by:
-        return not post
-    return not post.in_robot_frame or is_upright(robot_from_paper(cell))
+    if not circles_by(cell):
+        return False
+    return not post or not post.in_robot_frame or is_upright(robot_from_paper(cell))
 
 
 def _from_paper_to_paper(a_pass):
