@@ -70,7 +70,7 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
     assert [row["stroke"] for row in report["strokes"]] == ["line", "dab"]
     assert report["total"]["overlap"] > 0.9
     time, overlap = re.search(r"\(time: (.*)\)", code)[1], report["total"]["overlap"]
-    line = f"a.ngc, p.png, r.json: written; 2 strokes, takes {time}, overlap {overlap:.3f}"
+    line = f"a.ngc, p.png, r.json: written; 2 strokes, takes {time}, overlap {overlap:.3f}, stops once for another pen"
     assert (status, out, err) == (0, "", [f"brushsvg: {line}"])
 
 
@@ -718,6 +718,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--wide",
         "--corners",
         "--join",
+        "--speed",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
     assert flags == choices | job | {"--corrections", "--help", "--page", "--preview", "--report", "--quiet"}

@@ -192,6 +192,11 @@ class Cell:
         10,
         0.0,
     )
+    pause_per_colour: bool = _key(
+        "without stations: stop for another pen or brush before strokes of another colour",
+        "yes",
+        default=True,
+    )
     tool: Tool | None = None
     servo: Servo | None = None
     reload: Reload | None = None

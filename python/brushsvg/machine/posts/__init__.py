@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..cell import ARCS_IN_SEGMENTS
-
 if TYPE_CHECKING:
     from ..cell import Cell
     from ..motion import Program
@@ -85,6 +83,8 @@ def _dobot(program: Program) -> Iterator[str]:
 
 def circles_by(cell: Cell) -> str:
     """What tells a circle on this cell, see Post."""
+    from ..cell import ARCS_IN_SEGMENTS
+
     post = POSTS.get(cell.language)
     if cell.language in ARCS_IN_SEGMENTS and not cell.arc_segment_mm:
         return ""
