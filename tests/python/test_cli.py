@@ -605,7 +605,10 @@ def test_a_closed_stdout_is_said(desk, words):
 def test_what_prints_nothing_needs_no_stdout(desk):
     done = spawn("convert", "a.svg", "out.ngc", preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
     assert done.returncode == 0
-    assert re.fullmatch(rb"brushsvg: out\.ngc: written; 2 strokes, takes about \d+ s\n", done.stderr)
+    assert re.fullmatch(
+        rb"brushsvg: out\.ngc: written; 2 strokes, takes about \d+ s, stops once for another pen\n",
+        done.stderr,
+    )
     assert (desk / "out.ngc").read_text().endswith("M2\n")
 
 
