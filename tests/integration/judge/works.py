@@ -29,6 +29,7 @@ CELLS = {
     "krl": ("kr6-r900", ".src"),
     "dobot": ("cr5", ".lua"),
 }
+FEWER = ("marlin", "klipper", "fluidnc")  # share writer and reader with grbl: tried less often
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 
 
