@@ -3,7 +3,7 @@
 import pytest
 from judge.checked import quick_check
 from judge.random_jobs import tried
-from judge.works import CELLS
+from judge.works import CELLS, FEWER
 
 JOBS = 75
 FIRST = 100
@@ -11,13 +11,14 @@ FIRST = 100
 
 @pytest.mark.parametrize("dialect", CELLS)
 def test_whatever_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
+    jobs = 20 if dialect in FEWER else JOBS
     with quick_check() as check:
         all_ = [
-            tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + JOBS)
+            tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + jobs)
         ]
     assert [job for job in all_ if job.wrong] == []
     assert [job for job in all_ if job.denied] == []
-    assert sum(not job.refused for job in all_) > JOBS / 3, "most are written"
+    assert sum(not job.refused for job in all_) > jobs / 3, "most are written"
 
 
 @pytest.mark.parametrize("dialect, number", [("jaka", 5031), ("grbl", 5064)])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from brushsvg import _core
 from brushsvg.errors import Error
 from brushsvg.machine import writer
-from brushsvg.machine.cell import Heights, Machine, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell import ARCS_IN_SEGMENTS, Heights, Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
@@ -24,6 +24,9 @@ LANGUAGES = {
     "linuxcnc-3axis": ".ngc",
     "grbl-3axis": ".ngc",
     "grbl-servo": ".ngc",
+    "fluidnc-3axis": ".ngc",
+    "marlin-3axis": ".gcode",
+    "klipper-3axis": ".gcode",
     "ur5e": ".script",
     "jaka-zu3": ".jks",
     "irb120": ".mod",
@@ -84,8 +87,8 @@ def gcode_moves(text, cell):
     at, feed, visit, word = [np.nan] * 3, 0.0, False, ""
     table = np.array(sorted(cell.servo.table, key=lambda row: row[1])) if cell.servo else None
     for line in text.splitlines():
-        if line.startswith("("):
-            visit = line.startswith("(paint")
+        if line.startswith(("(", "; ")):
+            visit = line.startswith(("(paint", "; paint"))
             continue
         words = re.findall(r"([A-Z])(-?\d+(?:\.\d+)?)", line)
         values = {letter: float(value) for letter, value in words if letter != "G"}
@@ -101,7 +104,12 @@ def gcode_moves(text, cell):
         for k, axis in enumerate("XYZ"):
             at[k] = values.get(axis, at[k])
         if moves:
-            yield bool(codes) and word == "0", tuple(at), feed / 60, visit
+            yield (
+                bool(codes) and word == "0" and cell.language not in ARCS_IN_SEGMENTS,
+                tuple(at),
+                feed / 60,
+                visit,
+            )
 
 
 def moves_on_paper(text, remark, speed, unit_mm=1.0):
@@ -184,7 +192,7 @@ def test_whatever_is_written_is_safe(name, seed):
     assert text == again and text.isascii() and text.endswith("\n")
     assert text.count("\r\n") == text.count("\r") in (0, text.count("\n"))
     robot = ROBOTS.get(name)
-    code = re.sub(r"\b9E9\b" if robot else r"\(.*\)|#.*", "", text)  # as RAPID calls an axis that is none
+    code = re.sub(r"\b9E9\b" if robot else r"\(.*\)|[#;].*", "", text)  # as RAPID calls an axis that is none
     assert not re.search(r"\d[eE][-+]?\d|nan|inf\b|-0\.0+(?![\d])", code)
     moves = robot(text) if robot else gcode_moves(text, cell)
     slack = 0.15 if name == "grbl-servo" else 2e-3

@@ -57,7 +57,7 @@ def test_what_was_planned_comes_back(desk, name):
     assert back.problems == []
     assert [p.stroke for p in back.plan.passes] == [
         "curve",
-        "hook [1]" if name.startswith(("linuxcnc", "grbl")) else "hook (1)",
+        "hook [1]" if name.endswith(("-3axis", "-servo")) else "hook (1)",
     ]
     for meant, found in zip(work.plan.passes, back.plan.passes, strict=True):
         away = np.linalg.norm(found.poses_mm[None] - meant.poses_mm[:, None], axis=2).min(axis=1)

@@ -9,17 +9,20 @@ import numpy as np
 import pytest
 from programs import program
 
+from brushsvg import _core
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
+from brushsvg.machine.rounding import as_written
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
 
 def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0, cell="linuxcnc-3axis"):
     passes = [
-        SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed, arcs=())
+        SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed, arcs=(), colour="")
         for stroke, poses, speed in passes
     ]
     brush = SimpleNamespace(name="b", max_speed_mm_s=limit)
@@ -105,6 +108,56 @@ def test_golden_grbl():
     assert text == (GOLDEN.parent / "two_strokes_grbl.ngc").read_text(encoding="ascii")
 
 
+@pytest.mark.parametrize("name", ["fluidnc", "marlin", "klipper"])
+def test_golden_of_other_firmware(name):
+    header = ("title: two strokes", "brush: round-6, 2 strokes")
+    text = text_of(*TWO, header=header, cell=f"{name}-3axis")
+    assert text == (GOLDEN.parent / f"two_strokes_{name}.gcode").read_text(encoding="ascii")
+
+
+@pytest.mark.parametrize("name", ["marlin-3axis", "klipper-3axis"])
+def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name):
+    """They forget the word behind its line, and G0 goes as fast as the last F said."""
+    lines = [line for line in text_of(*TWO, cell=name).splitlines() if line and not line.startswith(";")]
+    words = [re.findall(r"[GM]\d+", line) for line in lines]
+    assert all(len(each) == 1 for each in words)
+    assert {each[0] for each in words} == {"G0", "G1", "G21", "G90", "M400"}
+    feed = 0.0
+    for line in lines:
+        feed = float(found[1]) if (found := re.search(r"F([\d.]+)", line)) else feed
+        if line.startswith("G0 X"):
+            assert feed == 60 * find_cell(name).speeds.travel_mm_s
+    assert feed
+
+
+HALF_TURNS = [(40 + 4 * np.cos(a), 30 + 4 * np.sin(a), -2.0) for a in np.linspace(0, np.pi, 12)]
+
+
+@pytest.mark.parametrize(
+    ("name", "segment_mm", "off_mm", "is_circle"),
+    [
+        ("fluidnc-3axis", 0.0, 0.0, True),
+        ("fluidnc-3axis", 0.0, 0.009, False),
+        ("grbl-3axis", 0.0, 0.009, True),
+        ("marlin-3axis", 0.0, 0.0, False),
+        ("marlin-3axis", 0.5, 0.0, True),
+        ("klipper-3axis", 0.5, 0.0, True),
+        ("klipper-3axis", 0.6, 0.0, False),
+    ],
+)
+def test_circles_are_told_where_the_firmware_keeps_near_them(name, segment_mm, off_mm, is_circle):
+    """FluidNC refuses radii 0.005 mm apart; lines of 0.6 mm lie 0.011 mm beside a circle of 4 mm."""
+    cell = replace(find_cell(name), arc_segment_mm=segment_mm)
+    poses = np.array(HALF_TURNS)
+    poses[-1, 0] -= off_mm
+    a_pass = _core.Pass("round", poses, 20.0, arcs=[_core.Arc(0, 11, (40.0, 30.0), 1)])
+    (loaded,) = in_loads(_core.Plan("b", "", (100.0, 60.0), [a_pass]), None, cell).loads
+    written = as_written(loaded, cell, np.eye(4))
+    assert bool(written.arcs) == is_circle
+    spokes = np.linalg.norm(written.poses_mm[:, :2] - (40, 30), axis=1)
+    assert np.ptp(spokes) < 0.011 and (is_circle or len(spokes) > 12)
+
+
 def test_grbl_is_spared_what_it_does_not_know():
     text = text_of(("a" * 200, TWO[0][1], 20.0), cell="grbl-3axis")
     words = {word for line in code_lines(text) for word in re.findall(r"[GM]\d+", line)}
@@ -137,7 +190,9 @@ def test_same_moves_same_bytes():
 def test_the_first_rise_is_over_every_place_of_paper_that_leans():
     cell = find_cell("linuxcnc-3axis")
     cell = replace(cell, paper=replace(cell.paper, rotation_deg=(0.0, -2.0, 0.0)))
-    a_pass = SimpleNamespace(stroke="s", poses_mm=np.array(TWO[0][1], float), speed_mm_s=20.0, arcs=())
+    a_pass = SimpleNamespace(
+        stroke="s", poses_mm=np.array(TWO[0][1], float), speed_mm_s=20.0, arcs=(), colour=""
+    )
     plan = SimpleNamespace(sheet_mm=(300.0, 60.0), passes=[a_pass])
     made = program(plan, SimpleNamespace(name="b", max_speed_mm_s=25.0), cell)
     text = "".join(POSTS["linuxcnc"].write(in_robot_frame(made)))

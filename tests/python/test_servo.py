@@ -71,7 +71,8 @@ def test_no_lift_is_faster_than_told_by_the_values_as_they_are_written(values, s
     cell = replace(CELL, servo=Servo(((-10.0, 0.0), (0.0, 0.6 * values), (5.0, float(values))), step_mm, 0.0))
     poses = np.array([(10, 10, 0), (10, 10, -1), (14, 10, -3.3), (16, 11, -1.7), (16, 11, 0)])
     plan = SimpleNamespace(
-        sheet_mm=(100.0, 60.0), passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=())]
+        sheet_mm=(100.0, 60.0),
+        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=(), colour="")],
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     lines = "".join(grbl_servo(program(plan, brush, cell))).splitlines()
@@ -199,7 +200,8 @@ def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
     """The machine's feed is that of the way beside the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
     plan = SimpleNamespace(
-        sheet_mm=(100.0, 60.0), passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=())]
+        sheet_mm=(100.0, 60.0),
+        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=(), colour="")],
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     feed, feeds = 0.0, {}

@@ -46,6 +46,12 @@ def _dxf(data: bytes, options: ReadOptions) -> Design:
     return read_dxf(data, options)
 
 
+def _gcode(data: bytes, options: ReadOptions) -> Design:
+    from .gcode import read_gcode
+
+    return read_gcode(data, options)
+
+
 def settings_in(path: str | os.PathLike, alone: bool = False) -> dict:
     """Brush, cell, compensation, tolerance [mm] and wide that a drawing asks for, as far as it does.
 
@@ -60,7 +66,14 @@ def settings_in(path: str | os.PathLike, alone: bool = False) -> dict:
     return settings_of(read_bytes(path), alone)
 
 
-READERS = {".svg": _svg, ".svgz": _svg, ".dxf": _dxf}  # by extension; each takes (bytes, ReadOptions)
+READERS = {  # by extension; each takes (bytes, ReadOptions)
+    ".svg": _svg,
+    ".svgz": _svg,
+    ".dxf": _dxf,
+    ".gcode": _gcode,
+    ".ngc": _gcode,
+    ".nc": _gcode,
+}
 
 
 def read_drawing(path, options: ReadOptions = AS_DRAWN) -> Design:

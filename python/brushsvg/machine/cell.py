@@ -186,6 +186,17 @@ class Cell:
     speeds: Speeds
     blending: Blending
     workspace: Workspace
+    arc_segment_mm: float = _number(
+        "marlin and klipper: how long the lines are that the firmware makes of circles; 0: it is told none",
+        0,
+        10,
+        0.0,
+    )
+    pause_per_colour: bool = _key(
+        "without stations: stop for another pen or brush before strokes of another colour",
+        "yes",
+        default=True,
+    )
     tool: Tool | None = None
     servo: Servo | None = None
     reload: Reload | None = None
@@ -210,6 +221,8 @@ NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 LEAST_SPEED_MM_S = {"dobot": 1.0}  # of MovL; all its speeds are whole multiples of it
+ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
+RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
 RELOADS = ("length", "stroke", "layer")
 
 

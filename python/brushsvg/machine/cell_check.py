@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import Error, Notice
 from .cell import (
+    ARCS_IN_SEGMENTS,
     BLEND_STEP_MM,
     LEAST_ACCELERATION_MM_S2,
     LEAST_SPEED_MM_S,
@@ -53,6 +54,12 @@ def check(cell: Cell) -> None:
         raise Error(
             f"language {cell.language!r} has no steps of blends: they are as fine as its decimals",
             where="blending.step_mm",
+            code="out-of-range",
+        )
+    if cell.arc_segment_mm and cell.language not in ARCS_IN_SEGMENTS:
+        raise Error(
+            f"language {cell.language!r} makes no lines of circles",
+            where="arc_segment_mm",
             code="out-of-range",
         )
     _check_paper(cell)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from .cell import Cell, Station, robot_from_paper
 from .distortion import is_similar
 from .frames import is_upright
 from .pass_way import on_way
-from .posts import POSTS
+from .posts import POSTS, circles_by
 
 
 @dataclass(frozen=True)
@@ -77,9 +78,9 @@ def _is_told_circles(cell: Cell) -> bool:
     post = POSTS.get(cell.language)
     if not is_similar(cell.machine):
         return False
-    if not post or not post.circles_by:
-        return not post
-    return not post.in_robot_frame or is_upright(robot_from_paper(cell))
+    if not circles_by(cell):
+        return False
+    return not post or not post.in_robot_frame or is_upright(robot_from_paper(cell))
 
 
 def _from_paper_to_paper(a_pass):
@@ -116,14 +117,15 @@ def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
 
 
 def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
-    """For each load the stations to visit before it, none before loads that are not run; () for a cell without paint.
+    """For each load the stations to visit before it, none before loads that are not run; () for a cell without paint
+    and for strokes of one colour, or where nobody can be waited for.
 
     Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
     cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
     without. Error for a colour that no station serves.
     """
     if not cell.reload:
-        return ()
+        return _pens(loads, first_stroke) if may_pause(cell) else ()
     painted, due = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
     found, last, used_mm = [()] * len(painted), None, 0.0
     with suppress(Error):  # what no station serves is not on the brush
@@ -143,6 +145,45 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
         used_mm = length_mm + (0.0 if fetch else used_mm)
         last = a_pass
     return tuple(found)
+
+
+def may_pause(cell: Cell) -> bool:
+    """Whether the program stops for another pen: a servo's brush would fall while it waits."""
+    return cell.pause_per_colour and not cell.servo
+
+
+def pen(colour: str) -> Station:
+    """Where a person takes another pen or brush: wherever the tool is, at the safe height."""
+    return Station(f"pen {colour.lower().lstrip('#')}", (), by_hand=True)
+
+
+def _pens(loads: PlanInLoads, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
+    changed = [False] + [
+        bool(a.colour and b.colour) and a.colour.lower() != b.colour.lower() for a, b in pairwise(loads.loads)
+    ]
+    changed[:first_stroke] = [False] * len(
+        changed[:first_stroke]
+    )  # with which one it begins the person sees to
+    if not any(changed):
+        return ()
+    return tuple(
+        (pen(a_pass.colour),) if is_new else () for a_pass, is_new in zip(loads.loads, changed, strict=True)
+    )
+
+
+def pens_changed(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> int:
+    """How often strokes ask for another pen than the one before, on a cell without paint."""
+    return 0 if cell.reload else sum(map(bool, _pens(loads, first_stroke)))
+
+
+def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[Notice]:
+    """A notice where strokes of several colours are painted in one go that nobody asked for."""
+    if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
+        return []
+    sentence = (
+        "strokes of several colours are painted with one pen: a servo's brush would fall while it waits"
+    )
+    return [Notice("", sentence, code="colours-as-one", advice="--layer or --select paints one of them")]
 
 
 def painted_mm(a_pass) -> float:

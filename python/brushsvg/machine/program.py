@@ -164,6 +164,8 @@ def visit(station: Station, brush, cell: Cell) -> Section:
     """To the paint and back up to safe height; a person does the rest where the station is served by hand."""
     name = names_of_stations(cell).get(station, station.name)
     speeds = cell.speeds
+    if not station.place_mm:
+        return Section(f"paint: {name}", (Wait(None, f"take the {name}"),))
     steps = [Move("travel", safely_over(station.place_mm, cell), speeds.travel_mm_s)]
     if station.by_hand:
         return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))

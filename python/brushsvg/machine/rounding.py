@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
-from math import ceil, dist, tau
+from math import ceil, dist, inf, tau
 
 import numpy as np
 
 from .. import _core
-from .arc_chords import with_chords_on
-from .cell import Cell, least_move_mm
+from .arc_chords import OFF_MM, with_chords_on
+from .cell import RADII_MM, Cell, least_move_mm
 from .corner_blending import ON_THE_SPOT_MM
 from .distortion import leans, told_pass
 from .frames import is_upright, moved
 from .motion import via
-from .posts import POSTS
+from .posts import POSTS, circles_by
 
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
 # turn the other way, or all round, or lie on one line
@@ -42,13 +42,13 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     post = POSTS.get(cell.language)
     unit_mm = 10.0**-cell.decimals
     meant = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
-    circles_by = post.circles_by if post else "centre"
+    told_by = circles_by(cell)
     in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
     # what leans is told to go aside for it to go straight down, which it does up to rounding
     sideways_mm = 2 * unit_mm if leans(cell.machine) else ON_THE_SPOT_MM
     if in_robot and not is_upright(frame):
         sideways_mm = 2 * unit_mm  # up and down are only so up to rounding
-        circles_by = ""  # and circles lie in no plane that the robot knows
+        told_by = ""  # and circles lie in no plane that the robot knows
 
     def rounded(poses: np.ndarray) -> np.ndarray:
         if in_robot:
@@ -57,8 +57,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
 
     poses, arcs = rounded(meant), []
     least_mm = least_move_mm(cell)
-    if circles_by:
-        arcs, others = _told(a_pass.arcs, poses, circles_by, unit_mm, least_mm)
+    if told_by:
+        arcs, others = _told(a_pass.arcs, poses, told_by, cell)
         dense, arcs = with_chords_on(meant, others, arcs)
         if len(dense) > len(meant):
             meant, poses = dense, rounded(dense)
@@ -87,9 +87,10 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     return stays
 
 
-def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: float) -> tuple[list, list]:
+def _told(arcs, poses: np.ndarray, told_by: str, cell: Cell) -> tuple[list, list]:
     """The arcs that are told as circles, those that come back to where they began or beyond in parts, and none where no
     more than a tiny move would lead to it or away from it; and the others."""
+    unit_mm, least_mm = 10.0**-cell.decimals, least_move_mm(cell)
 
     def is_tiny(first: int, last: int) -> bool:
         return first != last and dist(poses[first], poses[last]) < least_mm
@@ -97,7 +98,8 @@ def _told(arcs, poses: np.ndarray, circles_by: str, unit_mm: float, least_mm: fl
     told, others, done = [], [], 0
     for part in chain.from_iterable(_parts(arc, poses, CIRCLE_UNITS * unit_mm) for arc in arcs):
         if (
-            _is_told(poses[part.first : part.last + 1, :2], circles_by, CIRCLE_UNITS * unit_mm)
+            _is_told(poses[part.first : part.last + 1, :2], told_by, CIRCLE_UNITS * unit_mm)
+            and _is_round(poses[[part.first, part.last], :2] - part.centre_mm, cell)
             and not is_tiny(done, part.first)
             and not is_tiny(part.last, len(poses) - 1)
         ):
@@ -129,6 +131,14 @@ PART_RAD, MOST_RAD = (
     3.5,
     5.0,
 )  # of a circle in parts: two of a little more than all round; no part is all round
+
+
+def _is_round(spokes: np.ndarray, cell: Cell) -> bool:
+    """Whether the firmware takes a circle with the spokes (2, 2) to its ends for one, and keeps near it."""
+    first, last = np.linalg.norm(spokes, axis=1).tolist()
+    near_mm = RADII_MM.get(cell.language, inf) - 1.5 * 10.0**-cell.decimals  # its centre is rounded, too
+    sagitta_mm = cell.arc_segment_mm**2 / (8 * max(first, 1e-9))
+    return abs(first - last) <= near_mm and sagitta_mm <= OFF_MM
 
 
 def _is_told(on: np.ndarray, circles_by: str, least_mm: float) -> bool:

@@ -13,7 +13,7 @@ from ..brush.library import find_brush
 from ..drawing import layout
 from ..drawing.design import Notice
 from ..errors import Error
-from ..machine.cell import Cell
+from ..machine.cell import LEAST_SPEED_MM_S, Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
 from ..machine.program import Job, walked
@@ -44,6 +44,7 @@ class Options:
     lag_mm: float | None = None
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
+    speed_of_all_mm_s: float | None = None  # whatever the drawing or the plan says
     start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "squared", "auto"
     end: str = "auto"  # the same: "lifted", "squared", "auto"
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
@@ -91,6 +92,7 @@ def prepare(
         return _prepare_plan(path, options)
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
+    _check_speed(brush, options)
     design = layout.arrange(drawing.read_drawing(path, options.reading), options.layout)
     stage("finding strokes")
     strokes, notices = strokes_of(design, options.paths_as)
@@ -126,7 +128,7 @@ def prepare(
     if options.compensation == "refined":
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
-    plan = _with_speeds(plan, strokes)
+    plan = _at_speed(_with_speeds(plan, strokes), options)
     told = _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
     notices = [*design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
@@ -320,6 +322,27 @@ def _with_speeds(plan, strokes):
     return plan
 
 
+def _check_speed(brush, options: Options) -> None:
+    """Error where all is to be painted at a speed that is not the brush's, or not the cell's."""
+    speed, cell = options.speed_of_all_mm_s, options.cell
+    if speed is None:
+        return
+    least = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
+    most = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
+    whose = f"brush {brush.name}" if most == brush.max_speed_mm_s else f"cell {cell.name}"
+    if not least <= speed <= most:
+        sentence = f"speed {speed:.4g} mm/s is outside the range [{least:g}, {most:g}] mm/s of {whose}"
+        raise Error(sentence, code="speed-out-of-range")
+
+
+def _at_speed(plan, options: Options):
+    """The plan with the one speed that all was asked to be painted at."""
+    if options.speed_of_all_mm_s is not None:
+        for a_pass in plan.passes:
+            a_pass.speed_mm_s = options.speed_of_all_mm_s
+    return plan
+
+
 def _other_brushes(strokes, brush) -> list[Notice]:
     asked = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
     return [
@@ -369,6 +392,8 @@ def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
                 code="plan-of-other-brush",
             )
         )
+    _check_speed(brush, options)
+    plan = _at_speed(plan, options)
     return Work("", brush, corrected(plan, options.corrections), None, (), options, tuple(notices))
 
 

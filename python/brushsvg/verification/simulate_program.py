@@ -15,6 +15,7 @@ from ..machine.corner_blending import blend_radii
 from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
 from ..machine.frames import is_upright, moved
 from ..machine.move_extents import ways
+from ..machine.paint_reload import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
 from ..machine.program import names_of_stations
@@ -179,6 +180,10 @@ def _visits(read: Readback, cell: Cell) -> tuple:
     found, waiting = [], []
     for section in read.sections:
         if section.title.startswith("paint: "):
+            taken = re.fullmatch(r"paint: pen ([0-9a-f]{6})", section.title)
+            if taken and not cell.reload and may_pause(cell):
+                waiting.append(pen(taken[1]))
+                continue
             if (title := _title(section.title)) not in by_title:
                 name = _name(section)
                 raise Error(

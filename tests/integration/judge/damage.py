@@ -35,7 +35,47 @@ class Script(NamedTuple):
     decimals: int = 3
 
 
+PRINTER = Script(
+    remark=";",
+    moves=r"G[0-3] [XYZ]",
+    words=(
+        *(
+            ("X", "Y"),
+            ("Y", "X"),
+            ("Z", "X"),
+            ("Z", "E"),
+            ("G1", "G0"),
+            ("G0", "G1"),
+            ("G1 ", ""),
+            ("G0 ", ""),
+        ),
+        *(
+            ("G1", "G2"),
+            ("F", "S"),
+            ("P", "S"),
+            ("Y", "Z"),
+            ("G1", "G28"),
+            ("G2 ", "G3 "),
+            ("G3 ", "G2 "),
+            ("I", "J"),
+        ),
+    ),
+    modes=(
+        *(("G21", "G20"), ("G90", "G91"), ("G21", ""), ("G90", ""), ("M400", "M410"), ("M400", "M2")),
+        *(("M0", "M1"), ("M0", "M2"), ("M400", "M30")),
+    ),
+    offsets=r"^G0 Z|^G4 ",
+    shifts=(-100, -5, -1, 1, 0.2),
+    more=(
+        *("G92 X0 Y0", "G92 X10 Y10 Z0", "G92 Z-1", "G91", "G20", "G28", "M0", "M2", "M3 S200", "M5", "M30"),
+        *("M220 S200", "G4 P500", "G4 S5", "T1", "M84", "M204 S5000", "PAUSE", "G90", "G21", "M400", "M112"),
+    ),
+    says="M117 {}",
+    rates=(r"(F)(\d+\.\d+)", r"(G4 P)(\d+)"),
+)
 SCRIPTS = {
+    "marlin": PRINTER,
+    "klipper": PRINTER._replace(modes=(*PRINTER.modes, ("PAUSE", "M0"))),
     "urscript": Script(
         remark="  #",
         moves="  move",

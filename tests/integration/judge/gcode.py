@@ -1,7 +1,9 @@
-"""LinuxCNC's and grbl 1.1's G-code, run as their manuals say: strict, and with everything that could be damaged.
+"""LinuxCNC's, grbl 1.1's and FluidNC's G-code, run as their manuals say: strict, and with everything that could be
+damaged.
 
 LinuxCNC: RS274/NGC of its manual, lines of 252 letters, G64 P, comments that act. grbl 1.1: its own list of commands,
-real-time letters wherever they stand, lines of 79 letters; with a servo in laser mode ($32=1).
+real-time letters wherever they stand, lines of 79 letters; with a servo in laser mode ($32=1). FluidNC (its wiki):
+the same, with lines of 255 letters, comments that act, and circles whose ends are as far from their centre to 0.005 mm.
 """
 
 from __future__ import annotations
@@ -70,11 +72,16 @@ USUAL = {"units": 21.0, "distance": 90.0, "centres": 91.1, "plane": 17.0, "radiu
 PUT_BACK = {"distance", "plane", "radius", "feed"}  # by M2 and M30
 AXES = "XYZ"
 OTHER_AXES = "ABCUVW"
-LONGEST = {"linuxcnc": 252, "grbl": 79}  # rs274 stops at 253; grbl counts no blanks and no comments
+LONGEST = {
+    "linuxcnc": 252,
+    "grbl": 79,
+    "fluidnc": 255,
+}  # rs274 stops at 253; grbl counts no blanks and no comments
 
 
 def run_gcode(text: str, dialect: str, start, servo=None, travel_mm_s: float = math.inf) -> Run:
-    """dialect: linuxcnc or grbl; start: where the tool is before; servo: rows (height, value) for a brush on M3 S."""
+    """dialect: linuxcnc, grbl or fluidnc; start: where the tool is before; servo: rows (height, value) of a brush on
+    M3 S."""
     controller = _Controller(dialect, start, servo, travel_mm_s)
     lines = text.split("\n")
     if lines and not lines[-1]:
@@ -98,7 +105,8 @@ def run_gcode(text: str, dialect: str, start, servo=None, travel_mm_s: float = m
 class _Controller:
     def __init__(self, dialect, start, servo, travel_mm_s):
         self.run = Run()
-        self.dialect, self.servo, self.travel_mm_s = dialect, servo, travel_mm_s
+        self.firmware, self.servo, self.travel_mm_s = dialect, servo, travel_mm_s
+        self.dialect = "linuxcnc" if dialect == "linuxcnc" else "grbl"
         self.at = list(start)
         self.shift = [0.0, 0.0, 0.0]  # of G92
         # what holds before is whatever the last program or a hand has left: the worst of each
@@ -130,7 +138,7 @@ class _Controller:
                 self.line(number, part)
             return
         read = line if self.dialect == "linuxcnc" else re.sub(r"\(.*\)|\s", "", line)
-        if len(read) > LONGEST[self.dialect]:
+        if len(read) > LONGEST[self.firmware]:
             self._act(f"a line of {len(read)} letters")
             if self.dialect == "linuxcnc":
                 raise RefusedError(f"line {number}: command too long")
@@ -197,7 +205,7 @@ class _Controller:
         return out
 
     def _comment(self, words: str) -> None:
-        if self.dialect == "linuxcnc" and ACTS.match(words):
+        if self.firmware != "grbl" and ACTS.match(words):
             self._act(f"the comment ({words[:30]})")
         if self.has_code:
             self.run.titles.append((words, len(self.run.legs)))
@@ -425,6 +433,7 @@ class _Controller:
             bad = off_mm > 0.254 or (off_mm > 0.00254 and off_mm > 0.001 * first)
         else:
             bad = off_mm > 0.5 or (off_mm > 0.005 and off_mm > 0.001 * first)
+            bad |= self.firmware == "fluidnc" and off_mm > 0.005
         if bad:
             raise RefusedError(f"line {self.number}: the circle's ends lie on two circles")
         turn = 1 if self.motion == 3.0 else -1

@@ -20,6 +20,7 @@ from .gcode import run_gcode
 from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
+from .printer import run_printer
 from .rapid import run_rapid
 from .urscript import run_urscript
 from .xarm import run_xarm
@@ -131,7 +132,9 @@ class Job:
     def interpret(self, text: str) -> Run:
         if robot := ROBOTS.get(self.language):
             return robot(text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell))
-        dialect = "linuxcnc" if self.language == "linuxcnc" else "grbl"
+        if self.language in ("marlin", "klipper"):
+            return run_printer(text, self.language, self.start, bool(self.cell.get("arc_segment_mm")))
+        dialect = self.language.removesuffix("-servo")
         servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None
         return run_gcode(text, dialect, self.start, servo, self.cell["speeds"]["travel_mm_s"])
 

@@ -19,6 +19,9 @@ CELLS = {
     "linuxcnc": ("linuxcnc-3axis", ".ngc"),
     "grbl": ("grbl-3axis", ".gcode"),
     "grbl-servo": ("grbl-servo", ".nc"),
+    "fluidnc": ("fluidnc-3axis", ".gcode"),
+    "marlin": ("marlin-3axis", ".gcode"),
+    "klipper": ("klipper-3axis", ".gcode"),
     "urscript": ("ur5e", ".script"),
     "jaka": ("jaka-zu3", ".jks"),
     "rapid": ("irb120", ".mod"),
@@ -26,6 +29,7 @@ CELLS = {
     "krl": ("kr6-r900", ".src"),
     "dobot": ("cr5", ".lua"),
 }
+FEWER = ("marlin", "klipper", "fluidnc")  # share writer and reader with grbl: tried less often
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 
 
@@ -50,6 +54,10 @@ class Work:
 
 def _finely_blended(cell):
     return replace(cell, blending=replace(cell.blending, step_mm=0.001))
+
+
+def _with_arcs(cell):
+    return replace(cell, arc_segment_mm=0.1)
 
 
 def _turned(cell):
@@ -124,6 +132,8 @@ def cell_of(dialect: str, change=None):
         dialect == "dobot" and change is None
     ):  # else no corner of small works has a blend that could be damaged
         change = _finely_blended
+    if dialect == "klipper" and change is None:
+        change = _with_arcs
     cell = change(cell) if change else cell
     return replace(cell, name="mine") if change else cell
 

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from ...drawing import READERS
 from . import values
-from .flags import add_choices, add_corrections, add_input, add_job, add_layout, add_quiet, plans_and_programs
+from .flags import (
+    add_choices,
+    add_corrections,
+    add_input,
+    add_job,
+    add_layout,
+    add_quiet,
+    add_speed,
+    plans_and_programs,
+)
 from .usage_checks import (
     DRAWINGS,
     PHOTOS,
@@ -23,6 +32,7 @@ def add_convert(commands) -> None:
     add_input(convert)
     convert.add_argument("output", metavar="OUT", help=plans_and_programs())
     add_choices(convert)
+    add_speed(convert)
     add_job(convert)
     add_corrections(convert)
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
@@ -105,6 +115,7 @@ def add_report(commands) -> None:
     report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
     add_input(report)
     add_choices(report, several_brushes=True)
+    add_speed(report)
     report.add_argument("--all-brushes", action="store_true", help="one line for each brush, the best first")
     report.add_argument(
         "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"

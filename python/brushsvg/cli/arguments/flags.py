@@ -115,6 +115,16 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
 
 
+def add_speed(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--speed",
+        dest="paint_speed",
+        metavar="MM/S",
+        type=values.paint_speed,
+        help="of painting, whatever the drawing says, within what brush and cell allow; default: the drawing's, or 20",
+    )
+
+
 def add_wide(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--wide",

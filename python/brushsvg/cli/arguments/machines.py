@@ -12,6 +12,7 @@ from .flags import (
     add_layout,
     add_looks,
     add_quiet,
+    add_speed,
     add_wide,
     add_z_offset,
     programs,
@@ -83,6 +84,7 @@ def add_check(commands) -> None:
     add_wide(check)
     add_corners(check)
     add_join(check)
+    add_speed(check)
     add_corrections(check)
     check.add_argument(
         "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"

@@ -40,6 +40,13 @@ def tolerance(text: str) -> float:
     return _length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
 
 
+def paint_speed(text: str) -> float:
+    value = _number(text, f"{text[:24]!r} is not a speed in mm/s; write for example 15")
+    if not 0.001 <= value <= 5000:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is outside the range [0.001, 5000] mm/s")
+    return value
+
+
 def words(text: str) -> str:
     if not text.strip():
         raise argparse.ArgumentTypeError("it is empty")

@@ -6,6 +6,7 @@ import json
 
 from ...brush.library import brush_names, find_brush
 from ...drawing import settings_in
+from ...drawing.gcode import is_ours
 from ...errors import Error, Notice
 from ...evaluation import report
 from ...files import read_bytes
@@ -14,11 +15,13 @@ from ...machine.cell import Cell
 from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
 from ...machine.paint_reload import in_loads
+from ...machine.posts import GCODE
 from ...pipeline import outputs, prediction, preparation
+from ...pipeline.foreign_program import foreign_program
 from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
-from ..steps.options import brush_of, exact_cell, typed
+from ..steps.options import brush_of, cell_of, exact_cell, typed
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
 
@@ -32,6 +35,8 @@ def check_file(args) -> None:
     check_places(args.preview)
     with about(args.program):
         text = text_of_file(read_bytes(args.program))
+        if suffix_of(args.program) in GCODE and not is_ours(text):
+            return _check_foreign(args, text)
         made = made_of(text)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(args, kind) is None and name not in names:
@@ -89,6 +94,32 @@ def check_file(args) -> None:
             write(args, {args.preview: picture}, len(shown.plan.passes), seconds, figures.total.overlap)
         tell(report.as_text(".json" if args.json else ".txt", figures))
     _refuse_or_allow(args, problems, work is None)
+
+
+def _check_foreign(args, text: str) -> None:
+    """A program that somebody else wrote for a pen: what a brush paints with it, and which limits it breaks."""
+    if args.input:
+        sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
+        raise Error(sentence, code="nothing-to-compare")
+    if args.z_offset:
+        raise Error("brushsvg did not write it: --z-offset would not move it", code="flag-without-effect")
+    cell = cell_of(args.cell)
+    brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
+    found = foreign_program(text, brush, cell, args.sheet)
+    shown = preparation.Work("", brush, found.plan, None, (), preparation.Options(cell=cell), ())
+    if args.preview:
+        outlined = prediction.outlined(found.marks, brush, stage)
+        picture = outputs.picture(suffix_of(args.preview), shown, outlined)
+        write(args, {args.preview: picture}, len(found.plan.passes))
+    figures = outputs.reported(shown, found.marks, cell)
+    tell(report.as_text(".json" if args.json else ".txt", figures))
+    if found.problems:
+        raise RefusedError(args.program, summarized(list(found.problems)))
+    if not args.json:
+        tell(
+            f"{args.program}: brushsvg did not write it; with brush {brush.name} it keeps the limits asked of it: "
+            "depth, speed, rapid moves while the brush touches, the sheet\n"
+        )
 
 
 def _told_by(made, work: preparation.Work | None) -> tuple[str, tuple[str, ...]]:

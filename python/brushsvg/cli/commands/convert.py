@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ...evaluation import report
 from ...machine import preflight, writer
-from ...machine.paint_reload import in_loads, too_long
+from ...machine.paint_reload import in_loads, may_pause, pens_changed, too_long, with_one_pen
 from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
@@ -56,9 +56,13 @@ def convert_file(args) -> None:
                 figures.total.overlap,
             )
     warn(args.input, too_long(loads, brush, cell))
+    if is_program:
+        warn(args.input, with_one_pen(loads, cell, job.first_stroke))
     warn_of_example(args, cell)
     seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
-    write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap)
+    stops = pens_changed(loads, cell, job.first_stroke) if is_program and may_pause(cell) else 0
+    more = f"stops {'once' if stops == 1 else f'{stops} times'} for another pen" if stops else ""
+    write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap, more)
 
 
 def job_page_of(path: str, work) -> bytes:

@@ -39,6 +39,7 @@ class Choices:
     join: bool | None
     compensation: str | None
     lag: float | None
+    paint_speed: float | None
     tolerance: float | None
     start: str | None
     end: str | None
@@ -119,6 +120,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
         corners=chosen.corners or preparation.Options.corners,
         join=bool(chosen.join),
         speed_mm_s=min(preparation.Options.speed_mm_s, cell.speeds.paint_mm_s),
+        speed_of_all_mm_s=chosen.paint_speed,
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,
         corrections=corrections_of(chosen.corrections),

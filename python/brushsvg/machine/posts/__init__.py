@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from ..cell import Cell
     from ..motion import Program
 
 
@@ -13,7 +14,8 @@ class Post(NamedTuple):
     """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
 
     in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
-    circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines.
+    circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines. Where a firmware makes
+    lines of circles, its cell says how long these are, 0 of one that is told no circles: see circles_by.
     line_end: as the controller's own files have it.
     """
 
@@ -31,10 +33,10 @@ def _linuxcnc(program: Program) -> Iterator[str]:
     return linuxcnc(program)
 
 
-def _grbl(program: Program) -> Iterator[str]:
-    from .gcode import grbl
+def _dialect(program: Program) -> Iterator[str]:
+    from .gcode import gcode
 
-    return grbl(program)
+    return gcode(program)
 
 
 def _grbl_servo(program: Program) -> Iterator[str]:
@@ -79,10 +81,23 @@ def _dobot(program: Program) -> Iterator[str]:
     return dobot(program)
 
 
+def circles_by(cell: Cell) -> str:
+    """What tells a circle on this cell, see Post."""
+    from ..cell import ARCS_IN_SEGMENTS
+
+    post = POSTS.get(cell.language)
+    if cell.language in ARCS_IN_SEGMENTS and not cell.arc_segment_mm:
+        return ""
+    return post.circles_by if post else "centre"
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
-    "grbl": Post("G-code for grbl", GCODE, _grbl),
+    "grbl": Post("G-code for grbl", GCODE, _dialect),
+    "fluidnc": Post("G-code for FluidNC", GCODE, _dialect),
+    "marlin": Post("G-code for Marlin", GCODE, _dialect),
+    "klipper": Post("G-code for Klipper", GCODE, _dialect),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
     "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),

@@ -9,10 +9,9 @@ import numpy as np
 
 from ..cell import Cell, Servo, servo_parts, servo_stands
 from ..motion import Move, Program, Wait
-from .gcode import MODES, grbl_comment, wait
+from .gcode import DIALECTS, HELD_UP, MODES, grbl_comment, wait
 from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
 
-SERVO_END = "end: the brush is held up"
 TOUCHING = (
     "land",
     "paint",
@@ -44,7 +43,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
         yield "\n" + grbl_comment(section.title)
         for step in section.steps:
             if isinstance(step, Wait):
-                yield wait(step, grbl_comment)
+                yield wait(step, DIALECTS["grbl-servo"])
                 continue
             wanted = feed_mm_min(step.speed_mm_s)
             if wanted != feed:
@@ -53,7 +52,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
             fastest = program.touching_mm_s if step.meaning in TOUCHING else math.inf
             value, feed = yield from _lines(step, here, value, program.cell, fastest, feed)
             here = step.points_mm[-1]
-    yield "\n" + grbl_comment(SERVO_END)
+    yield "\n" + grbl_comment(HELD_UP)
 
 
 def value_at(servo: Servo, height_mm):

@@ -7,13 +7,11 @@ import re
 from functools import cache, lru_cache
 
 from ...errors import Error
-from ...machine.cell import Cell
-from ...machine.posts.gcode import comment, grbl_comment
-from ...machine.posts.gcode_servo import SERVO_END, height_at
+from ...machine.cell import ARCS_IN_SEGMENTS, Cell
+from ...machine.posts.gcode import DIALECTS, HELD_UP, comment
+from ...machine.posts.gcode_servo import height_at
 from . import Act, Readback, Step
 
-_COMMENT = re.compile(r"\(([^()]*)\)")
-_ACTIVE = re.compile(r"\s*(\w+\s*,|(PROBE|LOG)\w+)", re.IGNORECASE)
 _VALUE = r"(?:[GM]-?|[A-FH-LN-Z][+-]?)(?:\d+\.?\d*|\.\d+)"
 _CODE = re.compile(rf"(?:{_VALUE}(?: +|$))+")
 _WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
@@ -40,16 +38,21 @@ ALONE = {
     "M3",
     "M5",
 }  # no other word of command beside them
-LONGEST, LONGEST_FOR_GRBL = (
-    252,
-    79,
-)  # letters of a line, by trying LinuxCNC 2.9 and by grbl 1.1's buffer of 80
-ROUND_MM = 0.01  # LinuxCNC takes circles whose radii differ by no more than that, or a thousandth of them
 STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
 UNKNOWN_TO_GRBL = {
     "G64",
     "G90.1",
 }  # it answers them with an error, and senders then stop with the brush pressed
+FOR_PRINTERS = {
+    "G0": "XYZF",
+    "G1": "XYZF",
+    "G2": "XYZIJF",
+    "G3": "XYZIJF",
+    "G4": "P",
+    "G21": "",
+    "G90": "",
+    "M400": "",
+}
 NEEDED = {"G21": "millimetres", "G90": "absolute places"}
 
 
@@ -69,20 +72,27 @@ def read_gcode(text: str, cell: Cell) -> Readback:
 class _Reader:
     def __init__(self, cell: Cell):
         self.out = Readback()
-        self.comment = comment if cell.language == "linuxcnc" else grbl_comment
+        self.dialect = DIALECTS[cell.language]
+        self.remark = re.compile(self.dialect.remark)
         self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
         self.words |= {"G4": "P", "G64": "P", "": "F"} | (
             {"M3": "SF", "G1": "XYSF"} if cell.servo else {"M5": ""}
         )
+        if not self.dialect.has_blocks:
+            self.words = dict(FOR_PRINTERS)
+            if "M0" in self.dialect.stops:
+                self.words["M0"] = ""
         self.known = ALONE | MODES | set(NEEDED)
         if cell.language != "linuxcnc":
             self.known -= UNKNOWN_TO_GRBL
         self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
-        self.longest = LONGEST if cell.language == "linuxcnc" else LONGEST_FOR_GRBL
+        self.ends_by_words = bool(cell.servo) or not self.dialect.has_blocks
+        self.may_circle = bool(cell.arc_segment_mm) or cell.language not in ARCS_IN_SEGMENTS
         self.motion = ""
         self.value = math.nan  # of the servo
         self.unit_mm = 10.0**-cell.decimals
         self.servo = cell.servo
+        self.firmware = {"linuxcnc": "LinuxCNC", "fluidnc": "FluidNC"}.get(cell.language, cell.language)
         self.height_at = cache(lambda value: height_at(cell.servo, value))
         self.at = {axis: math.nan for axis in "XYZ"}
         self.feed_mm_s = 0.0
@@ -95,23 +105,25 @@ class _Reader:
             self._count(number, line)
             line = line.rstrip(" ")
             if line and self.ended:
-                if _END.fullmatch(line) and not self.servo:
+                if _END.fullmatch(line) and not self.ends_by_words:
                     continue  # ends what has ended
                 raise Error(
                     f"line {number}: {line[:40]!r} stands behind the end of the program", code="line-unread"
                 )
-            if said := _COMMENT.fullmatch(line):
+            if said := self.remark.fullmatch(line):
                 self._comment(number, line, said[1])
-                self.ended = bool(self.servo) and said[1] == SERVO_END
-            elif line:
+                self.ended = self.ends_by_words and said[1] == HELD_UP
+            elif line and self.dialect.has_blocks:
                 self._line(number, line)
+            elif line:
+                self._word_of_command(number, line)
         for mode, meaning in NEEDED.items():
             if mode not in self.seen:
                 raise Error(
                     f"{mode} is missing: nothing says that its numbers are {meaning}", code="mode-missing"
                 )
         if not self.ended:
-            end = f"({SERVO_END})" if self.servo else "M2"
+            end = self.dialect.comment(HELD_UP).strip() if self.ends_by_words else "M2"
             raise Error(
                 f"{end} is missing: the program has no end, or half of it was lost", code="program-cut-short"
             )
@@ -120,12 +132,41 @@ class _Reader:
     def _count(self, number: int, line: str) -> None:
         """Error for a line that the controller does not read whole."""
         # grbl drops blanks before it counts
-        size = len(line) if self.longest == LONGEST else len(line.replace(" ", ""))
-        if size > self.longest:
+        size = len(line) if self.dialect.counts_blanks else len(line.replace(" ", ""))
+        if size > self.dialect.longest:
             raise Error(
-                f"line {number} has {size} letters, the controller reads no more than {self.longest}",
+                f"line {number} has {size} letters, the controller reads no more than {self.dialect.longest}",
                 code="line-unread",
             )
+
+    def _word_of_command(self, number: int, line: str) -> None:
+        """A line of a printer's firmware, which reads its first word of command alone, and forgets it."""
+        if line == self.dialect.stops[-1]:
+            self.out.acts.append(Act(number, "text", line))
+            return
+        words = _words(line)
+        first = f"{words[0][0]}{words[0][1]:g}" if words else ""
+        values = dict(words[1:])
+        if (
+            first not in self.words
+            or len(values) + 1 != len(words)
+            or not set(values) <= set(self.words[first])
+        ):
+            raise Error(
+                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
+            )
+        if values and self.out.modes is None:
+            self.out.modes = frozenset(self.seen)
+        if first in ("G2", "G3") and not self.may_circle:
+            raise Error(
+                f"line {number}: {line[:40]!r} is a circle, and the cell's firmware is told none",
+                code="line-unread",
+            )
+        if first in WAYS:
+            self._move(number, line, first, values)
+        elif first == "G4":
+            self._wait(number, line, values.get("P", -1.0) / self.dialect.per_s)
+        self.seen.add(first)
 
     def _line(self, number: int, line: str) -> None:
         if not (words := _words(line)):
@@ -198,13 +239,15 @@ class _Reader:
 
     def _comment(self, number: int, line: str, said: str) -> None:
         """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
-        if (plain := self.comment(said).rstrip("\n")) != line:
+        if (plain := self.dialect.comment(said).rstrip("\n")) != line:
             raise Error(
                 f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",
                 code="line-unread",
             )
-        if self.comment is comment and _ACTIVE.match(said):
-            raise Error(f"line {number}: {line[:40]} is a comment that LinuxCNC acts on", code="line-unread")
+        if self.dialect.acts and re.match(self.dialect.acts, said, re.IGNORECASE):
+            raise Error(
+                f"line {number}: {line[:40]} is a comment that {self.firmware} acts on", code="line-unread"
+            )
         self.out.comment(number, said)
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
@@ -242,7 +285,7 @@ class _Reader:
                 self._go(number, False, {"Z": places["Z"]}, None)
         centre = None
         if code in ("G2", "G3"):
-            if not self.for_circles <= self.seen:
+            if self.dialect.has_blocks and not self.for_circles <= self.seen:
                 raise Error(
                     f"line {number}: {line[:40]!r} stands where {' '.join(sorted(self.for_circles))} does not hold",
                     code="mode-missing",
@@ -262,16 +305,17 @@ class _Reader:
                 math.dist(centre[:2], end)
                 for end in ((self.at["X"], self.at["Y"]), (values["X"], values["Y"]))
             ]
-            if abs(radii[0] - radii[1]) > max(ROUND_MM, 4 * self.unit_mm):
+            if abs(radii[0] - radii[1]) > max(self.dialect.radii_mm, 4 * self.unit_mm):
                 raise Error(
                     f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre",
                     code="line-incomplete",
                 )
-        if code != "G0" and not self.feed_mm_s > 0:
+        if (code != "G0" or not self.dialect.has_blocks) and not self.feed_mm_s > 0:
             raise Error(f"line {number}: {line[:40]!r} has no feed", code="line-incomplete")
-        self._go(number, code == "G0", places, centre)
+        rapid = code == "G0" and self.dialect.has_blocks
+        self._go(number, rapid, places, centre)
         x, y, z = self.at.values()
-        speed = math.inf if code == "G0" else self.feed_mm_s
+        speed = math.inf if rapid else self.feed_mm_s
         if self.servo:
             self.out.acts.append(Act(number, "way", "", (x, y), (speed,), (self.value,)))
         elif centre:
@@ -298,7 +342,7 @@ class _Reader:
 
     def _motion_among(self, codes: list[str]) -> str:
         """The one that a line of modes sets and does not use; LinuxCNC stops there."""
-        if self.comment is comment:
+        if self.dialect.comment is comment:
             return ""
         motions = [code for code in codes if code == "G1" or (code == "G0" and not self.servo)]
         rest = set(codes) - set(motions)

@@ -1,0 +1,188 @@
+"""G-code that somebody else wrote for a pen plotter, run for the ways that its pen goes: absolute, relative, inches,
+circles, a pen that goes by Z or by M3 and M5. What is not known is refused, not passed over."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...errors import Error
+
+_WORD = re.compile(r"([A-Z])\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*")
+_PASSED_OVER = {  # of which no pen's way hangs
+    "G": {4, 17, 21.1, 40, 49, 54, 61, 64, 80, 94},
+    "M": {0, 1, 2, 6, 7, 8, 9, 17, 18, 30, 82, 83, 84, 105, 106, 107, 114, 117, 201, 203, 204, 205, 400},
+}
+CHORD_MM = 0.005
+LARGEST_MM = 1e6
+
+
+@dataclass(frozen=True)
+class Way:
+    """One move, as points (n, 3) [mm] from where the tool is; rapid: by G0; turn: 1 or -1 of a circle about a centre,
+    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 and before either."""
+
+    line: int
+    points_mm: np.ndarray
+    rapid: bool
+    speed_mm_s: float
+    power: float | None
+    centre_mm: tuple[float, float] | None = None
+    turn: int = 0
+
+
+def ways(text: str) -> list[Way]:
+    """All moves to the side or up and down, in order. Error with the line for what is not read."""
+    reader = _Reader()
+    for number, line in enumerate(text.splitlines(), 1):
+        reader.line(number, line)
+    return reader.ways
+
+
+def pen_is_down(some: list[Way]) -> list[bool]:
+    """For each way whether the pen is on the paper all along it. Error where nothing tells.
+
+    By M3 and M5 where there is either: down is what holds on no rapid way, and with neither M5 nor S0. Else by height:
+    down is below all rapid ways to the side; without these, below the middle of the highest and the lowest way.
+    """
+    across = [way for way in some if np.ptp(way.points_mm[:, :2], axis=0).any()]
+    if any(way.power is not None for way in some):
+        up = {way.power for way in across if way.rapid} | {None, 0.0}
+        return [not way.rapid and way.power not in up for way in some]
+    heights = [float(way.points_mm[:, 2].max()) for way in across]
+    known = [height for height in heights if math.isfinite(height)]
+    if not known or len({round(height, 6) for height in known}) < 2:
+        raise Error(
+            "nothing tells when its pen is down: there is neither M3 and M5 nor a height that changes",
+            code="pen-unknown",
+        )
+    rapid = [float(way.points_mm[:, 2].min()) for way in across if way.rapid]
+    rapid = [height for height in rapid if math.isfinite(height)]
+    least_up = min(rapid) if rapid and min(rapid) > min(known) else (min(known) + max(known)) / 2
+    return [not way.rapid and float(way.points_mm[:, 2].max()) < least_up - 1e-6 for way in some]
+
+
+class _Reader:
+    def __init__(self):
+        self.ways: list[Way] = []
+        self.at = np.full(3, np.nan)  # where the tool is before, nobody knows
+        self.shift = np.zeros(3)
+        self.mm, self.absolute, self.absolute_centres = 1.0, True, False
+        self.motion, self.feed_mm_s = None, 0.0
+        self.power, self.on, self.ended = 0.0, False, False
+
+    def line(self, number: int, line: str) -> None:
+        code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
+        code = re.sub(r"\*\d+$", "", code.lstrip("/"))  # a checksum
+        if not code or code.startswith("%") or self.ended:
+            return
+        words, at = [], 0
+        while at < len(code):
+            if not (found := _WORD.match(code, at)):
+                if re.match(r"M117\b", code):
+                    return
+                raise _unread(number, line)
+            words.append((found[1], float(found[2])))
+            at = found.end()
+        values = {letter: value for letter, value in words if letter not in "GMNT"}
+        for letter, code_number in words:
+            if letter in "GM":
+                self._mode(number, line, letter, code_number, values)
+        if "F" in values:
+            self.feed_mm_s = values["F"] * self.mm / 60
+        if "S" in values and not any(word in (("G", 4.0), ("M", 280.0)) for word in words):
+            self.power = values["S"]
+        if set("XYZ") & set(values) and ("G", 92.0) not in words:
+            self._move(number, line, values)
+
+    def _mode(self, number: int, line: str, letter: str, code: float, values: dict) -> None:
+        if letter == "G" and code in (0, 1, 2, 3):
+            self.motion = int(code)
+        elif letter == "G" and code in (20, 21):
+            self.mm = 25.4 if code == 20 else 1.0
+        elif letter == "G" and code in (90, 91):
+            self.absolute = code == 90
+        elif letter == "G" and code in (90.1, 91.1):
+            self.absolute_centres = code == 90.1
+        elif letter == "G" and code == 92:
+            for k, axis in enumerate("XYZ"):
+                if axis in values:
+                    # of a place that nobody knows it is the beginning
+                    known = 0.0 if math.isnan(self.at[k]) else self.at[k]
+                    self.at[k], self.shift[k] = known, known - values[axis] * self.mm
+        elif letter == "G" and code == 28:
+            self.at[:] = np.nan
+            for axis in "XYZ":
+                values.pop(axis, None)
+        elif letter == "M" and code in (3, 4, 5):
+            self.on = code != 5
+        elif letter == "M" and code == 280 and "S" in values:  # a servo's angle
+            self.on, self.power = True, values["S"]
+        elif code not in _PASSED_OVER[letter]:
+            raise _unread(number, line)
+        self.ended = letter == "M" and code in (2, 30)
+
+    def _move(self, number: int, line: str, values: dict) -> None:
+        if self.motion is None:
+            raise _unread(number, line)
+        start, end = self.at.copy(), self.at.copy()
+        for k, axis in enumerate("XYZ"):
+            if axis in values:
+                told = values[axis] * self.mm
+                if not self.absolute and math.isnan(self.at[k]):
+                    self.at[k] = start[k] = 0.0  # what begins relative begins at its zero
+                end[k] = told + self.shift[k] if self.absolute else self.at[k] + told
+        if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
+            raise Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
+        power = self.power if self.on else None
+        way = Way(number, np.array([start, end]), self.motion == 0, self.feed_mm_s, power)
+        if self.motion in (2, 3):
+            way = self._circle(number, line, way, values)
+        if not np.array_equal(start, end, equal_nan=True):
+            self.ways.append(way)
+        self.at = end
+
+    def _circle(self, number: int, line: str, way: Way, values: dict) -> Way:
+        start, end = way.points_mm
+        turn = 1 if self.motion == 3 else -1
+        if not np.isfinite([*start[:2], *end[:2]]).all():
+            raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
+        if "R" in values:
+            radius = values["R"] * self.mm
+            half, chord = (end - start)[:2] / 2, math.dist(start[:2], end[:2])
+            if not 0 < chord <= 2 * abs(radius) + 0.01:
+                raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
+            high = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * turn * (1 if radius > 0 else -1)
+            centre = start[:2] + half + high * np.array([-half[1], half[0]]) * 2 / chord
+        elif {"I", "J"} & set(values):
+            told = np.array([values.get("I", 0.0), values.get("J", 0.0)]) * self.mm
+            centre = told + self.shift[:2] if self.absolute_centres else start[:2] + told
+        else:
+            raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
+        radii = [math.dist(point[:2], centre) for point in (start, end)]
+        if min(radii) < 1e-6 or abs(radii[0] - radii[1]) > max(0.02, 0.002 * radii[0]):
+            raise Error(
+                f"line {number}: {line.strip()[:40]!r} is a circle whose ends are not equally far from its centre",
+                code="line-incomplete",
+            )
+        first, last = (math.atan2(*(point[:2] - centre)[::-1]) for point in (start, end))
+        sweep = (last - first) * turn % math.tau or math.tau
+        step = 2 * math.acos(max(0.0, 1 - CHORD_MM / max(radii)))
+        part = np.linspace(0, 1, max(2, math.ceil(sweep / min(step, 0.5)) + 1))
+        radius, angle = radii[0] + (radii[1] - radii[0]) * part, first + turn * sweep * part
+        points = np.column_stack(
+            [
+                centre[0] + radius * np.cos(angle),
+                centre[1] + radius * np.sin(angle),
+                start[2] + (end[2] - start[2]) * part,
+            ]
+        )
+        points[0], points[-1] = start, end
+        return replace(way, points_mm=points, centre_mm=tuple(centre.tolist()), turn=turn)
+
+
+def _unread(number: int, line: str) -> Error:
+    return Error(f"line {number}: {line.strip()[:40]!r} is not read", code="line-unread")

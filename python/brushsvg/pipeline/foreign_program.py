@@ -1,0 +1,112 @@
+"""What a brush paints with a plotter's G-code that somebody else wrote, without a thought of a lag."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from ..drawing.gcode.toolpaths import ways
+from ..errors import Error, Notice
+from ..machine.cell import Cell
+from ..machine.posts.gcode_servo import height_at
+from ..machine.preflight import off_sheet
+from ..machine.workspace_limits import broken_limits
+
+MARGIN_MM = 20.0
+
+
+@dataclass(frozen=True)
+class Foreign:
+    """plan: a pass for each time that the brush touches; problems: a notice for each limit that it breaks."""
+
+    plan: object
+    marks: object
+    problems: tuple[Notice, ...]
+
+
+def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
+    """The program's ways on the cell, its zero the sheet's lower left corner, z 0 where the brush just touches; by
+    default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5 goes as the cell's servo does; M5
+    lifts it.
+
+    Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
+    """
+    passes, careless = _touches(text, cell)
+    if not passes:
+        raise Error("the brush never touches the paper: nothing is below z 0", code="nothing-painted")
+    if sheet_mm is None:
+        highest = np.max([np.asarray(a_pass.poses_mm)[:, :2].max(axis=0) for a_pass in passes], axis=0)
+        sheet_mm = tuple(np.maximum(highest + MARGIN_MM, MARGIN_MM).tolist())
+    plan = _core.Plan(brush.name, "", tuple(sheet_mm), passes)
+    marks = _core.simulate(plan, brush)
+    problems = [*careless, *broken_limits(passes, sheet_mm, brush, cell), *off_sheet(marks, brush, sheet_mm)]
+    return Foreign(plan, marks, tuple(dict.fromkeys(problems)))
+
+
+def _touches(text: str, cell: Cell) -> tuple[list, list[Notice]]:
+    """A pass for each time that the brush is at or below the paper, and a notice for each rapid move there."""
+    passes, careless = [], []
+    poses: list[np.ndarray] = []
+    speeds: list[float] = []
+    name = ""
+
+    def lifted() -> None:
+        if len(poses) > 1 and min(pose[2] for pose in poses) < 0:
+            speed = max(speeds, default=0.0)
+            passes.append(_core.Pass(name, np.array(poses), speed))
+        poses.clear()
+        speeds.clear()
+
+    for way in ways(text):
+        points = _at_heights(way, cell)
+        if np.isnan(points[-1]).any():
+            lifted()
+            continue
+        points = points[~np.isnan(points).any(axis=1)]
+        for start, end in zip(points, [*points[1:], points[-1]], strict=True):
+            if min(start[2], end[2]) > 0 or (
+                max(start[2], end[2]) >= 0 and min(start[2], end[2]) == 0 and not poses
+            ):
+                lifted()
+                continue
+            ends = _below(start, end)
+            if not poses:
+                name = f"line {way.line}"
+            poses += [pose for pose in ends if not poses or not np.array_equal(pose, poses[-1])]
+            if way.rapid and min(start[2], end[2]) < 0 and (end[2] <= start[2]):
+                sentence = f"line {way.line}: a rapid move while the brush touches"
+                careless.append(Notice(name, sentence, code="rapid-too-low"))
+            elif not way.rapid and not np.array_equal(start[:2], end[:2]):
+                speeds.append(way.speed_mm_s)
+            if end[2] > 0:
+                lifted()
+    lifted()
+    return passes, careless
+
+
+def _below(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
+    """The ends of what of a straight way is not above the paper."""
+    rise = end[2] - start[2]
+
+    def at_paper() -> np.ndarray:
+        place = start + (end - start) * (-start[2] / rise)
+        return np.array([*place[:2], 0.0])
+
+    return [at_paper() if start[2] > 0 else start, at_paper() if end[2] > 0 else end]
+
+
+def _at_heights(way, cell: Cell) -> np.ndarray:
+    """(n, 3) points of a way; of a pen on a servo, at the height that its value gives."""
+    points = np.array(way.points_mm)
+    if way.power is not None and cell.servo is None:
+        raise Error(
+            f"line {way.line}: its pen goes by M3 and M5: give a cell with a servo, whose table says how deep",
+            code="servo-unknown",
+            advice="--cell grbl-servo, or one of your own",
+        )
+    if cell.servo is not None:
+        highest = max(height for height, _ in cell.servo.table)
+        points[:, 2] = highest if way.power is None else height_at(cell.servo, way.power)
+    return points

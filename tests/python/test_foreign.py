@@ -1,0 +1,128 @@
+"""G-code that others wrote for pens: its ways, when the pen is down, what a brush paints with it."""
+
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told, refused
+from programs import RUNNABLE, call
+
+from brushsvg.drawing.gcode.toolpaths import pen_is_down, ways
+
+INCHES = """%
+N10 G20 G90 (a plate)
+G0 Z0.2
+G0 X1 Y1 ; over the start
+G1 Z-0.1 F20
+G1 X2 Y1 F40
+G91
+G2 X0.5 Y0.5 I0 J0.5
+G90
+G0 Z0.2
+G0 X1 Y2
+G1 Z-0.1
+X2.5
+G0 Z0.2
+M2
+G1 X9 Y9
+"""
+SERVO = """G21
+M5
+G91
+G0 X10 Y10
+M3 S500
+G4 P0.2
+G1 F900 X40
+G1 Y30
+M5
+G0 X-40
+M3 S500
+G1 X20 Y5
+M5
+"""
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "inches.gcode").write_text(INCHES)
+    (tmp_path / "servo.nc").write_text(SERVO)
+    return tmp_path
+
+
+def drawn(text):
+    """Places (n, 2) [mm] to which the pen goes while it is down, with their lines."""
+    some = ways(text)
+    down = zip(some, pen_is_down(some), strict=True)
+    return {way.line: way.points_mm[-1, :2].round(6).tolist() for way, is_down in down if is_down}
+
+
+def test_inches_circles_and_relative_places():
+    wanted = {6: [50.8, 25.4], 8: [63.5, 38.1], 13: [63.5, 50.8]}
+    assert drawn(INCHES) == wanted
+    (circle,) = [way for way in ways(INCHES) if way.turn]
+    assert circle.turn == -1 and circle.centre_mm == pytest.approx((50.8, 38.1))
+    assert np.linalg.norm(circle.points_mm[:, :2] - circle.centre_mm, axis=1) == pytest.approx(12.7)
+    assert circle.points_mm[:, 0].min() == pytest.approx(50.8 - 12.7, abs=0.05), "three quarters, by the left"
+    by_radius = INCHES.replace("I0 J0.5", "R-0.5")
+    (again,) = [way for way in ways(by_radius) if way.turn]
+    assert again.points_mm == pytest.approx(circle.points_mm)
+
+
+def test_a_servos_pen_is_down_between_m3_and_m5():
+    assert drawn(SERVO) == {7: [50.0, 10.0], 8: [50.0, 40.0], 12: [30.0, 45.0]}
+    by_value = SERVO.replace("M5", "M3 S700")
+    assert drawn(by_value) == drawn(SERVO), "up is the value at which G0 goes"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("G91", "G18", "line-unread 7 G18"),
+        ("X2.5", "X#5", "line-unread 13 X#5"),
+        ("J0.5", "J0.7", "line-incomplete 8"),
+        ("X2.5", "G5 X2.5", "line-unread 13"),
+        ("X2.5", "G55 X2.5", "line-unread 13"),
+        ("X2.5", "X99999999", "line-unread 13"),
+    ],
+)
+def test_what_is_not_known_is_refused(old, new, told):
+    with refused(told):
+        ways(INCHES.replace(old, new, 1))
+
+
+def test_where_nothing_tells_when_the_pen_is_down_it_is_refused():
+    with refused("pen-unknown"):
+        pen_is_down(ways("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
+
+
+def test_check_predicts_what_a_brush_paints(desk, capsys):
+    status, out, _ = call(capsys, "check", "inches.gcode", "--preview", "p.png")
+    assert status == 0 and "did not write" in out and (desk / "p.png").exists()
+    assert RUNNABLE not in out
+    status, out, _ = call(capsys, "check", "servo.nc", "--cell", "grbl-servo", "--sheet", "120x100")
+    assert status == 0 and "2 strokes" in out
+    status, _, said = in_json(capsys, "check", "servo.nc")
+    assert status == 1 and is_told(said, "servo-unknown 7 M3")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("F40", "F400", "speed-out-of-range 169.3"),
+        ("Z-0.1", "Z-0.5", "depth-out-of-range 12.700"),
+        ("G1 X2 Y1 F40", "G0 X2 Y1", "rapid-too-low 6"),
+        ("X2.5", "X9", "mark-off-sheet right"),
+    ],
+)
+def test_check_refuses_what_is_dangerous(desk, capsys, old, new, told):
+    (desk / "bad.gcode").write_text(INCHES.replace(old, new))
+    status, _, said = in_json(capsys, "check", "bad.gcode", "--sheet", "90x80")
+    assert status == 1 and is_told(said, told)
+
+
+@pytest.mark.parametrize("name", ["inches.gcode", "servo.nc"])
+def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
+    assert call(capsys, "convert", name, "out.ngc", "--width", "3")[0] == 0
+    status, out, _ = call(capsys, "check", "out.ngc", name, "--width", "3")
+    assert status == 0 and RUNNABLE in out
+    status, _, said = in_json(capsys, "convert", "out.ngc", "again.ngc")
+    assert status == 1 and is_told(said, "program-ours")

@@ -1,0 +1,72 @@
+"""Strokes of several colours on a machine without paint: a stop for each other pen; and --speed, for all strokes."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from diagnostics import in_json, is_told
+from programs import LANGUAGES, RUNNABLE, call
+
+from brushsvg.machine.cell_file import find_cell, write_cell
+
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80"><g fill="none" '
+    'stroke-width="3"><path d="M30 20h30" stroke="#000"/><path d="M30 32h30" stroke="#f00"/>'
+    '<path d="M30 44h30" stroke="#FF0000"/><path d="M30 56h30" stroke="#000" data-brushsvg-speed="5"/></g></svg>'
+)
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pens.svg").write_text(DRAWING)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", [name for name in LANGUAGES if name != "grbl-servo"])
+def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, name):
+    program = f"pens{LANGUAGES[name]}"
+    status, _, said = call(capsys, "convert", "pens.svg", program, "--cell", name)
+    assert status == 0 and sum("2 times" in line for line in said) == 1
+    text = (desk / program).read_text(encoding="ascii")
+    assert re.findall("paint: pen ([0-9a-f]+)", text) == ["ff0000", "000000"]
+    status, out, _ = call(capsys, "check", program, "pens.svg")
+    assert status == 0 and RUNNABLE in out
+    lines = text.split("\n")
+    at = next(k for k, line in enumerate(lines) if "paint: pen 000000" in line)
+    end = next(k for k, line in enumerate(lines) if "stroke 4 of 4" in line)
+    (desk / program).write_text("\n".join(lines[:at] + lines[end:]), newline="")
+    status, _, said = in_json(capsys, "check", program, "pens.svg")
+    assert status == 1 and is_told(said, "other-station nothing 'pen 000000'")
+
+
+def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
+    words = ("convert", "pens.svg", "rest.ngc", "--from-stroke")
+    assert "stops once" in " ".join(call(capsys, *words, "2")[2])
+    assert "pen" not in " ".join(call(capsys, *words, "4")[2])
+    assert "pen " not in (desk / "rest.ngc").read_text()
+    assert call(capsys, "check", "rest.ngc", "pens.svg")[0] == 0
+
+
+def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
+    said = in_json(capsys, "convert", "pens.svg", "pens.nc", "--cell", "grbl-servo")[2]
+    assert is_told(said, "colours-as-one")
+    one = replace(find_cell("linuxcnc-3axis"), name="one", pause_per_colour=False)
+    (desk / "one.toml").write_text(write_cell(one))
+    said = " ".join(call(capsys, "convert", "pens.svg", "pens.ngc", "--cell", "one.toml")[2])
+    assert "pen" not in said.replace("pens.", "")
+    assert "M0" not in (desk / "pens.ngc").read_text()
+
+
+def test_speed_is_that_of_all_strokes_within_what_brush_and_cell_allow(desk, capsys):
+    assert call(capsys, "convert", "pens.svg", "pens.ngc", "--speed", "12")[0] == 0
+    feeds = re.findall(r"F([\d.]+)", (desk / "pens.ngc").read_text())
+    assert set(map(float, feeds)) == {720.0, 1500.0, 480.0}, "painting, approach and press"
+    assert call(capsys, "check", "pens.ngc", "pens.svg", "--speed", "12")[0] == 0
+    status, _, said = in_json(capsys, "check", "pens.ngc", "pens.svg")
+    assert status == 1 and is_told(said, "stroke-too-fast 12.0 5.0")
+    said = in_json(capsys, "convert", "pens.svg", "x.ngc", "--speed", "26")[2]
+    assert is_told(said, "speed-out-of-range 26 0.001 25 round-6")
+    said = in_json(capsys, "convert", "pens.svg", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
+    assert is_told(said, "speed-out-of-range 0.5 1 25")
+    assert not (desk / "x.ngc").exists()
