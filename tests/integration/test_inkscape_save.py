@@ -58,6 +58,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".py": "xarm",
         ".src": "krl",
         ".lua": "dobot",
+        ".ls": "fanuc",
     }.get(extension, "gcode")
     plugin.set(**{f"save.{entry}__cell": cell})
     try:

@@ -115,6 +115,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".py": ("--cell", "xarm6"),
             ".src": ("--cell", "kr6-r900"),
             ".lua": ("--cell", "cr5"),
+            ".ls": ("--cell", "lrmate200id"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -136,6 +137,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.py",
             "made.src",
             "made.lua",
+            "made.ls",
             "page.pdf",
             "page.svg",
             "seen.png",

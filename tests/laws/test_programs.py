@@ -30,6 +30,7 @@ LANGUAGES = {
     "xarm6": ".py",
     "kr6-r900": ".src",
     "cr5": ".lua",
+    "lrmate200id": ".ls",
 }
 SHEET = (400.0, 400.0)
 

@@ -17,6 +17,7 @@ LANGUAGES = {
     "xarm6": ".py",
     "kr6-r900": ".src",
     "cr5": ".lua",
+    "lrmate200id": ".ls",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

@@ -33,8 +33,8 @@ from brushsvg.machine.writer import text_of
 from brushsvg.verification.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-NAMES = {"irb120": "rapid", "xarm6": "xarm", "kr6-r900": "krl", "cr5": "dobot"}
-CIRCLES = {"irb120", "kr6-r900", "cr5"}  # what tells them
+NAMES = {"irb120": "rapid", "xarm6": "xarm", "kr6-r900": "krl", "cr5": "dobot", "lrmate200id": "fanuc"}
+CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id"}  # what tells them
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
@@ -221,6 +221,22 @@ REFUSED = [
     ("cr5", "{speed = 20}", "{speed = 20, cp = 1}", "line-unread"),
     ("cr5", "User(1)\nTool(1)\n", "Tool(1)\nSetTool(1, {0, 0, 0, 0, 0, 0})\nUser(1)\n", "line-unread chosen"),
     ("cr5", "\n-- end: the brush is held up", "", "program-cut-short"),
+    ("lrmate200id", "/ATTR\r\n", "", "line-unread COMMENT"),
+    ("lrmate200id", " : L P[4]", " : J P[4]", "line-unread"),
+    ("lrmate200id", " : L P[4]", " : L P[400]", "line-incomplete point"),
+    ("lrmate200id", "P[4]{", "P[5]{", "line-unread point"),
+    ("lrmate200id", "X = 12.500", "X = +-12.500", "line-unread point"),
+    ("lrmate200id", "W = 180.000", "W = 179.400", "tool-turned 0.6"),
+    ("lrmate200id", "UF : 1", "UF : 0", "line-unread point"),
+    ("lrmate200id", "'N U T", "'F U T", "line-unread configuration"),
+    ("lrmate200id", "20mm/sec CNT3", "20mm/sec CNT101", "line-unread CNT101"),
+    ("lrmate200id", " 20mm/sec CNT3", " 0mm/sec CNT3", "line-incomplete speed"),
+    ("lrmate200id", " : C P[22]\r\n", "", "line-unread circle"),
+    ("lrmate200id", " : PR[1,6]=0.00000 ;\r\n", "", "line-incomplete frame"),
+    ("lrmate200id", "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n", "", "line-unread DEFAULT_GROUP"),
+    ("lrmate200id", " : !end: the brush is held up ;\r\n", "", "program-cut-short"),
+    ("lrmate200id", "};\r\n/END\r\n", "};\r\n", "program-cut-short"),
+    ("lrmate200id", " : !end", " : CALL B0001 ;\r\n : !end", "line-unread B0001"),
     ("xarm6", "go(-140.000", "go(x=-140.000", "line-unread"),
     ("xarm6", "go(-140.000", " go(-140.000", "line-unread"),
     ("xarm6", "100.000, None", "0.000, None", "line-incomplete speed"),
@@ -282,6 +298,15 @@ BROKEN = [
     ("cr5", "{speed = 20}", "{speed = 0}"),
     ("cr5", "  return {pose", "  return {joint"),
     ("cr5", "on_paper(10.000", "on_paper(+10.000"),
+    ("lrmate200id", "/ATTR\r\n", ""),
+    ("lrmate200id", " : L P[4] 20mm/sec", " : L P[4] 20.5mm/sec"),
+    ("lrmate200id", " : UFRAME[1]=PR[1] ;\r\n", ""),
+    ("lrmate200id", " : PR[1]=LPOS ;\r\n", ""),
+    ("lrmate200id", "UT : 1,", "UT : 2,"),
+    ("lrmate200id", "'N U T", "'F U T"),
+    ("lrmate200id", " : ENDIF ;\r\n", ""),
+    ("lrmate200id", "P[4]{", "P[5]{"),
+    ("lrmate200id", "title: two strokes", "title: a remark that is longer than"),
     ("xarm6", "def done", "def dun"),
     ("xarm6", "set_tcp_offset", "set_tool_offset"),
     ("xarm6", "done(arm.set_state(0))", "done(arm.set_state(4))"),

@@ -52,6 +52,9 @@ class Paper:
     example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
 
 
+FANUC_CONFIGURATION = "N U T, 0, 0, 0"
+
+
 @dataclass(frozen=True)
 class Tool:
     """The brush's tip, seen from the robot's flange; the brush stands on the paper's normal."""
@@ -61,6 +64,9 @@ class Tool:
         "of the tool's frame, z along the brush; about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
     )
     spin_deg: float = _number("how the tool is turned about the brush's axis", -360, 360, default=0.0)
+    configuration: str = _key(
+        "fanuc: of the arm over the sheet, as the pendant shows it", "text", default=FANUC_CONFIGURATION
+    )
 
 
 @dataclass(frozen=True)
@@ -88,6 +94,7 @@ class Speeds:
 
 
 BLEND_STEP_MM = 1.0
+RAMP_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -98,6 +105,9 @@ class Blending:
     radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
     step_mm: float = _number(
         "dobot: blends are told in steps of so much, rounded down", 0.001, 1, default=BLEND_STEP_MM
+    )
+    ramp_s: float = _number(
+        "fanuc: how long the arm takes to its speed, by which CNT cuts corners", 0.02, 5, default=RAMP_S
     )
 
 
@@ -206,10 +216,11 @@ TABLES = {
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot"), "tool"
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc"), "tool"
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
-LEAST_SPEED_MM_S = {"dobot": 1.0}  # of MovL; all its speeds are whole multiples of it
+LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it
+MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
 RELOADS = ("length", "stroke", "layer")
 
 

@@ -10,9 +10,11 @@ import numpy as np
 from ..errors import Error, Notice
 from .cell import (
     BLEND_STEP_MM,
+    FANUC_CONFIGURATION,
     LEAST_ACCELERATION_MM_S2,
     LEAST_SPEED_MM_S,
     NEEDED_BY,
+    RAMP_S,
     RELOADS,
     Cell,
     Speeds,
@@ -49,18 +51,46 @@ def check(cell: Cell) -> None:
             code="out-of-range",
         )
     _check_speeds(cell)
-    if cell.blending.step_mm != BLEND_STEP_MM and cell.language != "dobot":
-        raise Error(
-            f"language {cell.language!r} has no steps of blends: they are as fine as its decimals",
-            where="blending.step_mm",
-            code="out-of-range",
-        )
+    _check_own_keys(cell)
     _check_paper(cell)
     _check_workspace(cell)
     if cell.servo:
         _check_servo(cell)
         _check_machine_of_servo(cell)
     _check_paint(cell)
+
+
+def _check_own_keys(cell: Cell) -> None:
+    """What only one language tells must not be said for another."""
+    configuration = getattr(cell.tool, "configuration", FANUC_CONFIGURATION)
+    for said, usual, language, where, why in (
+        (
+            *(cell.blending.step_mm, BLEND_STEP_MM, "dobot", "blending.step_mm"),
+            "has no steps of blends: they are as fine as its decimals",
+        ),
+        (
+            cell.blending.ramp_s,
+            RAMP_S,
+            "fanuc",
+            "blending.ramp_s",
+            "tells blends in mm, whatever the time to speed",
+        ),
+        (
+            configuration,
+            FANUC_CONFIGURATION,
+            "fanuc",
+            "tool.configuration",
+            "tells no configuration of the arm",
+        ),
+    ):
+        if said != usual and cell.language != language:
+            raise Error(f"language {cell.language!r} {why}", where=where, code="out-of-range")
+    if cell.language == "fanuc" and not re.fullmatch(r"[NF] [UD] [TB], -?\d, -?\d, -?\d", configuration):
+        raise Error(
+            f"{configuration[:40]!r} is no configuration as the pendant shows it, such as {FANUC_CONFIGURATION!r}",
+            where="tool.configuration",
+            code="out-of-range",
+        )
 
 
 def _check_speeds(cell: Cell) -> None:

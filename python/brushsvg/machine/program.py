@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from .cell import Cell, Station, robot_from_paper, value_mm
+from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
@@ -38,6 +38,7 @@ class Job:
 
 
 WHOLE_JOB = Job()
+AROUND = 4  # points of a stroke beside its poses
 POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
 
 
@@ -79,6 +80,16 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     problems += broken_limits(
         [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
     )
+    problems += [
+        Notice(
+            a_pass.stroke,
+            f"{count} poses are outside the range [1, {MOST_POINTS[cell.language]}] of one program, and a stroke "
+            "cannot be parted: --tolerance makes them fewer",
+            code="poses-too-many",
+        )
+        for a_pass in (left if cell.language in MOST_POINTS else ())
+        if (count := len(a_pass.poses_mm) + AROUND) > MOST_POINTS[cell.language]
+    ]
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:

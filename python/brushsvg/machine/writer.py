@@ -71,6 +71,20 @@ def encoded(suffix: str, plan, walk: Walked, brush, title: str, notes=()) -> byt
     return text_of(post_for(suffix, made.cell), replace(made, header=header))
 
 
+def in_files(path: str | os.PathLike, pieces: bytes | Iterator[str]) -> dict:
+    """The same by the files that it belongs in: what one program of a language cannot hold lies beside it."""
+    post = next((post for post in POSTS.values() if Path(path).suffix.lower() in post.extensions), None)
+    if post is None or post.parted is None:
+        return {path: pieces}
+    texts = post.parted("".join(pieces))
+    return {path: texts.pop("")} | {beside(path, name): text for name, text in texts.items()}
+
+
+def beside(path: str | os.PathLike, name: str) -> str:
+    """Where the file of another program lies that one calls."""
+    return str(Path(path).with_name(name + Path(path).suffix))
+
+
 def painting_cell(suffix: str, cell: Cell) -> Cell:
     """The cell whose limits an output is asked for: a plan.json has whole strokes, and goes for no paint."""
     return replace(cell, reload=None) if suffix == ".json" else cell
@@ -107,4 +121,4 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     cell = painting_cell(suffix, as_exact_as(cell, DEFAULT_TOLERANCE_MM))
     marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)  # the former refuses other types
     walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
-    write_files({path: encoded(suffix, plan, walk, brush, title)})
+    write_files(in_files(path, encoded(suffix, plan, walk, brush, title)))

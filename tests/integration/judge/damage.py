@@ -33,6 +33,7 @@ class Script(NamedTuple):
     after: int = 0
     first: int = 0
     decimals: int = 3
+    data: str = ""
 
 
 SCRIPTS = {
@@ -219,7 +220,49 @@ SCRIPTS = {
         says='print("{}")',
         rates=(r"(speed = )(\d+)", r"(r = )(\d+)", r"(Wait\()(\d+)"),
     ),
+    "fanuc": Script(
+        remark=" : !",
+        moves=r" : [LC] | :  P|\t[XW] =",
+        words=(
+            *(("L P", "J P"), ("L P", "C P"), ("C P", "L P"), ("mm/sec", "cm/min"), ("mm/sec", "sec")),
+            *(("FINE", "CNT100"), ("CNT", "CR"), ("FINE", ""), ("X =", "Y ="), ("Z =", "X ="), ("mm,", "m,")),
+            *(
+                (",3]", ",2]"),
+                ("<", ">"),
+                ("P[", "PR["),
+                (" ;", ""),
+                ("};", "}"),
+                ("GP1", "GP2"),
+                ("W =", "R ="),
+            ),
+        ),
+        modes=(
+            *(("UFRAME_NUM=1", "UFRAME_NUM=0"), ("UTOOL_NUM=1", "UTOOL_NUM=2"), ("UTOOL[1]", "UFRAME[1]")),
+            *(("UF : 1", "UF : 0"), ("UT : 1", "UT : 2"), ("'N U T", "'F U T"), ("'N U T", "'N D T")),
+            *(("1,*,*,*,*", "*,*,*,*,*"), ("=LPOS", "=JPOS"), ("THEN", ""), ("/POS", ""), ("/PROG", "/PRG")),
+        ),
+        offsets=r"PR\[|\t[XW] =",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *(" : ABORT ;", " : WAIT 0.50(sec) ;", " : DO[1]=(ON) ;", " : PAUSE ;", " : UFRAME_NUM=0 ;"),
+            *(
+                " : PR[1,3]=50 ;",
+                " : UTOOL[1]=PR[2] ;",
+                " : OVERRIDE=100% ;",
+                " : CALL OTHER ;",
+                " : JMP LBL[1] ;",
+            ),
+            *(" : L P[1] 100mm/sec FINE ;", " : PAYLOAD[2] ;", " : LINEAR_MAX_SPEED=2000 ;"),
+        ),
+        says=" : MESSAGE[{}] ;",
+        rates=(r"( )(\d+)(?=mm/sec)", r"(CNT)(\d+)", r"(WAIT )(\d+\.\d+)"),
+        first=6,
+        data="/POS",
+    ),
 }
+
+
+HEADS = ("COMMENT", "PROTECT", "DEFAULT_GROUP")
 
 
 class Page:
@@ -235,22 +278,25 @@ class Page:
         self.titles = [k for k in self.comments if re.search(r"stroke \d|paint: ", self.lines[k])]
         moves = self.script.moves if self.script else r"G[0-3] |M3 "
         self.moves = [k for k in self.code if re.match(moves, self.lines[k])]
+        data = self.script.data if self.script else ""
+        self.data = self.lines.index(data) if data in self.lines else len(self.lines)
 
     def _comment(self, line: str) -> bool:
         return line.startswith(self.remark)
 
     def _acts(self, k: int) -> bool:
-        return not self.lines[k].startswith(("def ", "MODULE ", "&", "DEF "))
+        return not self.lines[k].startswith(("def ", "MODULE ", "&", "DEF ", "/", *HEADS))
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
         last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot"))
-        last -= self.script.after if self.script else 0
+        last = min(last - (self.script.after if self.script else 0), self.data)
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))
 
     def made(self, words: str) -> str:
-        return f"{self.remark} {words}" if self.script else f"({words})"
+        end = " ;" if self.remark.startswith(" : ") else ""
+        return f"{self.remark} {words}{end}" if self.script else f"({words})"
 
 
 Damage = Callable[[Page, np.random.Generator], list[str] | None]
@@ -548,7 +594,7 @@ WORDS = (
 
 def remark(page, random):
     """A comment more, of somebody's own."""
-    at = int(random.integers(len(page.lines)))
+    at = int(random.integers(min(len(page.lines), page.data + 1)))
     at = max(at, page.script.first if page.script else 0)
     return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
 

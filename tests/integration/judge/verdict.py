@@ -16,6 +16,7 @@ import numpy as np
 
 from . import places
 from .dobot import run_dobot
+from .fanuc import run_fanuc
 from .gcode import run_gcode
 from .jaka import run_jaka
 from .krl import run_krl
@@ -41,6 +42,7 @@ ROBOTS = {
     "xarm": run_xarm,
     "krl": run_krl,
     "dobot": run_dobot,
+    "fanuc": run_fanuc,
 }
 
 
@@ -130,7 +132,9 @@ class Job:
 
     def interpret(self, text: str) -> Run:
         if robot := ROBOTS.get(self.language):
-            return robot(text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell))
+            more = [self.cell["blending"].get("ramp_s", 0.5)] if self.language == "fanuc" else []
+            of = self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
+            return robot(text, *of, *more)
         dialect = "linuxcnc" if self.language == "linuxcnc" else "grbl"
         servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None
         return run_gcode(text, dialect, self.start, servo, self.cell["speeds"]["travel_mm_s"])

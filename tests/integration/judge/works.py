@@ -25,6 +25,7 @@ CELLS = {
     "xarm": ("xarm6", ".py"),
     "krl": ("kr6-r900", ".src"),
     "dobot": ("cr5", ".lua"),
+    "fanuc": ("lrmate200id", ".ls"),
 }
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 

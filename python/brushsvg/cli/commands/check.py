@@ -14,6 +14,7 @@ from ...machine.cell import Cell
 from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
 from ...machine.paint_reload import in_loads
+from ...machine.writer import beside
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
 from ...units import clock
@@ -26,12 +27,15 @@ from ..steps.prepared import prepare
 def check_file(args) -> None:
     from ...verification import against_plan, against_regenerated, simulate_program
     from ...verification.readback import read_program, text_of_file
+    from ...verification.readback.fanuc import called
     from ...verification.readback.header import made as made_of
     from ...verification.time_as_run import time_as_run_s
 
     check_places(args.preview)
     with about(args.program):
         text = text_of_file(read_bytes(args.program))
+        others = called(text) if suffix_of(args.program) == ".ls" else []
+        text += "".join(text_of_file(read_bytes(beside(args.program, name))) for name in others)
         made = made_of(text)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(args, kind) is None and name not in names:

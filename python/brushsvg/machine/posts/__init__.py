@@ -14,7 +14,8 @@ class Post(NamedTuple):
 
     in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
     circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines.
-    line_end: as the controller's own files have it.
+    line_end: as the controller's own files have it; has_tabs: so have they, too.
+    parted: the texts of several files, by name, "" that of the one which is asked for; None: there is but that one.
     """
 
     title: str
@@ -23,6 +24,8 @@ class Post(NamedTuple):
     in_robot_frame: bool = True
     circles_by: str = "centre"
     line_end: str = "\n"
+    has_tabs: bool = False
+    parted: Callable[[str], dict[str, str]] | None = None
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -79,6 +82,18 @@ def _dobot(program: Program) -> Iterator[str]:
     return dobot(program)
 
 
+def _fanuc(program: Program) -> Iterator[str]:
+    from .fanuc import fanuc
+
+    return fanuc(program)
+
+
+def _fanuc_programs(text: str) -> dict[str, str]:
+    from .fanuc import programs
+
+    return programs(text)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -90,4 +105,5 @@ POSTS = {  # by the language a cell names
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
     "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
+    "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
 }

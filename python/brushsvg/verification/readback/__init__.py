@@ -148,11 +148,13 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}", code="program-format")
     if post.line_end != "\n":
         text = text.replace(post.line_end, "\n")
+    if post.has_tabs:
+        text = text.replace("\t", " ")
     if odd := re.search(r"[^\n -~]", text):
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", ";", "--", "popup", "TPWrite", "stop(", "print(")
+            ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(")
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
@@ -206,6 +208,12 @@ def _dobot(text: str, cell: Cell) -> Readback:
     return read_dobot(text, cell)
 
 
+def _fanuc(text: str, cell: Cell) -> Readback:
+    from .fanuc import read_fanuc
+
+    return read_fanuc(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -216,4 +224,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "xarm": _xarm,
     "krl": _krl,
     "dobot": _dobot,
+    "fanuc": _fanuc,
 }
