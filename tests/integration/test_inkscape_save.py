@@ -59,6 +59,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".src": "krl",
         ".lua": "dobot",
         ".ls": "fanuc",
+        ".drl": "doosan",
     }.get(extension, "gcode")
     plugin.set(**{f"save.{entry}__cell": cell})
     try:

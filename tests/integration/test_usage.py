@@ -116,6 +116,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".src": ("--cell", "kr6-r900"),
             ".lua": ("--cell", "cr5"),
             ".ls": ("--cell", "lrmate200id"),
+            ".drl": ("--cell", "m0609"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -138,6 +139,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.src",
             "made.lua",
             "made.ls",
+            "made.drl",
             "page.pdf",
             "page.svg",
             "seen.png",

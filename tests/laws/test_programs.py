@@ -31,6 +31,7 @@ LANGUAGES = {
     "kr6-r900": ".src",
     "cr5": ".lua",
     "lrmate200id": ".ls",
+    "m0609": ".drl",
 }
 SHEET = (400.0, 400.0)
 

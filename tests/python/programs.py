@@ -18,6 +18,7 @@ LANGUAGES = {
     "kr6-r900": ".src",
     "cr5": ".lua",
     "lrmate200id": ".ls",
+    "m0609": ".drl",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

@@ -216,7 +216,7 @@ TABLES = {
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc"), "tool"
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan"), "tool"
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it

@@ -259,6 +259,62 @@ SCRIPTS = {
         first=6,
         data="/POS",
     ),
+    "doosan": Script(
+        remark="#",
+        moves=r"move[lc]\(|set_velx",
+        words=(
+            *(
+                ("movel", "movej"),
+                ("movec", "movel"),
+                ("movel", "amovel"),
+                ("radius", "ref"),
+                ("radius", "time"),
+            ),
+            *(
+                ("velx", "accx"),
+                ("here[2]", "here[1]"),
+                ("<", ">"),
+                ("x, y", "y, x"),
+                ("    ", ""),
+                (")[0]", ")"),
+            ),
+            *(
+                (", radius=", ", acc="),
+                ("tip", "top"),
+                ("on_paper(", "posx("),
+                ("))", "), mod=1)"),
+                ("abs", "sum"),
+            ),
+        ),
+        modes=(
+            *(
+                ('set_tcp("brush', 'set_tcp("hand'),
+                ("set_ref_coord(paper", "set_ref_coord(DR_BASE"),
+                ("(paper)", "()"),
+            ),
+            *(
+                ("ref=DR_BASE", "ref=DR_TOOL"),
+                ("paper = ", "sheet = "),
+                ("DR_PM_MESSAGE", "DR_PM_ALARM"),
+                ("def ", "de "),
+            ),
+        ),
+        offsets=r"paper =|here\[2\]|    return|if abs",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *(
+                "exit()",
+                "wait(0.500)",
+                "set_digital_output(1, 1)",
+                'tp_log("x")',
+                "set_velx(300, 30)",
+                "set_accx(9000, 90)",
+            ),
+            *("set_ref_coord(DR_BASE)", "movel(posx(0, 0, 0, 0, 180, 0))", "stop(1)", 'set_tool("t")'),
+        ),
+        says='tp_log("{}")',
+        rates=(r"(set_velx\()(\d+\.\d+)", r"(radius=)(\d+\.\d+)", r"(set_accx\()(\d+\.\d+)"),
+    ),
 }
 
 
@@ -289,7 +345,7 @@ class Page:
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot"))
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan"))
         last = min(last - (self.script.after if self.script else 0), self.data)
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))

@@ -16,6 +16,7 @@ import numpy as np
 
 from . import places
 from .dobot import run_dobot
+from .doosan import run_doosan
 from .fanuc import run_fanuc
 from .gcode import run_gcode
 from .jaka import run_jaka
@@ -43,6 +44,7 @@ ROBOTS = {
     "krl": run_krl,
     "dobot": run_dobot,
     "fanuc": run_fanuc,
+    "doosan": run_doosan,
 }
 
 

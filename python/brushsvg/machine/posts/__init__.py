@@ -94,6 +94,12 @@ def _fanuc_programs(text: str) -> dict[str, str]:
     return programs(text)
 
 
+def _doosan(program: Program) -> Iterator[str]:
+    from .doosan import doosan
+
+    return doosan(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -106,4 +112,5 @@ POSTS = {  # by the language a cell names
     "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
     "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
+    "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose"),
 }

@@ -154,7 +154,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(")
+            ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(")
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
@@ -214,6 +214,12 @@ def _fanuc(text: str, cell: Cell) -> Readback:
     return read_fanuc(text, cell)
 
 
+def _doosan(text: str, cell: Cell) -> Readback:
+    from .doosan import read_doosan
+
+    return read_doosan(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -225,4 +231,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "krl": _krl,
     "dobot": _dobot,
     "fanuc": _fanuc,
+    "doosan": _doosan,
 }

@@ -80,6 +80,8 @@ class _Reader:
             self._comment(number, line.lstrip(" ")[len(self.script.remark) :])
             return
         line = self.spelled(line)
+        if self.script.is_indented and not line.startswith(" "):
+            self.in_block = False
         for kind, pattern in self.script.lines:
             if found := pattern.fullmatch(line):
                 values = self._values(number, line, found)
