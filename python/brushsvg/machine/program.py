@@ -39,6 +39,7 @@ class Job:
 
 WHOLE_JOB = Job()
 AROUND = 4  # points of a stroke beside its poses
+POSES_KEPT = 300_000  # of a plan whose moves are made once and kept, in some 10 MB
 POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
 
 
@@ -143,7 +144,7 @@ def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JO
             yield at_told_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     made = cache(lambda: tuple(sections()))
-    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_AT_ONCE
+    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_KEPT
     rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
     walk = (lambda: iter(made())) if is_little else sections
     return Program((), cell, frame, walk, *rises_mm, touching_mm_s(brush, cell))

@@ -88,13 +88,16 @@ class _Points:
 
     def more(self, points_mm: np.ndarray) -> np.ndarray:
         """(n,) the numbers of new points (n, 3)."""
-        numbers = self.count + 1 + np.arange(len(points_mm))
-        self.held.append(np.column_stack([numbers, points_mm]))
+        first = self.count + 1
+        self.held.append(points_mm)
         self.count += len(points_mm)
-        return numbers
+        return np.arange(first, self.count + 1)
 
     def text(self) -> str:
-        return "".join(rows(self.pattern, np.vstack(self.held), self.decimals)) if self.held else ""
+        if not self.held:
+            return ""
+        values = np.column_stack([np.arange(1, self.count + 1), np.vstack(self.held)])
+        return "".join(rows(self.pattern, values, self.decimals))
 
 
 def _program(name: str, lines: str, points: _Points) -> str:
@@ -164,12 +167,10 @@ def _lines(move: Move, points: _Points, ramp_s: float) -> Iterator[str]:
         percent = np.minimum(
             np.floor(blends_mm(move, points.decimals) / cnt_mm(1, speed, ramp_s) + 1e-9), 100
         )
-    values, is_blended = np.column_stack([numbers, percent]), percent > 0
-    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
-        if is_blended[run[0]]:
-            yield from rows(f" : L P[%d] {speed}mm/sec CNT%d ;", values[run], 0)
-        else:
-            yield from rows(f" : L P[%d] {speed}mm/sec FINE ;", values[run, :1], 0)
+    ends = (f"CNT{each}" if each else "FINE" for each in percent.astype(int).tolist())
+    yield "".join(
+        f" : L P[{each}] {speed}mm/sec {end} ;\n" for each, end in zip(numbers.tolist(), ends, strict=True)
+    )
 
 
 def cnt_mm(percent: float, speed_mm_s: float, ramp_s: float) -> float:
