@@ -60,6 +60,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".lua": "dobot",
         ".ls": "fanuc",
         ".drl": "doosan",
+        ".csv": "ros2",
     }.get(extension, "gcode")
     plugin.set(**{f"save.{entry}__cell": cell})
     try:

@@ -117,6 +117,9 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".lua": ("--cell", "cr5"),
             ".ls": ("--cell", "lrmate200id"),
             ".drl": ("--cell", "m0609"),
+            ".csv": ("--cell", "fr3"),
+            ".traj": ("--cell", "fr3"),
+            ".cdr": ("--cell", "fr3"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -140,6 +143,9 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.lua",
             "made.ls",
             "made.drl",
+            "made.csv",
+            "made.traj",
+            "made.cdr",
             "page.pdf",
             "page.svg",
             "seen.png",

@@ -32,6 +32,7 @@ LANGUAGES = {
     "cr5": ".lua",
     "lrmate200id": ".ls",
     "m0609": ".drl",
+    "fr3": ".csv",
 }
 SHEET = (400.0, 400.0)
 

@@ -19,6 +19,7 @@ LANGUAGES = {
     "cr5": ".lua",
     "lrmate200id": ".ls",
     "m0609": ".drl",
+    "fr3": ".csv",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

@@ -53,6 +53,7 @@ class Paper:
 
 
 FANUC_CONFIGURATION = "N U T, 0, 0, 0"
+ROS_FRAMES = "base_link", "tool0"  # as ROS-Industrial names them
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,8 @@ class Tool:
     configuration: str = _key(
         "fanuc: of the arm over the sheet, as the pendant shows it", "text", default=FANUC_CONFIGURATION
     )
+    base_frame: str = _key("ros2: the robot's frame", "text", default=ROS_FRAMES[0])
+    flange_frame: str = _key("ros2: the link whose poses are told", "text", default=ROS_FRAMES[1])
 
 
 @dataclass(frozen=True)
@@ -216,7 +219,7 @@ TABLES = {
 }
 OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan"), "tool"
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2"), "tool"
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it

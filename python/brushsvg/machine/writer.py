@@ -68,7 +68,7 @@ def encoded(suffix: str, plan, walk: Walked, brush, title: str, notes=()) -> byt
     if suffix == ".json":
         return _core.write_plan(plan).encode()
     header = header_of(title or "untitled", brush.name, walk.loads, notes, made, walk.job)
-    return text_of(post_for(suffix, made.cell), replace(made, header=header))
+    return text_of(post_for(suffix, made.cell), replace(made, header=header), suffix)
 
 
 def in_files(path: str | os.PathLike, pieces: bytes | Iterator[str]) -> dict:
@@ -90,9 +90,9 @@ def painting_cell(suffix: str, cell: Cell) -> Cell:
     return replace(cell, reload=None) if suffix == ".json" else cell
 
 
-def text_of(post: Post, made: Program) -> Iterator[str]:
-    """The program in a robot's language, in pieces."""
-    pieces = post.write(in_robot_frame(made) if post.in_robot_frame else made)
+def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
+    """The program in a robot's language, in pieces, as files of an extension have it."""
+    pieces = post.others.get(suffix, post.write)(in_robot_frame(made) if post.in_robot_frame else made)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 

@@ -315,6 +315,33 @@ SCRIPTS = {
         says='tp_log("{}")',
         rates=(r"(set_velx\()(\d+\.\d+)", r"(radius=)(\d+\.\d+)", r"(set_accx\()(\d+\.\d+)"),
     ),
+    "ros2": Script(
+        remark="#",
+        moves=r"-?\d",
+        words=(
+            *(
+                (",pose", ""),
+                ("way", "rest"),
+                ("000,", ","),
+                (",", ";"),
+                ("pose", "poses"),
+            ),
+            *(("1.0000", "0.9999"), ("0.", "-0."), (".", ","), ("0.0000", "0.0200"), ("1.0", "-1.0")),
+        ),
+        modes=(
+            ("x_m,y_m", "y_m,x_m"),
+            ("time_s", "time_ms"),
+            ("x_m", "x_mm"),
+            ("limit_m_s,", ""),
+            ("qx", "qw"),
+        ),
+        offsets=r"\d",
+        shifts=(-0.1, -0.001, 0.001, 0.1),
+        more=("0,0,0,0,0,0,0,1,0.1,pose", "1e3", "stop", "time_s", "5.0,0.4,0,0.2,1,0,0,0,0.1,pose"),
+        says="says,{}",
+        rates=(r"(^)(\d+\.\d+)",),
+        decimals=8,
+    ),
 }
 
 
@@ -345,7 +372,7 @@ class Page:
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan"))
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan", "ros2"))
         last = min(last - (self.script.after if self.script else 0), self.data)
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))
@@ -519,9 +546,10 @@ def feed(page, random):
 
 def word_lost(page, random):
     k = _pick(random, page.moves)
-    words = page.lines[k].split(" ")
+    between = " " if " " in page.lines[k].strip(" ") else ","  # of a table
+    words = page.lines[k].split(between)
     at = int(random.integers(len(words)))
-    return _with(page, k, " ".join(words[:at] + words[at + 1 :]))
+    return _with(page, k, between.join(words[:at] + words[at + 1 :]))
 
 
 def word_changed(page, random):

@@ -23,6 +23,7 @@ from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
 from .rapid import run_rapid
+from .ros2 import run_ros2
 from .urscript import run_urscript
 from .xarm import run_xarm
 
@@ -45,6 +46,7 @@ ROBOTS = {
     "dobot": run_dobot,
     "fanuc": run_fanuc,
     "doosan": run_doosan,
+    "ros2": run_ros2,
 }
 
 
@@ -656,7 +658,9 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
         return False
     if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
         return False
-    if max(leg.speed_mm_s for leg, _ in ours) > min(leg.speed_mm_s for leg, _ in theirs) + FASTER_MM_S:
+    # a row less between two with times: the same way in the same time
+    told = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
+    if max(leg.speed_mm_s for leg, _ in ours) > told + FASTER_MM_S:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False

@@ -27,6 +27,7 @@ CELLS = {
     "dobot": ("cr5", ".lua"),
     "fanuc": ("lrmate200id", ".ls"),
     "doosan": ("m0609", ".drl"),
+    "ros2": ("fr3", ".csv"),
 }
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 

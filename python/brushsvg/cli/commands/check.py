@@ -29,11 +29,20 @@ def check_file(args) -> None:
     from ...verification.readback import read_program, text_of_file
     from ...verification.readback.fanuc import called
     from ...verification.readback.header import made as made_of
+    from ...verification.readback.ros2 import as_table
     from ...verification.time_as_run import time_as_run_s
 
     check_places(args.preview)
     with about(args.program):
-        text = text_of_file(read_bytes(args.program))
+        data = read_bytes(args.program)
+        text = text_of_file(b"" if suffix_of(args.program) == ".cdr" else data)
+        if suffix_of(args.program) == ".cdr":
+            raise Error(
+                "a serialized message says nothing of brush and paper: check the .csv of the same job",
+                code="program-format",
+            )
+        if suffix_of(args.program) == ".traj":
+            text = as_table(text)
         others = called(text) if suffix_of(args.program) == ".ls" else []
         text += "".join(text_of_file(read_bytes(beside(args.program, name))) for name in others)
         made = made_of(text)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ class Post(NamedTuple):
     circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines.
     line_end: as the controller's own files have it; has_tabs: so have they, too.
     parted: the texts of several files, by name, "" that of the one which is asked for; None: there is but that one.
+    others: what writes files of other extensions in another way.
     """
 
     title: str
@@ -26,6 +28,7 @@ class Post(NamedTuple):
     line_end: str = "\n"
     has_tabs: bool = False
     parted: Callable[[str], dict[str, str]] | None = None
+    others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -100,6 +103,24 @@ def _doosan(program: Program) -> Iterator[str]:
     return doosan(program)
 
 
+def _ros2(program: Program) -> Iterator[str]:
+    from .ros2 import csv
+
+    return csv(program)
+
+
+def _ros2_json(program: Program) -> Iterator[str]:
+    from .ros2 import traj
+
+    return traj(program)
+
+
+def _ros2_message(program: Program) -> Iterator[bytes]:
+    from .ros2 import cdr
+
+    return cdr(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -113,4 +134,11 @@ POSTS = {  # by the language a cell names
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
     "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
     "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose"),
+    "ros2": Post(
+        "poses with times for ROS 2",
+        (".csv", ".traj", ".cdr"),
+        _ros2,
+        circles_by="",
+        others={".traj": _ros2_json, ".cdr": _ros2_message},
+    ),
 }

@@ -163,7 +163,9 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     return _READERS[cell.language](text, cell)
 
 
-_HUGE = re.compile(r"(?<![\d.])\d{10,}")  # no place in mm, no feed in mm/min: nothing can be computed with it
+_HUGE = re.compile(
+    r"(?<![\d.])0*[1-9]\d{9,}"
+)  # no place in mm, no feed in mm/min: nothing can be computed with it
 
 
 def _gcode(text: str, cell: Cell) -> Readback:
@@ -220,6 +222,12 @@ def _doosan(text: str, cell: Cell) -> Readback:
     return read_doosan(text, cell)
 
 
+def _ros2(text: str, cell: Cell) -> Readback:
+    from .ros2 import as_table, read_ros2
+
+    return read_ros2(as_table(text) if text.startswith("{") else text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -232,4 +240,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "dobot": _dobot,
     "fanuc": _fanuc,
     "doosan": _doosan,
+    "ros2": _ros2,
 }
