@@ -187,6 +187,13 @@ class Reload:
 
 
 @dataclass(frozen=True)
+class RoboDK:
+    """Of language robodk: a post processor of RoboDK's kind, which is a program in Python and is run."""
+
+    post: str = _key("path of the post's .py, whose class is RobotPost", "text")
+
+
+@dataclass(frozen=True)
 class Cell:
     """A machine, its limits and its paint. Lengths in mm, speeds in mm/s, heights over the paper."""
 
@@ -203,6 +210,7 @@ class Cell:
     servo: Servo | None = None
     reload: Reload | None = None
     machine: Machine | None = None
+    robodk: RoboDK | None = None
     stations: tuple[Station, ...] = ()
 
 
@@ -216,10 +224,11 @@ TABLES = {
     "servo": Servo,
     "reload": Reload,
     "machine": Machine,
+    "robodk": RoboDK,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
+OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "robodk")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2"), "tool"
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), "tool"
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it

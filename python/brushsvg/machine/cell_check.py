@@ -74,6 +74,9 @@ def _check_own_keys(cell: Cell) -> None:
         table = getattr(cell, name)
         if table and getattr(table, entry) != getattr(type(table), entry) and cell.language != language:
             raise Error(f"language {cell.language!r} {why}", where=key, code="out-of-range")
+    if (cell.language == "robodk") != (cell.robodk is not None):
+        says = "needs a table robodk" if cell.robodk is None else "runs no post of RoboDK's kind"
+        raise Error(f"language {cell.language!r} {says}", where="robodk", code="key-missing")
     if cell.language == "fanuc" and not re.fullmatch(CONFIGURATION, cell.tool.configuration):
         raise Error(
             f"{cell.tool.configuration[:40]!r} is no configuration as the pendant shows it, such as "

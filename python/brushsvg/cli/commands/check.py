@@ -36,6 +36,11 @@ def check_file(args) -> None:
     with about(args.program):
         data = read_bytes(args.program)
         text = text_of_file(b"" if suffix_of(args.program) == ".cdr" else data)
+        if suffix_of(args.program) == ".robodk":
+            raise Error(
+                "what a post of RoboDK's kind writes is in a language of its own, which is not read back",
+                code="program-format",
+            )
         if suffix_of(args.program) == ".cdr":
             raise Error(
                 "a serialized message says nothing of brush and paper: check the .csv of the same job",

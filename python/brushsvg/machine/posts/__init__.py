@@ -121,6 +121,12 @@ def _ros2_message(program: Program) -> Iterator[bytes]:
     return cdr(program)
 
 
+def _robodk(program: Program) -> Iterator[str]:
+    from .robodk import robodk
+
+    return robodk(program)
+
+
 GCODE = (".ngc", ".gcode", ".nc")
 POSTS = {  # by the language a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
@@ -141,4 +147,5 @@ POSTS = {  # by the language a cell names
         circles_by="",
         others={".traj": _ros2_json, ".cdr": _ros2_message},
     ),
+    "robodk": Post("what a post of RoboDK's kind writes", (".robodk",), _robodk, False, "pose"),
 }
