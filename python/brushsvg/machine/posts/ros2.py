@@ -15,7 +15,7 @@ from ..cell import Cell
 from ..frames import frame_of_pose, quaternion, rotation
 from ..motion import Program
 from ..trajectory import timed
-from .script import QUIET, rounded_down, upright_deg
+from .script import rounded_down, upright_deg
 from .text import plain
 
 LINE_LIMIT = 100
@@ -39,12 +39,12 @@ def csv(program: Program) -> Iterator[str]:
 def traj(program: Program) -> Iterator[str]:
     """A list of lists in lines: remarks have one text, rows ten values."""
     yield '{"format": "brushsvg/trajectory", "version": 1, "rows": [\n'
-    yield "".join(f'["{comment(line)[:-1]}"],\n' for line in _head(program))
+    yield "".join(json.dumps([comment(line)[:-1]]) + ",\n" for line in _head(program))
     yield json.dumps(COLUMNS.split(","), separators=(",", ":")) + ",\n"
     for title, table in timed(program):
-        yield f'["{comment(title)[:-1]}"],\n'
+        yield json.dumps([comment(title)[:-1]]) + ",\n"
         yield "".join(f'[{numbers},"{kind}"],\n' for numbers, kind in _lines(table, program.cell))
-    yield f'["{comment(ROS2_END)[:-1]}"]]}}\n'
+    yield json.dumps([comment(ROS2_END)[:-1]]) + "]}\n"
 
 
 def cdr(program: Program) -> Iterator[bytes]:
@@ -94,7 +94,7 @@ def _points(table: np.ndarray, cell: Cell) -> np.ndarray:
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2).translate(QUIET)}\n"
+    return f"# {plain(text, LINE_LIMIT - 2)}\n"
 
 
 def flange_from_tip(cell: Cell) -> np.ndarray:

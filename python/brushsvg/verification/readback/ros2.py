@@ -39,14 +39,17 @@ def as_table(text: str) -> str:
 
 
 def _of_table(line: str) -> str:
-    line = line.removesuffix("]}").removesuffix(",")
-    line = line if line.endswith("]") or not line.startswith("[") else f"{line}]"
-    if line == _NAMES:
+    """What a line of JSON says, or the line where it says something else."""
+    try:
+        row = json.loads(line.removesuffix(",") if line.endswith(",") else line.removesuffix("]}"))
+    except ValueError:
+        return line
+    if line.rstrip(",") == _NAMES:
         return COLUMNS
-    if remark := re.fullmatch(r'\["(# [^"\\]*)"(?:\]|)\]?', line):
-        return remark[1]
-    if row := re.fullmatch(rf'\[({_N}(?:,{_N}){{8}}),"(pose|way|rest)"\]', line):
-        return f"{row[1]},{row[2]}"
+    if isinstance(row, list) and len(row) == 1 and isinstance(row[0], str) and row[0].startswith("# "):
+        return row[0]
+    if found := re.fullmatch(rf'\[({_N}(?:,{_N}){{8}}),"(pose|way|rest)"\],', line):
+        return f"{found[1]},{found[2]}"
     return line
 
 
