@@ -211,7 +211,8 @@ def test_whatever_is_written_is_safe(name, seed):
 
 
 def test_every_language_is_tried():
-    assert {find_cell(name).language for name in LANGUAGES} == set(POSTS)
+    posts = set(POSTS) - {"robodk"}  # whatever a user's own post writes
+    assert {find_cell(name).language for name in LANGUAGES} == posts
 
 
 @pytest.mark.parametrize("seed", range(15))

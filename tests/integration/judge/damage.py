@@ -680,6 +680,8 @@ def remark(page, random):
     """A comment more, of somebody's own."""
     at = int(random.integers(min(len(page.lines), page.data + 1)))
     at = max(at, page.script.first if page.script else 0)
+    while re.match(r" : !\+| :  P", page.lines[at] if at < len(page.lines) else ""):
+        at += 1  # not within what goes on in another line
     return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
 
 

@@ -23,6 +23,7 @@ def run_ros2(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.nda
         _followed(text, arm)
     except RefusedError as refusal:
         arm.run.refused = str(refusal)
+        arm.run.legs.clear()  # a trajectory is looked at as a whole before anything moves
     return arm.run
 
 
