@@ -21,6 +21,7 @@ _ROW = re.compile(rf"({_N}(?:,{_N}){{8}}),(pose|way|rest)")
 _OPENS = '{"format": "brushsvg/trajectory", "version": 1, "rows": ['
 _NAMES = '["' + COLUMNS.replace(",", '","') + '"]'
 LEAST_S = 1e-7
+ROUNDED_MM = 2e-4  # what decimals make of a way
 NOT_ONE = 1e-2  # of a quaternion: nearer ones are taken as the turns that they point at
 NEAR_MM = 3e-3  # of places, what no brush shows
 FASTER, FASTER_MM_S = 1e-3, 0.01  # what rounding makes of speeds
@@ -66,7 +67,10 @@ def read_ros2(text: str, cell: Cell) -> Readback:
             sentence = f"line {number}: {line[:60]!r} is not a line that brushsvg writes"
             raise Error(sentence, code="line-unread")
     numbers = [number for (number, _), row in zip(lines, found, strict=True) if row]
-    tips = iter(_tips(np.array(rows).reshape(-1, 9), numbers, cell).tolist())
+    places = _tips(np.array(rows).reshape(-1, 9), numbers, cell)
+    on_grid = np.array([row[2] != "way" for row in found if row], dtype=bool)
+    places[on_grid] = np.round(places[on_grid], cell.decimals)
+    tips = iter(places.tolist())
     values, has_names = iter(rows), 0
     for (number, line), row in zip(lines, found, strict=True):
         if row:
@@ -83,7 +87,7 @@ def read_ros2(text: str, cell: Cell) -> Readback:
 
 
 def _tips(rows: np.ndarray, numbers: list[int], cell: Cell) -> np.ndarray:
-    """(n, 3) where the brush's tip is [mm], on the cell's grid. Error where it leans."""
+    """(n, 3) where the brush's tip is [mm]. Error where it leans."""
     sizes = np.linalg.norm(rows[:, 4:8], axis=1, keepdims=True)
     off = np.abs(sizes[:, 0] - 1) > NOT_ONE
     turns = rows[:, 4:8] / np.where(sizes > 0, sizes, 1.0)
@@ -106,7 +110,7 @@ def _tips(rows: np.ndarray, numbers: list[int], cell: Cell) -> np.ndarray:
         )
         raise Error(sentence, code="tool-turned")
     tip_in_flange = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)[:3, 3]
-    return np.round(1e3 * rows[:, 1:4] + turned @ tip_in_flange, cell.decimals)
+    return 1e3 * rows[:, 1:4] + turned @ tip_in_flange
 
 
 class _Rows:
@@ -139,7 +143,7 @@ class _Rows:
             return
         if not limit_mm_s > 0:
             raise Error(f"line {number}: no speed is allowed", code="line-incomplete")
-        rounded_mm_s = self.near_mm / 6 / after_s
+        rounded_mm_s = ROUNDED_MM / after_s
         if way_mm > after_s * (limit_mm_s * (1 + FASTER) + FASTER_MM_S + rounded_mm_s):
             said = f"line {number}: speed {way_mm / after_s:.1f} mm/s, its limit {limit_mm_s:.1f} mm/s"
             raise Error(said, code="speed-out-of-range")
