@@ -63,7 +63,10 @@ def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin
 
 @pytest.mark.parametrize(
     ("name", "told"),
-    [("sheet.txt", ".ngc .script .jks .mod .py .src .lua .json"), ("nowhere/sheet.ngc", "cannot be written")],
+    [
+        ("sheet.txt", ".ngc .script .jks .mod .py .src .lua .ls .drl .csv .json"),
+        ("nowhere/sheet.ngc", "cannot be written"),
+    ],
 )
 def test_what_cannot_be_saved_is_told(plugin, tmp_path, name, told):
     drawing = tmp_path / "drawing.svg"

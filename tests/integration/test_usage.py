@@ -108,6 +108,8 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     # every extension that help names is one the command takes
     values = {"IN": "sound.svg", "--brush": "round-6"}
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("convert",)])[0]):
+        if suffix == ".robodk":
+            continue  # asks for a post processor of the user's own
         cell = {
             ".script": ("--cell", "ur5e"),
             ".jks": ("--cell", "jaka-zu3"),
@@ -115,6 +117,11 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".py": ("--cell", "xarm6"),
             ".src": ("--cell", "kr6-r900"),
             ".lua": ("--cell", "cr5"),
+            ".ls": ("--cell", "lrmate200id"),
+            ".drl": ("--cell", "m0609"),
+            ".csv": ("--cell", "fr3"),
+            ".traj": ("--cell", "fr3"),
+            ".cdr": ("--cell", "fr3"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -136,6 +143,11 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.py",
             "made.src",
             "made.lua",
+            "made.ls",
+            "made.drl",
+            "made.csv",
+            "made.traj",
+            "made.cdr",
             "page.pdf",
             "page.svg",
             "seen.png",

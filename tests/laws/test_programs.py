@@ -33,6 +33,9 @@ LANGUAGES = {
     "xarm6": ".py",
     "kr6-r900": ".src",
     "cr5": ".lua",
+    "lrmate200id": ".ls",
+    "m0609": ".drl",
+    "fr3": ".csv",
 }
 SHEET = (400.0, 400.0)
 
@@ -216,7 +219,8 @@ def test_whatever_is_written_is_safe(name, seed):
 
 
 def test_every_language_is_tried():
-    assert {find_cell(name).language for name in LANGUAGES} == set(POSTS)
+    posts = set(POSTS) - {"robodk"}  # whatever a user's own post writes
+    assert {find_cell(name).language for name in LANGUAGES} == posts
 
 
 @pytest.mark.parametrize("seed", range(15))

@@ -20,6 +20,9 @@ LANGUAGES = {
     "xarm6": ".py",
     "kr6-r900": ".src",
     "cr5": ".lua",
+    "lrmate200id": ".ls",
+    "m0609": ".drl",
+    "fr3": ".csv",
 }
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 

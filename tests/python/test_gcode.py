@@ -86,7 +86,9 @@ def test_the_slowest_stroke_still_moves():
 
 
 def test_every_language_has_a_program_to_look_at():
-    for post in POSTS.values():
+    for post in (
+        each for name, each in POSTS.items() if name != "robodk"
+    ):  # whatever a user's own post writes
         assert list(GOLDEN.parent.glob(f"*{post.extensions[0]}")), f"tests/golden has no {post.extensions[0]}"
 
 

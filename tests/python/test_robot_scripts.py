@@ -1,5 +1,5 @@
-"""RAPID, KRL, Lua for Dobot and Python for xArm: what an interpreter of the tests' own, made from the manual, does with
-our programs, and what `check` makes of them. It shares nothing with what writes and reads them."""
+"""RAPID, KRL, TP, DRL, Lua for Dobot and Python for xArm: what an interpreter of the tests' own, made from the manual,
+does with our programs, and what `check` makes of them. It shares nothing with what writes and reads them."""
 
 import inspect
 import io
@@ -33,8 +33,15 @@ from brushsvg.machine.writer import text_of
 from brushsvg.verification.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-NAMES = {"irb120": "rapid", "xarm6": "xarm", "kr6-r900": "krl", "cr5": "dobot"}
-CIRCLES = {"irb120", "kr6-r900", "cr5"}  # what tells them
+NAMES = {
+    "irb120": "rapid",
+    "xarm6": "xarm",
+    "kr6-r900": "krl",
+    "cr5": "dobot",
+    "lrmate200id": "fanuc",
+    "m0609": "doosan",
+}
+CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # what tells them
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
@@ -221,6 +228,35 @@ REFUSED = [
     ("cr5", "{speed = 20}", "{speed = 20, cp = 1}", "line-unread"),
     ("cr5", "User(1)\nTool(1)\n", "Tool(1)\nSetTool(1, {0, 0, 0, 0, 0, 0})\nUser(1)\n", "line-unread chosen"),
     ("cr5", "\n-- end: the brush is held up", "", "program-cut-short"),
+    ("lrmate200id", "/ATTR\r\n", "", "line-unread COMMENT"),
+    ("lrmate200id", " : L P[4]", " : J P[4]", "line-unread"),
+    ("lrmate200id", " : L P[4]", " : L P[400]", "line-incomplete point"),
+    ("lrmate200id", "P[4]{", "P[5]{", "line-unread point"),
+    ("lrmate200id", "X = 12.500", "X = +-12.500", "line-unread point"),
+    ("lrmate200id", "W = 180.000", "W = 179.400", "tool-turned 0.6"),
+    ("lrmate200id", "UF : 1", "UF : 0", "line-unread point"),
+    ("lrmate200id", "'N U T", "'F U T", "line-unread configuration"),
+    ("lrmate200id", "20mm/sec CNT3", "20mm/sec CNT101", "line-unread CNT101"),
+    ("lrmate200id", " 20mm/sec CNT3", " 0mm/sec CNT3", "line-incomplete speed"),
+    ("lrmate200id", " : C P[22]\r\n", "", "line-unread circle"),
+    ("lrmate200id", " : PR[1,6]=0.00000 ;\r\n", "", "line-incomplete frame"),
+    ("lrmate200id", "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n", "", "line-unread DEFAULT_GROUP"),
+    ("lrmate200id", " : !end: the brush is held up ;\r\n", "", "program-cut-short"),
+    ("lrmate200id", "};\r\n/END\r\n", "};\r\n", "program-cut-short"),
+    ("lrmate200id", " : !end", " : CALL B0001 ;\r\n : !end", "line-unread B0001"),
+    ("m0609", "movel(on_paper(10.000", "movej(on_paper(10.000", "line-unread"),
+    ("m0609", "on_paper(10.000", "on_paper(10.000, 10.000", "line-unread"),
+    ("m0609", "    movel(here)", "movel(here)", "line-unread"),
+    ("m0609", "    movel(here)", "  movel(here)", "line-unread DRL"),
+    ("m0609", "0.00000, 180.00000, 180.00000", "0.00000, 179.40000, 180.00000", "tool-turned 0.6"),
+    ("m0609", "set_velx(20.000", "set_velx(0.000", "line-incomplete speed"),
+    ("m0609", "set_velx(20.000, 30.000)", "set_velx(20.000, -30.000)", "line-unread"),
+    ("m0609", "set_velx(50.000, 30.000)\n", "", "line-incomplete speed"),
+    ("m0609", "radius=0.039", "radius=-0.039", "line-unread blend"),
+    ("m0609", "radius=0.039", "radius=0.039, ra=1", "line-unread"),
+    ("m0609", "radius=0.039", "radius=1.953", "line-unread middle"),
+    ("m0609", "# title", "# coding: utf-7\n# title", "line-unread letters"),
+    ("m0609", "\n# end: the brush is held up", "", "program-cut-short"),
     ("xarm6", "go(-140.000", "go(x=-140.000", "line-unread"),
     ("xarm6", "go(-140.000", " go(-140.000", "line-unread"),
     ("xarm6", "100.000, None", "0.000, None", "line-incomplete speed"),
@@ -282,6 +318,23 @@ BROKEN = [
     ("cr5", "{speed = 20}", "{speed = 0}"),
     ("cr5", "  return {pose", "  return {joint"),
     ("cr5", "on_paper(10.000", "on_paper(+10.000"),
+    ("lrmate200id", "/ATTR\r\n", ""),
+    ("lrmate200id", " : L P[4] 20mm/sec", " : L P[4] 20.5mm/sec"),
+    ("lrmate200id", " : UFRAME[1]=PR[1] ;\r\n", ""),
+    ("lrmate200id", " : PR[1]=LPOS ;\r\n", ""),
+    ("lrmate200id", "UT : 1,", "UT : 2,"),
+    ("lrmate200id", "'N U T", "'F U T"),
+    ("lrmate200id", " : ENDIF ;\r\n", ""),
+    ("lrmate200id", "P[4]{", "P[5]{"),
+    ("lrmate200id", "title: two strokes", "title: a remark that is longer than"),
+    ("m0609", "def on_paper", "def in_paper"),
+    ("m0609", "set_tcp", "set_tpc"),
+    ("m0609", '"brush"', '"pen"'),
+    ("m0609", "tip_mm - 150.000", "tip_mm - 148.000"),
+    ("m0609", "set_ref_coord(paper)", "set_ref_coord(7)"),
+    ("m0609", "radius=", "blend="),
+    ("m0609", "radius=0.039", "radius=90.039"),
+    ("m0609", "    here[2] =", "here[2] ="),
     ("xarm6", "def done", "def dun"),
     ("xarm6", "set_tcp_offset", "set_tool_offset"),
     ("xarm6", "done(arm.set_state(0))", "done(arm.set_state(4))"),

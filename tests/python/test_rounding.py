@@ -223,7 +223,8 @@ def test_no_circle_begins_or_ends_beside_one_by_less_than_a_move():
 @pytest.mark.parametrize("turn", [1, -1])
 @pytest.mark.parametrize("degrees", [359.999, 360.0])
 @pytest.mark.parametrize(
-    "name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3", "irb120", "kr6-r900", "cr5"]
+    "name",
+    ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3", "irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"],
 )
 def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
     """Rounded, its end could lie on either side of its beginning: then it would be run all round, or not at all."""
@@ -232,9 +233,9 @@ def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
     text, said = found_by_check(poses, [_core.Arc(2, 25, (50, 40), turn)], cell)
     assert said is None
-    word = {"ur5e": "movec", "jaka-zu3": "movc", "irb120": "MoveC", "kr6-r900": "CIRC", "cr5": "Arc"}.get(
-        name, "G3 " if turn > 0 else "G2 "
-    )
+    words = {"ur5e": "movec", "jaka-zu3": "movc", "irb120": "MoveC", "kr6-r900": "CIRC", "cr5": "Arc"}
+    words |= {"lrmate200id": ": C P", "m0609": "movec"}
+    word = words.get(name, "G3 " if turn > 0 else "G2 ")
     assert sum(line.strip().startswith(word) for line in text.splitlines()) == 2
 
 

@@ -52,6 +52,10 @@ class Paper:
     example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
 
 
+FANUC_CONFIGURATION = "N U T, 0, 0, 0"
+ROS_FRAMES = "base_link", "tool0"  # as ROS-Industrial names them
+
+
 @dataclass(frozen=True)
 class Tool:
     """The brush's tip, seen from the robot's flange; the brush stands on the paper's normal."""
@@ -61,6 +65,11 @@ class Tool:
         "of the tool's frame, z along the brush; about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
     )
     spin_deg: float = _number("how the tool is turned about the brush's axis", -360, 360, default=0.0)
+    configuration: str = _key(
+        "fanuc: of the arm over the sheet, as the pendant shows it", "text", default=FANUC_CONFIGURATION
+    )
+    base_frame: str = _key("ros2: the robot's frame", "text", default=ROS_FRAMES[0])
+    flange_frame: str = _key("ros2: the link whose poses are told", "text", default=ROS_FRAMES[1])
 
 
 @dataclass(frozen=True)
@@ -88,6 +97,7 @@ class Speeds:
 
 
 BLEND_STEP_MM = 1.0
+RAMP_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -98,6 +108,9 @@ class Blending:
     radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
     step_mm: float = _number(
         "dobot: blends are told in steps of so much, rounded down", 0.001, 1, default=BLEND_STEP_MM
+    )
+    ramp_s: float = _number(
+        "fanuc: how long the arm takes to its speed, by which CNT cuts corners", 0.02, 5, default=RAMP_S
     )
 
 
@@ -174,6 +187,13 @@ class Reload:
 
 
 @dataclass(frozen=True)
+class RoboDK:
+    """Of language robodk: a post processor of RoboDK's kind, which is a program in Python and is run."""
+
+    post: str = _key("path of the post's .py, whose class is RobotPost", "text")
+
+
+@dataclass(frozen=True)
 class Cell:
     """A machine, its limits and its paint. Lengths in mm, speeds in mm/s, heights over the paper."""
 
@@ -201,6 +221,7 @@ class Cell:
     servo: Servo | None = None
     reload: Reload | None = None
     machine: Machine | None = None
+    robodk: RoboDK | None = None
     stations: tuple[Station, ...] = ()
 
 
@@ -214,15 +235,17 @@ TABLES = {
     "servo": Servo,
     "reload": Reload,
     "machine": Machine,
+    "robodk": RoboDK,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
+OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "robodk")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot"), "tool"
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), "tool"
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
-LEAST_SPEED_MM_S = {"dobot": 1.0}  # of MovL; all its speeds are whole multiples of it
+LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
+MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
 RELOADS = ("length", "stroke", "layer")
 
 

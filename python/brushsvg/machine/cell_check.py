@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Error, Notice
 from .cell import (
     ARCS_IN_SEGMENTS,
-    BLEND_STEP_MM,
+    FANUC_CONFIGURATION,
     LEAST_ACCELERATION_MM_S2,
     LEAST_SPEED_MM_S,
     NEEDED_BY,
@@ -50,24 +50,54 @@ def check(cell: Cell) -> None:
             code="out-of-range",
         )
     _check_speeds(cell)
-    if cell.blending.step_mm != BLEND_STEP_MM and cell.language != "dobot":
-        raise Error(
-            f"language {cell.language!r} has no steps of blends: they are as fine as its decimals",
-            where="blending.step_mm",
-            code="out-of-range",
-        )
-    if cell.arc_segment_mm and cell.language not in ARCS_IN_SEGMENTS:
-        raise Error(
-            f"language {cell.language!r} makes no lines of circles",
-            where="arc_segment_mm",
-            code="out-of-range",
-        )
+    _check_own_keys(cell)
     _check_paper(cell)
     _check_workspace(cell)
     if cell.servo:
         _check_servo(cell)
         _check_machine_of_servo(cell)
     _check_paint(cell)
+
+
+OWN = {  # keys that one language has, and why another has none
+    "blending.step_mm": ("dobot", "has no steps of blends: they are as fine as its decimals"),
+    "blending.ramp_s": ("fanuc", "tells blends in mm, whatever the time to speed"),
+    "tool.configuration": ("fanuc", "tells no configuration of the arm"),
+    "tool.base_frame": ("ros2", "names no frames"),
+    "tool.flange_frame": ("ros2", "names no frames"),
+}
+
+
+def _check_own_keys(cell: Cell) -> None:
+    """What only one language tells must not be said for another."""
+    for key, (language, why) in OWN.items():
+        name, _, entry = key.partition(".")
+        table = getattr(cell, name)
+        if table and getattr(table, entry) != getattr(type(table), entry) and cell.language != language:
+            raise Error(f"language {cell.language!r} {why}", where=key, code="out-of-range")
+    if cell.arc_segment_mm and cell.language not in ARCS_IN_SEGMENTS:
+        raise Error(
+            f"language {cell.language!r} makes no lines of circles",
+            where="arc_segment_mm",
+            code="out-of-range",
+        )
+    if (cell.language == "robodk") != (cell.robodk is not None):
+        says = "needs a table robodk" if cell.robodk is None else "runs no post of RoboDK's kind"
+        raise Error(f"language {cell.language!r} {says}", where="robodk", code="key-missing")
+    if cell.language == "fanuc" and not re.fullmatch(CONFIGURATION, cell.tool.configuration):
+        raise Error(
+            f"{cell.tool.configuration[:40]!r} is no configuration as the pendant shows it, such as "
+            f"{FANUC_CONFIGURATION!r}",
+            where="tool.configuration",
+            code="out-of-range",
+        )
+    for key in ("base_frame", "flange_frame") if cell.language == "ros2" else ():
+        if not re.fullmatch(r"[A-Za-z]\w{0,99}(?:/\w{1,99})*", name := getattr(cell.tool, key)):
+            sentence = f"{name[:40]!r} is no name of a frame: letters, digits, _ and /"
+            raise Error(sentence, where=f"tool.{key}", code="name-invalid")
+
+
+CONFIGURATION = r"[NF] [UD] [TB], -?\d, -?\d, -?\d"
 
 
 def _check_speeds(cell: Cell) -> None:
@@ -298,6 +328,10 @@ def _check_paint(cell: Cell) -> None:
 
 def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
     if station.by_hand:
+        if cell.language == "ros2":
+            raise Error(
+                "a trajectory cannot wait for a person: by_hand cannot be", where=where, code="cell-station"
+            )
         if cell.servo:
             raise Error(
                 "a servo's brush falls while the program waits: by_hand cannot be",

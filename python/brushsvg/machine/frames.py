@@ -42,6 +42,17 @@ def rotation_deg(turned: np.ndarray) -> np.ndarray:
     return np.degrees([about_x, about_y, about_z])
 
 
+def zyz_deg(turned: np.ndarray) -> np.ndarray:
+    """(3,) angles [degrees] about z, then the new y, then the newest z of a rotation (3, 3)."""
+    aside = np.hypot(turned[0, 2], turned[1, 2])
+    b = np.arctan2(aside, turned[2, 2])
+    if aside > 1e-9:
+        a, c = np.arctan2(turned[1, 2], turned[0, 2]), np.arctan2(turned[2, 1], -turned[2, 0])
+    else:  # both turn about one axis
+        a, c = 0.0, np.arctan2(turned[1, 0], turned[1, 1])
+    return np.degrees([a, b, c])
+
+
 def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
     """From the origin, a point along x, a point on the side of positive y, perhaps one more to try the plane.
 

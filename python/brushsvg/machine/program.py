@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from .cell import Cell, Station, robot_from_paper, value_mm
+from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
@@ -38,6 +38,8 @@ class Job:
 
 
 WHOLE_JOB = Job()
+AROUND = 4  # points of a stroke beside its poses
+POSES_KEPT = 300_000  # of a plan whose moves are made once and kept, in some 10 MB
 POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
 
 
@@ -79,6 +81,16 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     problems += broken_limits(
         [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
     )
+    problems += [
+        Notice(
+            a_pass.stroke,
+            f"{count} poses are outside the range [1, {MOST_POINTS[cell.language]}] of one program, and a stroke "
+            "cannot be parted: --tolerance makes them fewer",
+            code="poses-too-many",
+        )
+        for a_pass in (left if cell.language in MOST_POINTS else ())
+        if (count := len(a_pass.poses_mm) + AROUND) > MOST_POINTS[cell.language]
+    ]
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         for station in cell.stations:
@@ -132,7 +144,7 @@ def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JO
             yield at_told_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     made = cache(lambda: tuple(sections()))
-    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_AT_ONCE
+    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_KEPT
     rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
     walk = (lambda: iter(made())) if is_little else sections
     return Program((), cell, frame, walk, *rises_mm, touching_mm_s(brush, cell))

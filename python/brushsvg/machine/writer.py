@@ -68,7 +68,21 @@ def encoded(suffix: str, plan, walk: Walked, brush, title: str, notes=()) -> byt
     if suffix == ".json":
         return _core.write_plan(plan).encode()
     header = header_of(title or "untitled", brush.name, walk.loads, notes, made, walk.job)
-    return text_of(post_for(suffix, made.cell), replace(made, header=header))
+    return text_of(post_for(suffix, made.cell), replace(made, header=header), suffix)
+
+
+def in_files(path: str | os.PathLike, pieces: bytes | Iterator[str]) -> dict:
+    """The same by the files that it belongs in: what one program of a language cannot hold lies beside it."""
+    post = next((post for post in POSTS.values() if Path(path).suffix.lower() in post.extensions), None)
+    if post is None or post.parted is None:
+        return {path: pieces}
+    texts = post.parted("".join(pieces))
+    return {path: texts.pop("")} | {beside(path, name): text for name, text in texts.items()}
+
+
+def beside(path: str | os.PathLike, name: str) -> str:
+    """Where the file of another program lies that one calls."""
+    return str(Path(path).with_name(name + Path(path).suffix))
 
 
 def painting_cell(suffix: str, cell: Cell) -> Cell:
@@ -76,9 +90,9 @@ def painting_cell(suffix: str, cell: Cell) -> Cell:
     return replace(cell, reload=None) if suffix == ".json" else cell
 
 
-def text_of(post: Post, made: Program) -> Iterator[str]:
-    """The program in a robot's language, in pieces."""
-    pieces = post.write(in_robot_frame(made) if post.in_robot_frame else made)
+def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
+    """The program in a robot's language, in pieces, as files of an extension have it."""
+    pieces = post.others.get(suffix, post.write)(in_robot_frame(made) if post.in_robot_frame else made)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 
@@ -107,4 +121,4 @@ def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: C
     cell = painting_cell(suffix, as_exact_as(cell, DEFAULT_TOLERANCE_MM))
     marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)  # the former refuses other types
     walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
-    write_files({path: encoded(suffix, plan, walk, brush, title)})
+    write_files(in_files(path, encoded(suffix, plan, walk, brush, title)))

@@ -323,7 +323,7 @@ class _Alike:
             return least - unit <= value <= most + 2 * unit
         if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
             return False
-        in_degrees = wanted.startswith(("$tool", "tool = [", "TOOL = [", "SetTool("))
+        in_degrees = wanted.startswith(("$tool", "tool = [", "TOOL = [", "SetTool(", "UTOOL"))
         tilts = 3 if in_degrees or wanted.startswith(("set_tcp", "return", "paper")) else 0
         tilted = PAPER_TILTED_RAD if wanted.startswith("paper") else TILTED_RAD
         tilted = math.degrees(tilted) if in_degrees else tilted

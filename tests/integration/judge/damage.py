@@ -33,6 +33,7 @@ class Script(NamedTuple):
     after: int = 0
     first: int = 0
     decimals: int = 3
+    data: str = ""
 
 
 PRINTER = Script(
@@ -259,7 +260,132 @@ SCRIPTS = {
         says='print("{}")',
         rates=(r"(speed = )(\d+)", r"(r = )(\d+)", r"(Wait\()(\d+)"),
     ),
+    "fanuc": Script(
+        remark=" : !",
+        moves=r" : [LC] | :  P|\t[XW] =",
+        words=(
+            *(("L P", "J P"), ("L P", "C P"), ("C P", "L P"), ("mm/sec", "cm/min"), ("mm/sec", "sec")),
+            *(("FINE", "CNT100"), ("CNT", "CR"), ("FINE", ""), ("X =", "Y ="), ("Z =", "X ="), ("mm,", "m,")),
+            *(
+                (",3]", ",2]"),
+                ("<", ">"),
+                ("P[", "PR["),
+                (" ;", ""),
+                ("};", "}"),
+                ("GP1", "GP2"),
+                ("W =", "R ="),
+            ),
+        ),
+        modes=(
+            *(("UFRAME_NUM=1", "UFRAME_NUM=0"), ("UTOOL_NUM=1", "UTOOL_NUM=2"), ("UTOOL[1]", "UFRAME[1]")),
+            *(("UF : 1", "UF : 0"), ("UT : 1", "UT : 2"), ("'N U T", "'F U T"), ("'N U T", "'N D T")),
+            *(("1,*,*,*,*", "*,*,*,*,*"), ("=LPOS", "=JPOS"), ("THEN", ""), ("/POS", ""), ("/PROG", "/PRG")),
+        ),
+        offsets=r"PR\[|\t[XW] =",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *(" : ABORT ;", " : WAIT 0.50(sec) ;", " : DO[1]=(ON) ;", " : PAUSE ;", " : UFRAME_NUM=0 ;"),
+            *(
+                " : PR[1,3]=50 ;",
+                " : UTOOL[1]=PR[2] ;",
+                " : OVERRIDE=100% ;",
+                " : CALL OTHER ;",
+                " : JMP LBL[1] ;",
+            ),
+            *(" : L P[1] 100mm/sec FINE ;", " : PAYLOAD[2] ;", " : LINEAR_MAX_SPEED=2000 ;"),
+        ),
+        says=" : MESSAGE[{}] ;",
+        rates=(r"( )(\d+)(?=mm/sec)", r"(CNT)(\d+)", r"(WAIT )(\d+\.\d+)"),
+        first=6,
+        data="/POS",
+    ),
+    "doosan": Script(
+        remark="#",
+        moves=r"move[lc]\(|set_velx",
+        words=(
+            *(
+                ("movel", "movej"),
+                ("movec", "movel"),
+                ("movel", "amovel"),
+                ("radius", "ref"),
+                ("radius", "time"),
+            ),
+            *(
+                ("velx", "accx"),
+                ("here[2]", "here[1]"),
+                ("<", ">"),
+                ("x, y", "y, x"),
+                ("    ", ""),
+                (")[0]", ")"),
+            ),
+            *(
+                (", radius=", ", acc="),
+                ("tip", "top"),
+                ("on_paper(", "posx("),
+                ("))", "), mod=1)"),
+                ("abs", "sum"),
+            ),
+        ),
+        modes=(
+            *(
+                ('set_tcp("brush', 'set_tcp("hand'),
+                ("set_ref_coord(paper", "set_ref_coord(DR_BASE"),
+                ("(paper)", "()"),
+            ),
+            *(
+                ("ref=DR_BASE", "ref=DR_TOOL"),
+                ("paper = ", "sheet = "),
+                ("DR_PM_MESSAGE", "DR_PM_ALARM"),
+                ("def ", "de "),
+            ),
+        ),
+        offsets=r"paper =|here\[2\]|    return|if abs",
+        shifts=(-100, -1, 1, 0.2, 90),
+        more=(
+            *(
+                "exit()",
+                "wait(0.500)",
+                "set_digital_output(1, 1)",
+                'tp_log("x")',
+                "set_velx(300, 30)",
+                "set_accx(9000, 90)",
+            ),
+            *("set_ref_coord(DR_BASE)", "movel(posx(0, 0, 0, 0, 180, 0))", "stop(1)", 'set_tool("t")'),
+        ),
+        says='tp_log("{}")',
+        rates=(r"(set_velx\()(\d+\.\d+)", r"(radius=)(\d+\.\d+)", r"(set_accx\()(\d+\.\d+)"),
+    ),
+    "ros2": Script(
+        remark="#",
+        moves=r"-?\d",
+        words=(
+            *(
+                (",pose", ""),
+                ("way", "rest"),
+                ("000,", ","),
+                (",", ";"),
+                ("pose", "poses"),
+            ),
+            *(("1.0000", "0.9999"), ("0.", "-0."), (".", ","), ("0.0000", "0.0200"), ("1.0", "-1.0")),
+        ),
+        modes=(
+            ("x_m,y_m", "y_m,x_m"),
+            ("time_s", "time_ms"),
+            ("x_m", "x_mm"),
+            ("limit_m_s,", ""),
+            ("qx", "qw"),
+        ),
+        offsets=r"\d",
+        shifts=(-0.1, -0.001, 0.001, 0.1),
+        more=("0,0,0,0,0,0,0,1,0.1,pose", "1e3", "stop", "time_s", "5.0,0.4,0,0.2,1,0,0,0,0.1,pose"),
+        says="says,{}",
+        rates=(r"(^)(\d+\.\d+)",),
+        decimals=8,
+    ),
 }
+
+
+HEADS = ("COMMENT", "PROTECT", "DEFAULT_GROUP")
 
 
 class Page:
@@ -275,22 +401,25 @@ class Page:
         self.titles = [k for k in self.comments if re.search(r"stroke \d|paint: ", self.lines[k])]
         moves = self.script.moves if self.script else r"G[0-3] |M3 "
         self.moves = [k for k in self.code if re.match(moves, self.lines[k])]
+        data = self.script.data if self.script else ""
+        self.data = self.lines.index(data) if data in self.lines else len(self.lines)
 
     def _comment(self, line: str) -> bool:
         return line.startswith(self.remark)
 
     def _acts(self, k: int) -> bool:
-        return not self.lines[k].startswith(("def ", "MODULE ", "&", "DEF "))
+        return not self.lines[k].startswith(("def ", "MODULE ", "&", "DEF ", "/", *HEADS))
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot"))
-        last -= self.script.after if self.script else 0
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan", "ros2"))
+        last = min(last - (self.script.after if self.script else 0), self.data)
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))
 
     def made(self, words: str) -> str:
-        return f"{self.remark} {words}" if self.script else f"({words})"
+        end = " ;" if self.remark.startswith(" : ") else ""
+        return f"{self.remark} {words}{end}" if self.script else f"({words})"
 
 
 Damage = Callable[[Page, np.random.Generator], list[str] | None]
@@ -457,9 +586,10 @@ def feed(page, random):
 
 def word_lost(page, random):
     k = _pick(random, page.moves)
-    words = page.lines[k].split(" ")
+    between = " " if " " in page.lines[k].strip(" ") else ","  # of a table
+    words = page.lines[k].split(between)
     at = int(random.integers(len(words)))
-    return _with(page, k, " ".join(words[:at] + words[at + 1 :]))
+    return _with(page, k, between.join(words[:at] + words[at + 1 :]))
 
 
 def word_changed(page, random):
@@ -588,8 +718,10 @@ WORDS = (
 
 def remark(page, random):
     """A comment more, of somebody's own."""
-    at = int(random.integers(len(page.lines)))
+    at = int(random.integers(min(len(page.lines), page.data + 1)))
     at = max(at, page.script.first if page.script else 0)
+    while re.match(r" : !\+| :  P", page.lines[at] if at < len(page.lines) else ""):
+        at += 1  # not within what goes on in another line
     return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
 
 

@@ -16,12 +16,15 @@ import numpy as np
 
 from . import places
 from .dobot import run_dobot
+from .doosan import run_doosan
+from .fanuc import run_fanuc
 from .gcode import run_gcode
 from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
 from .printer import run_printer
 from .rapid import run_rapid
+from .ros2 import run_ros2
 from .urscript import run_urscript
 from .xarm import run_xarm
 
@@ -42,6 +45,9 @@ ROBOTS = {
     "xarm": run_xarm,
     "krl": run_krl,
     "dobot": run_dobot,
+    "fanuc": run_fanuc,
+    "doosan": run_doosan,
+    "ros2": run_ros2,
 }
 
 
@@ -131,7 +137,9 @@ class Job:
 
     def interpret(self, text: str) -> Run:
         if robot := ROBOTS.get(self.language):
-            return robot(text, self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell))
+            more = [self.cell["blending"].get("ramp_s", 0.5)] if self.language == "fanuc" else []
+            of = self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
+            return robot(text, *of, *more)
         if self.language in ("marlin", "klipper"):
             return run_printer(text, self.language, self.start, bool(self.cell.get("arc_segment_mm")))
         dialect = self.language.removesuffix("-servo")
@@ -653,7 +661,9 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
         return False
     if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
         return False
-    if max(leg.speed_mm_s for leg, _ in ours) > min(leg.speed_mm_s for leg, _ in theirs) + FASTER_MM_S:
+    # a row less between two with times: the same way in the same time
+    told = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
+    if max(leg.speed_mm_s for leg, _ in ours) > told + FASTER_MM_S:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False

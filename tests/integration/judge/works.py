@@ -28,6 +28,9 @@ CELLS = {
     "xarm": ("xarm6", ".py"),
     "krl": ("kr6-r900", ".src"),
     "dobot": ("cr5", ".lua"),
+    "fanuc": ("lrmate200id", ".ls"),
+    "doosan": ("m0609", ".drl"),
+    "ros2": ("fr3", ".csv"),
 }
 FEWER = ("marlin", "klipper", "fluidnc")  # share writer and reader with grbl: tried less often
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'

@@ -30,6 +30,6 @@ def border_file(args) -> None:
         header = header_lines.border_header(
             title, work.brush.name, count, work.plan.sheet_mm, outputs.notes(work), around_mm, made, job
         )
-        text = writer.text_of(post, replace(made, header=header))
+        text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
     warn_of_example(args, cell)
     write(args, {args.output: text}, seconds=duration_s(made))

@@ -41,7 +41,7 @@ def chart_file(args) -> None:
         if walk.problems:
             raise RefusedError(args.output, summarized(walk.problems))
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
-        files = {args.output: writer.encoded(suffix, made.plan, walk, brush, title)}
+        files = writer.in_files(args.output, writer.encoded(suffix, made.plan, walk, brush, title))
     if args.page:
         pdf = suffix_of(args.page) == ".pdf"
         with about(args.page):

@@ -16,6 +16,7 @@ from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
 from ...machine.paint_reload import in_loads
 from ...machine.posts import GCODE
+from ...machine.writer import beside
 from ...pipeline import outputs, prediction, preparation
 from ...pipeline.foreign_program import foreign_program
 from ...text_summary import summarized
@@ -29,14 +30,31 @@ from ..steps.prepared import prepare
 def check_file(args) -> None:
     from ...verification import against_plan, against_regenerated, simulate_program
     from ...verification.readback import read_program, text_of_file
+    from ...verification.readback.fanuc import called
     from ...verification.readback.header import made as made_of
+    from ...verification.readback.ros2 import as_table
     from ...verification.time_as_run import time_as_run_s
 
     check_places(args.preview)
     with about(args.program):
-        text = text_of_file(read_bytes(args.program))
+        data = read_bytes(args.program)
+        text = text_of_file(b"" if suffix_of(args.program) == ".cdr" else data)
         if suffix_of(args.program) in GCODE and not is_ours(text):
             return _check_foreign(args, text)
+        if suffix_of(args.program) == ".robodk":
+            raise Error(
+                "what a post of RoboDK's kind writes is in a language of its own, which is not read back",
+                code="program-format",
+            )
+        if suffix_of(args.program) == ".cdr":
+            raise Error(
+                "a serialized message says nothing of brush and paper: check the .csv of the same job",
+                code="program-format",
+            )
+        if suffix_of(args.program) == ".traj":
+            text = as_table(text)
+        others = called(text) if suffix_of(args.program) == ".ls" else []
+        text += "".join(text_of_file(read_bytes(beside(args.program, name))) for name in others)
         made = made_of(text)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(args, kind) is None and name not in names:

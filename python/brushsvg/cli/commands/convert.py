@@ -43,7 +43,8 @@ def convert_file(args) -> None:
             problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
         if problems:
             raise RefusedError(args.input, problems)
-        files = {args.output: writer.encoded(suffix, work.plan, walk, brush, work.title, notes)}
+        made = writer.encoded(suffix, work.plan, walk, brush, work.title, notes)
+        files = writer.in_files(args.output, made)
         if page:
             files[args.page] = page
         if args.preview:

@@ -25,6 +25,6 @@ def height_file(args) -> None:
         made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
         heights_mm = (args.highest, args.lowest, args.step)
         header = header_lines.height_header(brush.name, args.sheet, heights_mm, made)
-        text = writer.text_of(post, replace(made, header=header))
+        text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
     warn_of_example(args, cell)
     write(args, {args.output: text}, sum(1 for _ in made.sections()), duration_s(made))

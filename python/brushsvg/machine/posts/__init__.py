@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -16,7 +17,9 @@ class Post(NamedTuple):
     in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
     circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines. Where a firmware makes
     lines of circles, its cell says how long these are, 0 of one that is told no circles: see circles_by.
-    line_end: as the controller's own files have it.
+    line_end: as the controller's own files have it; has_tabs: so have they, too.
+    parted: the texts of several files, by name, "" that of the one which is asked for; None: there is but that one.
+    others: what writes files of other extensions in another way.
     """
 
     title: str
@@ -25,6 +28,9 @@ class Post(NamedTuple):
     in_robot_frame: bool = True
     circles_by: str = "centre"
     line_end: str = "\n"
+    has_tabs: bool = False
+    parted: Callable[[str], dict[str, str]] | None = None
+    others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -81,6 +87,48 @@ def _dobot(program: Program) -> Iterator[str]:
     return dobot(program)
 
 
+def _fanuc(program: Program) -> Iterator[str]:
+    from .fanuc import fanuc
+
+    return fanuc(program)
+
+
+def _fanuc_programs(text: str) -> dict[str, str]:
+    from .fanuc import programs
+
+    return programs(text)
+
+
+def _doosan(program: Program) -> Iterator[str]:
+    from .doosan import doosan
+
+    return doosan(program)
+
+
+def _ros2(program: Program) -> Iterator[str]:
+    from .ros2 import csv
+
+    return csv(program)
+
+
+def _ros2_json(program: Program) -> Iterator[str]:
+    from .ros2 import traj
+
+    return traj(program)
+
+
+def _ros2_message(program: Program) -> Iterator[bytes]:
+    from .ros2 import cdr
+
+    return cdr(program)
+
+
+def _robodk(program: Program) -> Iterator[str]:
+    from .robodk import robodk
+
+    return robodk(program)
+
+
 def circles_by(cell: Cell) -> str:
     """What tells a circle on this cell, see Post."""
     from ..cell import ARCS_IN_SEGMENTS
@@ -105,4 +153,14 @@ POSTS = {  # by the language a cell names
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
     "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
+    "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
+    "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose"),
+    "ros2": Post(
+        "poses with times for ROS 2",
+        (".csv", ".traj", ".cdr"),
+        _ros2,
+        circles_by="",
+        others={".traj": _ros2_json, ".cdr": _ros2_message},
+    ),
+    "robodk": Post("what a post of RoboDK's kind writes", (".robodk",), _robodk, False, "pose"),
 }

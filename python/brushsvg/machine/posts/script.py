@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cell import Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
-from ..motion import Move, Program, Wait
+from ..motion import Move, Program, Section, Wait
 from .text import number
 
 RISE_MM_S = 50.0
@@ -32,15 +32,22 @@ def body(program: Program, words: Words) -> Iterator[str]:
     """All sections; before the first move the tool goes straight up."""
     risen = False
     for section in program.sections():
-        yield "\n" + words.title(section.title)
-        for step in section.steps:
-            if isinstance(step, Wait):
-                yield words.wait(step)
-                continue
-            if not risen:
-                yield words.rise(min(step.speed_mm_s, RISE_MM_S))
-                risen = True
-            yield from words.lines(step)
+        yield "\n"
+        yield from told(section, words, risen)
+        risen = risen or bool(section.moves)
+
+
+def told(section: Section, words: Words, risen: bool) -> Iterator[str]:
+    """One section; risen: whether the tool has gone straight up before."""
+    yield words.title(section.title)
+    for step in section.steps:
+        if isinstance(step, Wait):
+            yield words.wait(step)
+            continue
+        if not risen:
+            yield words.rise(min(step.speed_mm_s, RISE_MM_S))
+            risen = True
+        yield from words.lines(step)
 
 
 def rounded_down(value: float, decimals: int) -> str:

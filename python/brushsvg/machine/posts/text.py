@@ -11,6 +11,7 @@ import numpy as np
 
 BRACKETS = {ord("("): "[", ord(")"): "]"}
 AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
+ENDS = {ord(";"): ","}  # an instruction of TP
 NAMED = 40  # letters of a name that no line of a program is too short for
 ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, whatever a stroke's length
 
@@ -27,7 +28,7 @@ def plain(text: str, room: int) -> str:
 
 def spelled(text: str) -> str:
     """A text with no letter that some language leaves out: what any program makes of it, until it is cut."""
-    return plain(text, len(text) * 18).translate(BRACKETS).translate(AT_ONCE)
+    return plain(text, len(text) * 18).translate(BRACKETS | AT_ONCE | ENDS)
 
 
 def told_apart(names: Sequence[str]) -> list[str]:

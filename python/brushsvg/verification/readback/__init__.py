@@ -148,11 +148,13 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}", code="program-format")
     if post.line_end != "\n":
         text = text.replace(post.line_end, "\n")
+    if post.has_tabs:
+        text = text.replace("\t", " ")
     if odd := re.search(r"[^\n -~]", text):
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", ";", "--", "popup", "TPWrite", "stop(", "print(")
+            ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(")
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
@@ -161,7 +163,9 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     return _READERS[cell.language](text, cell)
 
 
-_HUGE = re.compile(r"(?<![\d.])\d{10,}")  # no place in mm, no feed in mm/min: nothing can be computed with it
+_HUGE = re.compile(
+    r"(?<![\d.])0*[1-9]\d{9,}"
+)  # no place in mm, no feed in mm/min: nothing can be computed with it
 
 
 def _gcode(text: str, cell: Cell) -> Readback:
@@ -206,6 +210,24 @@ def _dobot(text: str, cell: Cell) -> Readback:
     return read_dobot(text, cell)
 
 
+def _fanuc(text: str, cell: Cell) -> Readback:
+    from .fanuc import read_fanuc
+
+    return read_fanuc(text, cell)
+
+
+def _doosan(text: str, cell: Cell) -> Readback:
+    from .doosan import read_doosan
+
+    return read_doosan(text, cell)
+
+
+def _ros2(text: str, cell: Cell) -> Readback:
+    from .ros2 import as_table, read_ros2
+
+    return read_ros2(as_table(text) if text.startswith("{") else text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -219,4 +241,7 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "xarm": _xarm,
     "krl": _krl,
     "dobot": _dobot,
+    "fanuc": _fanuc,
+    "doosan": _doosan,
+    "ros2": _ros2,
 }

@@ -47,12 +47,17 @@ def place(names: str) -> str:
     return ", ".join(f"(?P<{name}>{N})" for name in names)
 
 
-def read_script(text: str, script: Script, out: Readback) -> Readback:
-    """The program as steps and acts. Error with the line for what brushsvg does not write."""
+def read_script(
+    text: str, script: Script, out: Readback, lines: list[tuple[int, str]] | None = None
+) -> Readback:
+    """The program as steps and acts. Error with the line for what brushsvg does not write.
+
+    lines: with their numbers, where they run in another order than they stand in the text.
+    """
     reader = _Reader(script, out)
-    lines = [
-        (number, line.rstrip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")
-    ]
+    if lines is None:
+        numbered = enumerate(text.splitlines(), 1)
+        lines = [(number, line.rstrip(" ")) for number, line in numbered if line.strip(" ")]
     for number, line in lines:
         reader.line(number, line if script.is_indented else line.strip(" "))
     said = [reader.spelled(line.strip(" ")) for _, line in lines]
@@ -75,6 +80,8 @@ class _Reader:
             self._comment(number, line.lstrip(" ")[len(self.script.remark) :])
             return
         line = self.spelled(line)
+        if self.script.is_indented and not line.startswith(" "):
+            self.in_block = False
         for kind, pattern in self.script.lines:
             if found := pattern.fullmatch(line):
                 values = self._values(number, line, found)

@@ -1,0 +1,90 @@
+"""Moves -> DRL (.drl) for Doosan robots: millimetres, degrees, the paper as a user coordinate system."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..frames import zyz_deg
+from ..motion import Move, Program, Wait, via
+from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down
+from .text import number, plain, rows
+from .xarm import NAMES_LETTERS
+
+LINE_LIMIT = 100
+DEGREE_DECIMALS = 5
+SPEED_DECIMALS = 3
+TURNS = "30.000"  # degrees/s, of the tool, which never turns
+TCP = "brush"
+DOOSAN_END = "end: the brush is held up"
+
+CHECKS = f"""set_tcp("{TCP}")
+tip = get_current_posx(DR_BASE)[0]
+flange = get_current_tool_flange_posx(DR_BASE)
+tip_mm = sum((tip[k] - flange[k]) ** 2 for k in range(3)) ** 0.5
+"""
+STOPS = f"""    tp_popup("TCP {TCP} is not as long as the cell says", DR_PM_ALARM, 0)
+    exit()
+"""
+
+
+def doosan(program: Program) -> Iterator[str]:
+    """One script that runs from top to bottom. Points are those of the user coordinate system: to teach the paper
+    anew, only its line has to change. Scripts choose a tool by its name alone: that it is as long as the cell says is
+    asked before anything moves."""
+    cell, decimals = program.cell, program.cell.decimals
+    frame = program.robot_from_frame
+    paper = f"{numbers(frame[:3, 3], decimals)}, {numbers(zyz_deg(frame[:3, :3]), DEGREE_DECIMALS)}"
+    yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))
+    yield CHECKS
+    yield f"if abs(tip_mm - {number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
+    yield f"set_accx({rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURNS})\n"
+    yield f"paper = set_user_cart_coord(posx({paper}), ref=DR_BASE)\nset_ref_coord(paper)\n"
+    upright = numbers(zyz_deg(down(cell.tool.spin_deg)), DEGREE_DECIMALS)
+    yield f"\n\ndef on_paper(x, y, z):\n    return posx(x, y, z, {upright})\n\n"
+    words = Words(
+        comment,
+        lambda speed: _rise(number(program.rise_mm, decimals), speed),
+        _wait,
+        lambda move: _lines(move, decimals),
+    )
+    yield from body(program, words)
+    yield "\n" + comment(DOOSAN_END)
+
+
+def comment(text: str) -> str:
+    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+
+
+def _rise(height: str, speed_mm_s: float) -> str:
+    return (
+        f"here = get_current_posx(paper)[0]\n{_speed(speed_mm_s)}"
+        f"if here[2] < {height}:\n    here[2] = {height}\n    movel(here)\n"
+    )
+
+
+def _lines(move: Move, decimals: int) -> Iterator[str]:
+    yield _speed(move.speed_mm_s)
+    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
+    if move.arc is not None:
+        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        yield from rows(f"movec({point}, {point})", values, decimals)
+        return
+    blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
+    values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
+    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
+        if is_blended[run[0]]:
+            yield from rows(f"movel({point}, radius=%.{decimals}f)", values[run], decimals)
+        else:
+            yield from rows(f"movel({point})", values[run, :3], decimals)
+
+
+def _wait(step: Wait) -> str:
+    if step.seconds is None:
+        return f'tp_popup("{plain(step.message, 60).translate(QUIET)}", DR_PM_MESSAGE, 1)\n'
+    return f"wait({number(step.seconds, 3)})\n"
+
+
+def _speed(speed_mm_s: float) -> str:
+    return f"set_velx({rounded_down(speed_mm_s, SPEED_DECIMALS)}, {TURNS})\n"

@@ -1,0 +1,118 @@
+"""When the tool is where: a program's moves with times that the cell's speeds and acceleration allow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import sqrt
+
+import numpy as np
+
+from .motion import Move, Program, Wait
+
+POSE, WAY, REST = 0, 1, 2  # what a row is: a place of the plan, one on the way to it, the end of a wait
+SLICE_S = 0.02  # rows are so far apart where the speed changes: between two it counts as even
+LEAST_MM = 1e-6
+
+
+def timed(program: Program) -> Iterator[tuple[str, np.ndarray]]:
+    """(title, rows) of each section. rows (n, 6): time from the first place on [s], x, y, z [mm, the program's frame],
+    the speed that its move may have [mm/s], POSE, WAY or REST.
+
+    A move begins and ends at rest, and is at rest where nothing may be cut. Along straight lines the speed changes by
+    the cell's acceleration a. Through a joint of two lines that turns by t and may be cut from r on, it goes no faster
+    than an arc that touches both there allows: v^2 tan(t/2) / r <= a. Places are rounded as the cell's are.
+    """
+    a, decimals = program.cell.speeds.acceleration_mm_s2, program.cell.decimals
+    now_s, here = 0.0, None
+    for section in program.sections():
+        rows: list[tuple] = []
+        for step in section.steps:
+            if isinstance(step, Wait):
+                now_s += step.seconds or 0.0
+                rows.append((now_s, *here, 0.0, REST))
+                continue
+            if here is None:
+                here = tuple(np.round(step.points_mm[0], decimals).tolist())
+                rows.append((now_s, *here, step.speed_mm_s, POSE))
+            now_s, here = _moved(step, here, now_s, a, decimals, rows)
+        yield section.title, np.array(rows).reshape(-1, 6)
+
+
+def _moved(move: Move, here: tuple, now_s: float, a: float, decimals: int, rows: list) -> tuple[float, tuple]:
+    """Rows of a move, added; and when and where it ends."""
+    path = np.vstack([here, np.round(move.points_mm, decimals)])
+    steps = np.diff(path, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    goes = lengths > LEAST_MM
+    if not goes.any():
+        return now_s, here
+    at = np.flatnonzero(goes) + 1
+    steps, lengths = steps[goes], lengths[goes]
+    top = move.speed_mm_s
+    speeds = _speeds(lengths.tolist(), _caps(move, at, steps, lengths, a).tolist(), top, a)
+    places = path[at].tolist()
+    for k, length in enumerate(lengths.tolist()):
+        begin, end = speeds[k], speeds[k + 1]
+        peak = min(top, sqrt(a * length + (begin * begin + end * end) / 2))
+        rising_s, falling_s = (peak - begin) / a, (peak - end) / a
+        even_mm = max(length - (2 * peak * peak - begin * begin - end * end) / (2 * a), 0.0)
+        even_s = even_mm / peak if even_mm > LEAST_MM else 0.0
+        there = places[k]
+        changes = max(rising_s, falling_s) > SLICE_S / 2
+        for after_s, done_mm in (
+            () if not changes else _slices(begin, peak, rising_s, even_s, falling_s, length, end, a)
+        ):
+            part = done_mm / length
+            place = (x + part * (to - x) for x, to in zip(here, there, strict=True))
+            rows.append((now_s + after_s, *place, top, WAY))
+        now_s += rising_s + even_s + falling_s
+        here = tuple(there)
+        rows.append((now_s, *here, top, POSE))
+    return now_s, here
+
+
+def _caps(move: Move, at: np.ndarray, steps: np.ndarray, lengths: np.ndarray, a: float) -> np.ndarray:
+    """(n - 1,) the most that the speed may be through each joint of n lines."""
+    count = len(lengths)
+    if move.blends_mm is None or count < 2:
+        return np.zeros(count - 1)
+    along = steps / lengths[:, None]
+    cosine = np.clip((along[1:] * along[:-1]).sum(axis=1), -1.0, 1.0)
+    bend = np.sqrt((1 - cosine) / np.maximum(1 + cosine, 1e-12))  # tan(t / 2)
+    radii = move.blends_mm[at[:-1] - 1]
+    return np.sqrt(np.divide(a * radii, bend, out=np.full(count - 1, np.inf), where=bend > 1e-7))
+
+
+def _speeds(lengths: list[float], caps: list[float], top: float, a: float) -> list[float]:
+    """At both ends of each line and in all joints: what can be reached, and left in time."""
+    speeds = [0.0, *(min(cap, top) for cap in caps), 0.0]
+    for k, length in enumerate(lengths):
+        speeds[k + 1] = min(speeds[k + 1], sqrt(speeds[k] ** 2 + 2 * a * length))
+    for k in range(len(lengths) - 1, -1, -1):
+        speeds[k] = min(speeds[k], sqrt(speeds[k + 1] ** 2 + 2 * a * lengths[k]))
+    return speeds
+
+
+def _slices(
+    begin: float,
+    peak: float,
+    rising_s: float,
+    even_s: float,
+    falling_s: float,
+    length: float,
+    end: float,
+    a: float,
+) -> Iterator[tuple[float, float]]:
+    """(seconds, mm) after a line's beginning, where the speed changes for longer than a slice; none at its ends."""
+    if rising_s > SLICE_S / 2:
+        count = max(1, round(rising_s / SLICE_S))
+        last = count + 1 if even_s + falling_s > 0 else count
+        for k in range(1, last):
+            after_s = rising_s * k / count
+            yield after_s, begin * after_s + a * after_s * after_s / 2
+    if falling_s > SLICE_S / 2:
+        count = max(1, round(falling_s / SLICE_S))
+        first = 0 if even_s > 0 else 1
+        for k in range(first, count):
+            left_s = falling_s * (1 - k / count)
+            yield rising_s + even_s + falling_s - left_s, length - end * left_s - a * left_s * left_s / 2

@@ -1,0 +1,123 @@
+"""TP: jobs of more points than one program may have are several programs; remarks of more letters several lines."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnostics import refused
+from programs import RUNNABLE, call
+from test_robot_scripts import SQUARE, on, sound
+from test_urscript import text_for
+
+from brushsvg import _core
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.posts.fanuc import REMARK, programs
+from brushsvg.verification.readback import read_program
+from brushsvg.verification.readback.header import made
+
+
+def waves(strokes: int, poses: int):
+    t = np.linspace(0, 1, poses)
+    depth = -2 * np.minimum(1, 10 * np.minimum(t, 1 - t))
+    return _core.Plan(
+        *("round-6", "", (60.0, 60.0)),
+        [
+            _core.Pass(f"s{k}", np.column_stack([15 + 30 * t, 12 + k + 0.2 * np.sin(20 * t), depth]), 20.0)
+            for k in range(strokes)
+        ],
+    )
+
+
+@pytest.fixture
+def job(tmp_path, capsys):
+    """A program in three files."""
+    (tmp_path / "waves.json").write_text(_core.write_plan(waves(30, 90)))
+    words = str(tmp_path / "waves.json"), str(tmp_path / "waves.ls"), "--cell", "lrmate200id"
+    status, _, told = call(capsys, "convert", *words)
+    assert status == 0, told
+    return tmp_path
+
+
+def check(job, capsys) -> str:
+    status, out, told = call(capsys, "check", str(job / "waves.ls"), str(job / "waves.json"))
+    return out if status == 0 else " ".join(told)
+
+
+def test_a_long_job_is_a_program_that_calls_others(job, capsys):
+    parts = sorted(path for path in job.glob("*.ls") if path.name != "waves.ls")
+    assert len(parts) == 3
+    names = [path.stem for path in parts]
+    main = (job / "waves.ls").read_bytes().decode("ascii")
+    assert "".join(f" : CALL {name} ;\r\n" for name in names) in main
+    assert main.replace("\r\n", "").count("\n") == 0 and "mm/sec" not in main
+    texts = [path.read_bytes().decode("ascii") for path in parts]
+    assert all(
+        text.count("P[") <= 2 * 1000 and len(path.stem) == 8 for text, path in zip(texts, parts, strict=True)
+    )
+    assert RUNNABLE in check(job, capsys)
+    ran = sound("".join([main, *texts]), find_cell("lrmate200id"))
+    assert [words for words, _ in ran.titles][:2] == ["stroke 1 of 30: s0", "stroke 2 of 30: s1"]
+    assert len({name for name, _ in ran.titles}) == 31 and len(ran.legs) == 30 * 94
+
+
+def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
+    names = sorted(path.stem for path in job.glob("B*.ls") if path.name != "waves.ls")
+    whole = (job / "waves.ls").read_bytes()
+    first, second = (f" : CALL {name} ;\r\n".encode() for name in names[:2])
+    for changed, said in (
+        (whole.replace(first + second, second + first), "stroke 11"),
+        (whole.replace(second, b""), "stroke 21"),
+        (whole.replace(second, second + second), "called before"),
+        (whole.replace(names[0].encode(), b"BOTHER01"), "no such file"),
+    ):
+        (job / "waves.ls").write_bytes(changed)
+        assert said in check(job, capsys)
+    (job / "waves.ls").write_bytes(whole)
+    part = job / f"{names[1]}.ls"
+    part.write_bytes(part.read_bytes().replace(b"20mm/sec", b"90mm/sec", 5))
+    assert "while the brush touches" in check(job, capsys)
+
+
+def test_a_stroke_of_too_many_poses_is_refused(tmp_path, capsys):
+    (tmp_path / "a.json").write_text(_core.write_plan(waves(1, 997)))
+    words = "convert", str(tmp_path / "a.json"), str(tmp_path / "a.ls"), "--cell", "lrmate200id"
+    status, _, told = call(capsys, *words)
+    assert status == 1 and "1001 poses are outside the range [1, 1000]" in told[-1]
+    assert not (tmp_path / "a.ls").exists()
+
+
+def test_remarks_are_as_long_as_the_pendant_shows_them_and_read_as_they_were():
+    title = "one; two  " + "a long name of a drawing" * 3
+    header = (f"title: {title}", "brush: b, 3 strokes", "cell: lrmate200id, x")
+    text = text_for(on("lrmate200id", SQUARE), header=header).replace("\r\n", "\n")
+    remarks = [line for line in text.split("\n") if line.startswith(" : !")]
+    assert len(remarks) == 9 and max(map(len, remarks)) == len(" : !") + REMARK + len(" ;")
+    said = f"title: {title}".replace(";", ",")
+    assert made(text).title == said.removeprefix("title: ")
+    assert sound(text, find_cell("lrmate200id")).header[0] == said
+    acts = read_program(text, ".ls", on("lrmate200id", SQUARE)).acts
+    assert f"({said})" in [act.text for act in acts]
+
+
+def test_programs_are_told_apart_by_name():
+    text = text_for(find_cell("lrmate200id"))
+    assert list(programs(text)) == [""] and programs(text)[""] == text
+
+
+def test_corners_are_cut_by_the_time_to_speed():
+    """Twice as long a ramp: half of the percents."""
+    cell = on("lrmate200id", SQUARE)
+    cell = replace(cell, blending=replace(cell.blending, tolerance_mm=0.04))
+    slow = replace(cell, blending=replace(cell.blending, ramp_s=1.0))
+    percents = [
+        [int(word[3:]) for word in text_for(each).split() if word.startswith("CNT")] for each in (cell, slow)
+    ]
+    assert percents[0] and all(abs(a - 2 * b) <= 1 for a, b in zip(*percents, strict=True))
+
+
+def test_what_no_pendant_shows_is_refused():
+    cell = find_cell("lrmate200id")
+    with refused("out-of-range configuration 'N U'"):
+        parse_cell(write_cell(replace(cell, tool=replace(cell.tool, configuration="N U"))))
+    with refused("out-of-range 'time to speed'"):
+        parse_cell(write_cell(find_cell("cr5")).replace("radius_mm = 2.0", "radius_mm = 2.0\nramp_s = 0.4"))

@@ -1,0 +1,92 @@
+"""A post of RoboDK's kind is called with what the arm shall do, and what it cannot do is refused."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnostics import refused
+from programs import call
+from test_urscript import ARC, STROKES, text_for
+
+from brushsvg.machine.cell import Reload, RoboDK, Station
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+
+POST = Path(__file__).with_name("robodk_post.py")
+
+
+def cell_with(post: Path):
+    cell = find_cell("kr6-r900")
+    return replace(cell, name="mine", language="robodk", robodk=RoboDK(str(post)))
+
+
+def test_the_post_is_called_for_each_move(capsys):
+    hand = Station("hand", (120.0, 50.0), by_hand=True)
+    ink = Station("ink", (120.0, 10.0), ("#ff0000",), depth_mm=5.0, hold_s=0.5)
+    cell = replace(cell_with(POST), reload=Reload("layer"), stations=(ink, hand))
+    lines = text_for(cell, colours=("#ff0000", "#ff0000", "#000000")).splitlines()
+    assert capsys.readouterr().out == "", "what a post prints is no output of brushsvg"
+    assert lines[:5] == [
+        *("start brushsvg", "; title: two strokes", "frame -150.000 -650.000 20.000 down 1"),
+        *("tool 0.000 0.000 150.000 down 1", "acceleration 500"),
+    ]
+    places = np.array([list(map(float, line.split()[1:4])) for line in lines if line.startswith("line")])
+    wanted = np.array([*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], ARC[0], *STROKES["turn"][10:]])
+    assert np.linalg.norm(places[None] - wanted[:, None], axis=2).min(axis=1).max() < 1e-3
+    assert all(line.endswith("down -1") for line in lines if line.startswith(("line", "circle")))
+    (circle,) = (line for line in lines if line.startswith("circle"))
+    assert list(map(float, circle.split(" to ")[1].split()[:3])) == pytest.approx(ARC[8], abs=1e-3)
+    at = lines.index("line 12.500 10.000 -3.000 down -1")
+    assert lines[at - 1] == "zone 0.039" and lines[at + 1] == "zone 0.152"
+    assert "pause 500" in lines and lines[lines.index("pause -1") - 1] == "say dip the brush: hand"
+    assert lines[-1] == "finish"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("class RobotPost", "class Post", "post-failed RobotPost"),
+        ("def setZoneData", "def setZones", "post-failed setZoneData"),
+        ('LOG = ""', 'LOG = "circles are lines"', "post-failed 'circles are lines'"),
+        ("assert joints is None", "joints[0]", "post-failed TypeError"),
+        ('print("SAVED")', "return", "post-failed '0 files'"),
+        ("class RobotPost", "import nowhere\n\n\nclass RobotPost", "post-failed nowhere"),
+        ("def ", "de ", "post-failed SyntaxError"),
+    ],
+)
+def test_what_a_post_cannot_do_is_refused(tmp_path, old, new, said):
+    text = POST.read_text()
+    assert old in text
+    (tmp_path / "post.py").write_text(text.replace(old, new, 1))
+    with refused(said):
+        text_for(cell_with(tmp_path / "post.py"))
+
+
+def test_a_post_that_is_nowhere_and_tables_of_other_languages_are_refused(tmp_path):
+    with refused("file-unreadable nowhere.py"):
+        text_for(cell_with(tmp_path / "nowhere.py"))
+    with refused("key-missing robodk"):
+        parse_cell(write_cell(replace(cell_with(POST), robodk=None)))
+    with refused("key-missing post"):
+        parse_cell(write_cell(replace(cell_with(POST), language="krl")))
+
+
+def test_it_is_written_and_not_checked(tmp_path, capsys):
+    (tmp_path / "mine.toml").write_text(write_cell(cell_with(POST)))
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50">'
+        '<path id="p" d="M20 25 L48 27" fill="none" stroke="#000" stroke-width="2"/></svg>'
+    )
+    out = str(tmp_path / "a.robodk")
+    status, _, told = call(
+        capsys, "convert", str(tmp_path / "a.svg"), out, "--cell", str(tmp_path / "mine.toml")
+    )
+    assert status == 0, told
+    assert Path(out).read_text().startswith("start brushsvg\n; title: ")
+    status, _, told = call(capsys, "check", out, "--cell", str(tmp_path / "mine.toml"))
+    assert status == 1 and "not read back" in told[-1]
+    (tmp_path / "mine.toml").write_text(write_cell(cell_with(tmp_path / "none.py")))
+    status, _, told = call(
+        capsys, "convert", str(tmp_path / "a.svg"), out, "--cell", str(tmp_path / "mine.toml")
+    )
+    assert status == 1 and "there is no post" in told[-1] and len(told[-1].split("Traceback")) == 1

@@ -1,0 +1,189 @@
+"""Poses with times for ROS 2: what a table says, what rosbags makes of the message, and that times can be kept."""
+
+import json
+import re
+from dataclasses import replace
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+from diagnostics import refused
+from judge import places
+from judge.ros2 import run_ros2
+from programs import RUNNABLE, call, program
+from test_robot_scripts import GOLDEN, LEANING, SQUARE, TURNED, on
+from test_urscript import ARC, BRUSH, STROKES, text_for
+
+from brushsvg import _core
+from brushsvg.machine.cell import Reload, Station, robot_from_paper
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.trajectory import POSE, SLICE_S, timed
+from brushsvg.machine.writer import text_of
+from brushsvg.verification.readback import read_program
+
+WAVE = np.linspace(0, 1, 40)
+POSES = np.column_stack(
+    [20 + 40 * WAVE, 30 + 4 * np.sin(9 * WAVE), -2 * np.minimum(1, 8 * np.minimum(WAVE, 1 - WAVE))]
+)
+
+
+def made(cell):
+    plan = _core.Plan("b", "", (100.0, 60.0), [_core.Pass("wave", POSES, 20.0)])
+    return program(plan, BRUSH, cell)
+
+
+def table(cell) -> np.ndarray:
+    return np.vstack([rows for _, rows in timed(in_robot_frame(made(cell)))])
+
+
+def run(text: str, cell):
+    spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
+    tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
+    return run_ros2(text, (0.0, 0.0, 0.0), robot_from_paper(cell), spin, tool)
+
+
+@pytest.mark.parametrize("paper", [SQUARE, TURNED, LEANING], ids=["square", "turned", "leaning"])
+def test_the_brush_goes_through_the_plans_poses(paper):
+    cell = on("fr3", paper)
+    cell = replace(cell, tool=replace(cell.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=30.0))
+    text = text_for(cell)
+    ran = run(text, cell)
+    assert not ran.refused and not ran.acts and max(leg.tilt_rad for leg in ran.legs) < 1e-6
+    ends = places.moved(np.linalg.inv(robot_from_paper(cell)), np.array([leg.end for leg in ran.legs]))
+    wanted = np.array([*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *ARC, *STROKES["turn"][10:]])
+    away_mm = np.linalg.norm(ends[None] - wanted[:, None], axis=2).min(axis=1)
+    assert away_mm.max() < 1e-3
+    on_paper = np.minimum(ends[1:, 2], ends[:-1, 2]) < 0
+    speeds = np.array([leg.speed_mm_s for leg in ran.legs[1:]])
+    assert speeds[on_paper].max() < 20.01 and speeds.max() < 100.01
+
+
+def test_speeds_and_accelerations_are_the_cells():
+    """Differences of rows, which the table's rounding changes by little."""
+    cell = on("fr3", SQUARE)
+    most = cell.speeds.acceleration_mm_s2
+    rows = table(cell)
+    after_s = np.diff(rows[:, 0])
+    assert after_s.min() > 0
+    steps = np.diff(rows[:, 1:4], axis=0)
+    ways = np.linalg.norm(steps, axis=1)
+    speeds = ways / after_s
+    assert (speeds <= rows[1:, 4] * (1 + 1e-6)).all()
+    # even acceleration: the mean speeds of two rows are so far apart as their middles in time
+    changes = np.abs(np.diff(speeds)) / (after_s[1:] + after_s[:-1]) * 2
+    assert changes.max() < most * 1.01
+    ramps = (after_s < 1.5 * SLICE_S) & (speeds < 0.99 * rows[1:, 4])
+    assert ramps.sum() > 20 and np.median(changes[ramps[1:] & ramps[:-1]]) > 0.5 * most
+
+
+def test_corners_that_cannot_be_cut_are_stopped_at_and_others_are_slow():
+    cell = on("fr3", SQUARE)
+    rows = table(cell)
+    gentle = replace(cell, speeds=replace(cell.speeds, acceleration_mm_s2=20.0))
+    stiff = replace(cell, blending=replace(cell.blending, tolerance_mm=0.0))
+    assert table(gentle)[-1, 0] > 1.5 * rows[-1, 0]
+    assert table(stiff)[-1, 0] > 1.2 * rows[-1, 0]
+    poses = rows[rows[:, 5] == POSE]
+    middle = np.flatnonzero(poses[:, 4] == 20.0)[5:-5]
+    speeds = np.linalg.norm(np.diff(poses[middle, 1:4], axis=0), axis=1) / np.diff(poses[middle, 0])
+    assert speeds.max() > 19.0 and speeds.min() > 10.0, "the brush does not stop on its way"
+
+
+def message(text: str) -> tuple[list[list[float]], str, str]:
+    """Times, places and turns of a table; its frames."""
+    rows = [line.split(",") for line in text.splitlines() if line[0] in "-0123456789"]
+    frames = re.search(r"# frame: (\S+)\n# link: (\S+)", text).groups()
+    return [[float(cell) for cell in row[:8]] for row in rows], *frames
+
+
+def test_json_has_the_rows_of_the_table():
+    cell = on("fr3", SQUARE)
+    post, whole = POSTS["ros2"], made(cell)
+    csv, traj = ("".join(text_of(post, whole, suffix)) for suffix in (".csv", ".traj"))
+    rows = json.loads(traj)["rows"]
+    told = [row for row in rows if len(row) == 10 and row[0] != "time_s"]
+    assert [row[:8] for row in told] == message(csv)[0]
+    assert {row[9] for row in told} == {"pose", "way"}
+    read = [read_program(text, ".csv", cell) for text in (csv, traj)]
+    assert [act[1:] for act in read[0].acts] == [act[1:] for act in read[1].acts]
+
+
+@pytest.mark.skipif(not find_spec("rosbags"), reason="rosbags is not installed")
+@pytest.mark.parametrize("name", ["fr3_link8", "tool0", "arm/flange", "a"])
+def test_rosbags_reads_the_message(name):
+    """Names of other lengths put the doubles at other places."""
+    from rosbags.typesys import Stores, get_typestore
+
+    cell = on("fr3", TURNED)
+    cell = replace(cell, tool=replace(cell.tool, flange_frame=name))
+    rows, frame, link = message("".join(text_of(POSTS["ros2"], made(cell))))
+    data = b"".join(text_of(POSTS["ros2"], made(cell), ".cdr"))
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    kind = "trajectory_msgs/msg/MultiDOFJointTrajectory"
+    told = store.deserialize_cdr(data, kind)
+    assert (told.header.frame_id, list(told.joint_names)) == (frame, [link]) == ("fr3_link0", [name])
+    assert len(told.points) == len(rows) > 60
+    for point, row in zip(told.points, rows, strict=True):
+        (one,) = point.transforms
+        at, turn, time = one.translation, one.rotation, point.time_from_start
+        assert time.sec + 1e-9 * time.nanosec == pytest.approx(row[0], abs=1e-7)
+        assert (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w) == pytest.approx(row[1:])
+        assert len(point.velocities) == len(point.accelerations) == 0
+    assert bytes(store.serialize_cdr(told, kind)) == data
+
+
+def test_a_job_as_table_and_as_json_may_be_run(tmp_path, capsys):
+    plan = _core.Plan("round-6", "", (100.0, 60.0), [_core.Pass("wave", POSES, 20.0)])
+    (tmp_path / "a.json").write_text(_core.write_plan(plan))
+    for suffix in (".csv", ".traj", ".cdr"):
+        out = str(tmp_path / f"a{suffix}")
+        assert call(capsys, "convert", str(tmp_path / "a.json"), out, "--cell", "fr3")[0] == 0
+        status, said, told = call(capsys, "check", out, str(tmp_path / "a.json"))
+        assert (RUNNABLE in said) if suffix != ".cdr" else (status == 1 and "check the .csv" in told[-1])
+    text = (tmp_path / "a.traj").read_text()
+    (tmp_path / "a.traj").write_text(text.replace('0.02,"pose"', '0.02,"way"', 1))
+    assert call(capsys, "check", str(tmp_path / "a.traj"))[0] == 1
+    (tmp_path / "a.traj").write_text(text[:-4])
+    assert "no JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
+
+
+def test_golden():
+    assert text_for(find_cell("fr3")).encode("ascii") == (GOLDEN / "two_strokes.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("0.02,pose", "0.03,pose", "line-unread limit"),
+        ("\n0.7700000", "\n0.7450000", "line-unread time"),
+        ("\n0.7700000", "\n0.7450001", "speed-out-of-range"),
+        ("1.000000000,0.000000000,0", "0.999900000,0.014000000,0", "tool-turned"),
+        ("1.000000000,0", "1.200000000,0", "line-unread quaternion"),
+        ("0.0000000,", "0.1000000,", "line-unread 'time 0'"),
+        ("time_s,", "", "line-unread"),
+        (",way", ",rest", "line-unread rests"),
+        ("# end: the brush is held up\n", "", "program-cut-short"),
+    ],
+)
+def test_what_the_reader_refuses(old, new, said):
+    text = text_for(find_cell("fr3"))
+    assert old in text
+    with refused(said):
+        read_program(text.replace(old, new, 1), ".csv", find_cell("fr3"))
+
+
+def test_a_person_cannot_be_waited_for_and_frames_have_names():
+    cell = find_cell("fr3")
+    by_hand = replace(cell, reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),))
+    for each, said in (
+        (by_hand, "cell-station person"),
+        (replace(cell, tool=replace(cell.tool, base_frame="a b")), "name-invalid 'a b'"),
+        (
+            replace(find_cell("cr5"), tool=replace(find_cell("cr5").tool, base_frame="base")),
+            "out-of-range frames",
+        ),
+    ):
+        with refused(said):
+            parse_cell(write_cell(each))
