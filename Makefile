@@ -12,7 +12,7 @@ SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -20,6 +20,7 @@ help:
 	@echo "make quick        what is tested in a minute, for every save: all but slow tests, the laws and C++"
 	@echo "make integration  longer tests: brushes fitted to painted sheets; LinuxCNC, Inkscape, Chromium, real lettering (installs them)"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
+	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
@@ -140,9 +141,14 @@ bench: setup
 	if [ -f $$font ]; then $(BIN)/pip install -q -e '.[bench]' --no-build-isolation; $(BIN)/python benchmarks/outlines.py $$font; fi
 	$(BIN)/python benchmarks/preview.py
 
+docs: setup
+	@$(BIN)/pip install -q --no-build-isolation -e ".[docs]"
+	$(BIN)/python -m sphinx -q -W -b html docs docs/_build
+	echo "open docs/_build/index.html"
+
 plugins:
 	@mkdir -p dist
 	$(PYTHON) tools/zip_plugin.py plugins/inkscape dist/brushsvg-inkscape.zip
 
 clean:
-	@rm -rf build demo $(VENV)
+	@rm -rf build demo docs/_build docs/reference $(VENV)

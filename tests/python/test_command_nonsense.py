@@ -157,7 +157,7 @@ def test_whatever_is_written_may_have_no_place(desk, capsys, command):
 
 
 def test_no_command_is_forgotten():
-    from brushsvg.cli.arguments.parser import _parser
+    from brushsvg.cli.arguments.parser import command_parser
 
     def names(parser) -> set[str]:
         found = set()
@@ -167,7 +167,7 @@ def test_no_command_is_forgotten():
         return found
 
     reads_nothing = {"brush list", "cell list", "article"}  # test_article.py has the places of the last
-    assert names(_parser()) - reads_nothing == {
-        next(name for name in names(_parser()) if f"{command} ".startswith(f"{name} "))
+    assert names(command_parser()) - reads_nothing == {
+        next(name for name in names(command_parser()) if f"{command} ".startswith(f"{name} "))
         for command in COMMANDS
     }

@@ -11,7 +11,7 @@ from . import brushes, drawings, machines
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
     """The choices; `run` names a function of `commands`. SystemExit on --help, --version and wrong usage."""
-    args = _parser().parse_args(argv)
+    args = command_parser().parse_args(argv)
     if "check" in args:
         args.check(args)
     return args
@@ -45,7 +45,7 @@ class _Version(argparse.Action):
 
 
 @functools.cache  # the flags of all commands take longer than what a short one does
-def _parser() -> argparse.ArgumentParser:
+def command_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="brushsvg", description="Vector lettering to brush strokes that a robot can paint.")
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     parser.add_argument(
