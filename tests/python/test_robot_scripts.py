@@ -227,6 +227,7 @@ REFUSED = [
     ("cr5", "{speed = 20}", "{speed = 20, r = -1}", "line-unread blend"),
     ("cr5", "{speed = 20}", "{speed = 20, cp = 1}", "line-unread"),
     ("cr5", "User(1)\nTool(1)\n", "Tool(1)\nSetTool(1, {0, 0, 0, 0, 0, 0})\nUser(1)\n", "line-unread chosen"),
+    ("cr5", "\nend\n", "\nCP(0)\nend\n", "line-unread function"),
     ("cr5", "\n-- end: the brush is held up", "", "program-cut-short"),
     ("lrmate200id", "/ATTR\r\n", "", "line-unread COMMENT"),
     ("lrmate200id", " : L P[4]", " : J P[4]", "line-unread"),

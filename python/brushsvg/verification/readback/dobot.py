@@ -52,8 +52,21 @@ def read_dobot(text: str, cell: Cell) -> Readback:
         turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg)).tolist()),
     )
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
-    held = ("CP(0)", "CP(-0)")  # whether it is said or not
-    out.acts = _with_settings_sorted([act for act in out.acts if act.text not in held])
+    out.acts = _with_settings_sorted(_without_held(out.acts))
+    return out
+
+
+def _without_held(acts: list[Act]) -> list[Act]:
+    """Without what holds whether it is said or not. Error with the line where it is said in the function: Lua lets nothing
+    stand behind its `return`."""
+    out, in_function = [], False
+    for act in acts:
+        in_function = act.text.startswith("function ") or (in_function and act.text != "end")
+        is_held = act.text in ("CP(0)", "CP(-0)")
+        if is_held and in_function:
+            raise Error(f"line {act.line}: {act.text!r} stands in the function", code="line-unread")
+        if not is_held:
+            out.append(act)
     return out
 
 
