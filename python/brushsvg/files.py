@@ -37,6 +37,8 @@ def read_bytes(path: str | os.PathLike) -> bytes:
         sentence = "there is no such file"
     except IsADirectoryError:
         sentence = "this is a directory, not a file"
+    except Error:  # of what is written, made while it is written
+        raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         sentence = f"the file cannot be read: {reason(problem)}"
     raise Error(sentence, file=os.fspath(path), code="file-unreadable")

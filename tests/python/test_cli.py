@@ -75,7 +75,7 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
 
 
 WRITERS = {  # what is typed, what is written, and what more is said of it
-    "convert a.svg out.ngc": "2 strokes, takes about [0-9]+ s",
+    "convert a.svg out.ngc": "2 strokes, takes about [0-9]+ s, stops once for another pen",
     "convert a.svg out.json": "2 strokes, takes about [0-9]+ s",
     "convert plan.json out.ngc --from-stroke 2": "1 stroke, takes about [0-9]+ s",
     "predict a.svg out.png": "2 strokes, takes about [0-9]+ s",

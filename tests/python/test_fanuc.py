@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import in_json, is_told, refused
 from programs import RUNNABLE, call
 from test_robot_scripts import SQUARE, on, sound
 from test_urscript import text_for
@@ -75,14 +75,15 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
     (job / "waves.ls").write_bytes(whole)
     part = job / f"{names[1]}.ls"
     part.write_bytes(part.read_bytes().replace(b"20mm/sec", b"90mm/sec", 5))
-    assert "while the brush touches" in check(job, capsys)
+    told = in_json(capsys, "check", job / "waves.ls", job / "waves.json")[2]
+    assert is_told(told, "speed-out-of-range 90.0")
 
 
 def test_a_stroke_of_too_many_poses_is_refused(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(1, 997)))
     words = "convert", str(tmp_path / "a.json"), str(tmp_path / "a.ls"), "--cell", "lrmate200id"
-    status, _, told = call(capsys, *words)
-    assert status == 1 and "1001 poses are outside the range [1, 1000]" in told[-1]
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and is_told(told, "poses-too-many 1001 1000")
     assert not (tmp_path / "a.ls").exists()
 
 

@@ -308,3 +308,10 @@ def required(table) -> set[str]:
 def tables_of(cell: Cell) -> dict[str, object]:
     """The tables that the cell has, by name."""
     return {name: getattr(cell, name) for name in TABLES if is_dataclass(getattr(cell, name))}
+
+
+def why_no_waiting(cell: Cell) -> str:
+    """Why a program for this cell cannot wait for a person; "" where it can."""
+    if cell.language == "ros2":
+        return "a trajectory cannot wait for a person"
+    return "a servo's brush falls while the program waits" if cell.servo else ""

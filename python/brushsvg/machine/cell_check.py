@@ -21,6 +21,7 @@ from .cell import (
     entries,
     robot_from_paper,
     value_mm,
+    why_no_waiting,
 )
 from .frames import moved, normal_tilt_deg
 from .move_extents import from_origin, ways
@@ -328,16 +329,8 @@ def _check_paint(cell: Cell) -> None:
 
 def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
     if station.by_hand:
-        if cell.language == "ros2":
-            raise Error(
-                "a trajectory cannot wait for a person: by_hand cannot be", where=where, code="cell-station"
-            )
-        if cell.servo:
-            raise Error(
-                "a servo's brush falls while the program waits: by_hand cannot be",
-                where=where,
-                code="cell-station",
-            )
+        if why := why_no_waiting(cell):
+            raise Error(f"{why}: by_hand cannot be", where=where, code="cell-station")
         return
     top = cell.heights.safe_mm - cell.heights.clearance_mm
     if not station.surface_mm <= station.rim_mm <= top:

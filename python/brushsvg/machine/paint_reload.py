@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length
 from .arc_chords import chords, with_chords
-from .cell import Cell, Station, robot_from_paper
+from .cell import Cell, Station, robot_from_paper, why_no_waiting
 from .distortion import is_similar
 from .frames import is_upright
 from .pass_way import on_way
@@ -148,8 +148,8 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
 
 
 def may_pause(cell: Cell) -> bool:
-    """Whether the program stops for another pen: a servo's brush would fall while it waits."""
-    return cell.pause_per_colour and not cell.servo
+    """Whether the program stops for another pen."""
+    return cell.pause_per_colour and not why_no_waiting(cell)
 
 
 def pen(colour: str) -> Station:
@@ -180,9 +180,7 @@ def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[
     """A notice where strokes of several colours are painted in one go that nobody asked for."""
     if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
         return []
-    sentence = (
-        "strokes of several colours are painted with one pen: a servo's brush would fall while it waits"
-    )
+    sentence = f"strokes of several colours are painted with one pen: {why_no_waiting(cell)}"
     return [Notice("", sentence, code="colours-as-one", advice="--layer or --select paints one of them")]
 
 

@@ -57,8 +57,8 @@ def read_dobot(text: str, cell: Cell) -> Readback:
 
 
 def _without_held(acts: list[Act]) -> list[Act]:
-    """Without what holds whether it is said or not. Error with the line where it is said in the function: Lua lets nothing
-    stand behind its `return`."""
+    """Without what holds whether it is said or not. Error with the line where it is said in the function: Lua lets
+    nothing stand behind its `return`."""
     out, in_function = [], False
     for act in acts:
         in_function = act.text.startswith("function ") or (in_function and act.text != "end")

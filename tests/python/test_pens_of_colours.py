@@ -23,7 +23,7 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", [name for name in LANGUAGES if name != "grbl-servo"])
+@pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in ("grbl-servo", "fr3")])
 def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, name):
     program = f"pens{LANGUAGES[name]}"
     status, _, said = call(capsys, "convert", "pens.svg", program, "--cell", name)
@@ -49,8 +49,10 @@ def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
 
 
 def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
-    said = in_json(capsys, "convert", "pens.svg", "pens.nc", "--cell", "grbl-servo")[2]
-    assert is_told(said, "colours-as-one")
+    for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3")):
+        status, _, said = in_json(capsys, "convert", "pens.svg", program, "--cell", name)
+        assert status == 0 and is_told(said, "colours-as-one")
+        assert call(capsys, "check", program, "pens.svg")[0] == 0
     one = replace(find_cell("linuxcnc-3axis"), name="one", pause_per_colour=False)
     (desk / "one.toml").write_text(write_cell(one))
     said = " ".join(call(capsys, "convert", "pens.svg", "pens.ngc", "--cell", "one.toml")[2])
