@@ -37,8 +37,6 @@ def read_bytes(path: str | os.PathLike) -> bytes:
         sentence = "there is no such file"
     except IsADirectoryError:
         sentence = "this is a directory, not a file"
-    except Error:  # of what is written, made while it is written
-        raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         sentence = f"the file cannot be read: {reason(problem)}"
     raise Error(sentence, file=os.fspath(path), code="file-unreadable")
@@ -109,6 +107,8 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
         for path in list(beside):
             os.replace(beside[path], targets[path])
             del beside[path]
+    except Error:  # of what is written, made while it is written
+        raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         raise Error(
             f"the file cannot be written: {reason(problem)}", file=os.fspath(path), code="file-unwritable"
