@@ -144,6 +144,27 @@ class Machine:
 
 
 @dataclass(frozen=True)
+class Arm:
+    """The arm's links and joints: `convert`, `check` and `cell place` then follow its joints along the whole program."""
+
+    name: str = _key("of the arm", "text")
+    source: str = _key("where its numbers are from", "text")
+    dh: tuple = _key(
+        "a row for each joint, a and d in mm, alpha and theta in degrees: turned by theta and the joint about z, "
+        "along z by d, along x by a, turned about x by alpha",
+        (None, 4),
+    )
+    limits_deg: tuple = _key("least and greatest angle of each joint", (None, 2), -1e4, 1e4)
+    speeds_deg_s: tuple = _key("the most that each joint turns by in a second", (None,), 0.1, 1e4)
+    base_mm: tuple = _key("where the first joint's frame lies in the robot's", (3,), default=(0.0, 0.0, 0.0))
+    base_rotation_deg: tuple = _key("of that frame, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0))
+    flange_rotation_deg: tuple = _key(
+        "of the flange behind the last joint, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
+    )
+    prebuilt: str = _key("an arm of the same links that the library ssik has ready", "text", default="")
+
+
+@dataclass(frozen=True)
 class Station:
     """A vessel, or a place to wait for a person with one. In the paper's frame, as all heights."""
 
@@ -190,6 +211,7 @@ class Cell:
     servo: Servo | None = None
     reload: Reload | None = None
     machine: Machine | None = None
+    arm: Arm | None = None
     stations: tuple[Station, ...] = ()
 
 
@@ -203,8 +225,9 @@ TABLES = {
     "servo": Servo,
     "reload": Reload,
     "machine": Machine,
+    "arm": Arm,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload", "machine")
+OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "arm")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot"), "tool"
 )
