@@ -155,7 +155,9 @@ class Arm:
         (None, 4),
     )
     limits_deg: tuple = _key("least and greatest angle of each joint", (None, 2), -1e4, 1e4)
-    speeds_deg_s: tuple = _key("the most that each joint turns by in a second", (None,), 0.1, 1e4)
+    speeds_deg_s: tuple = _key(
+        "the most that each joint turns by in a second; none: not asked", (None,), 0.1, 1e4, default=()
+    )
     base_mm: tuple = _key("where the first joint's frame lies in the robot's", (3,), default=(0.0, 0.0, 0.0))
     base_rotation_deg: tuple = _key("of that frame, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0))
     flange_rotation_deg: tuple = _key(

@@ -73,7 +73,7 @@ def _check_arm(cell: Cell) -> None:
     if len(arm.dh) != JOINTS:
         raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
     for key in ("limits_deg", "speeds_deg_s"):
-        if len(given := getattr(arm, key)) != JOINTS:
+        if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
             sentence = f"{len(given)} values are given for {JOINTS} joints"
             raise Error(sentence, where=f"arm.{key}", code="cell-arm")
     for number, (low, high) in enumerate(arm.limits_deg, 1):

@@ -86,8 +86,6 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         for station in cell.stations:
             one = [visit(station, brush, cell)]
             problems += walked_astray(one, made.robot_from_frame, cell, loads.sheet_mm)
-    if not problems:
-        problems += out_of_arm(made, loads.sheet_mm)
     if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]

@@ -11,7 +11,7 @@ from ..errors import Error
 from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper
 from .distortion import told_mm
 from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
-from .program import approach_mm_s, astray_in, over, safely_over
+from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
 from .workspace_limits import touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
@@ -141,6 +141,6 @@ def _unless_astray(sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0
         return (at_told_speeds(section, cell) for section in sections())
 
     made = Program((), cell, frame, told, *rises_mm, touching_mm_s(brush, cell))
-    for notice in astray_in(made, sheet_mm):
-        raise Error(notice.sentence, code=notice.code)
+    for notice in astray_in(made, sheet_mm) or out_of_arm(made, sheet_mm):
+        raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return made

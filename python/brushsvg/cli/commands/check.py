@@ -14,11 +14,12 @@ from ...machine.cell import Cell
 from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
 from ...machine.paint_reload import in_loads
+from ...machine.program import out_of_arm
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
-from ..steps.options import brush_of, exact_cell, typed
+from ..steps.options import brush_of, exact_cell, typed, warn_of_arm
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
 
@@ -44,6 +45,7 @@ def check_file(args) -> None:
         brush = brush_of(args.brush) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, suffix_of(args.program), cell)
+    warn_of_arm(cell)
     if made.border_mm or made.heights_mm:
         return _check_job(args, text, made, read, cell, brush, z_offset_mm)
     work = _as_made(args, made, cell, brush) if args.input else None
@@ -77,6 +79,8 @@ def check_file(args) -> None:
             )
         changed = again and against_regenerated.differing_line(text, read, again, cell, least_s)
         problems = problems + ([Notice("", changed, code="program-changed")] if changed else [])
+        if again and not problems:
+            problems = out_of_arm(again, sheet_mm)
         shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
         if args.preview:
             outlined = prediction.outlined(ran.marks, brush, stage)

@@ -11,7 +11,7 @@ from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, warn
-from ..steps.options import settled, typed, warn_of_example
+from ..steps.options import settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare, seconds_written
 
@@ -56,7 +56,7 @@ def convert_file(args) -> None:
                 figures.total.overlap,
             )
     warn(args.input, too_long(loads, brush, cell))
-    warn_of_example(args, cell)
+    warn_of_cell(args, cell)
     seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
     write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap)
 

@@ -27,7 +27,9 @@ SAME_RAD = np.radians(6.0)
 LEAST_STEP_MM = 0.01  # a joint that turns by SAME_RAD within less is at a singularity
 # A joint that turns by more for each mm is about a degree from a singularity: arms slow down there, stop or shake.
 SINGULAR_RAD_MM = np.radians(5.0)
-CALM_RAD_MM = SINGULAR_RAD_MM / 5  # before and behind a singularity, where joints tell whether the wrist turned over
+CALM_RAD_MM = (
+    SINGULAR_RAD_MM / 5
+)  # before and behind a singularity, where joints tell whether the wrist turned over
 AHEAD_MM = 30.0  # so far behind it that is looked for
 FLIP_RAD, SAME_ARM_RAD = np.radians(90.0), np.radians(30.0)
 BENDS, TWISTS = 4, [3, 5]  # joint 5 bends a wrist, 4 and 6 twist it
@@ -53,6 +55,15 @@ class Followed:
     start_rad: np.ndarray | None
 
 
+@dataclass(frozen=True)
+class _Found:
+    """All angles (k, 6) for a place, and how the joints then turn for each mm (k, 6, 3), see rates."""
+
+    angles_rad: np.ndarray
+    rates: np.ndarray
+    most: np.ndarray  # (k,) of any joint
+
+
 @dataclass
 class _Posture:
     start_rad: np.ndarray
@@ -60,6 +71,7 @@ class _Posture:
     least_rad: np.ndarray
     greatest_rad: np.ndarray
     calm_rad: np.ndarray  # before it came near a singularity
+    most: float = 0.0
     failure: Notice | None = None
     failed_at: int = -1
     failed: Place | None = None
@@ -76,27 +88,36 @@ def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray
 def follow(made: Program, joints: Joints) -> Followed:
     """The joints of the arm along a program, from its first place on; how it gets there nobody knows."""
     cell, arm, frame = made.cell, joints.arm, made.robot_from_frame
+    behind = np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
+    upright = frame[:3, :3] @ down(cell.tool.spin_deg)
+
+    def find(place: Place) -> _Found:
+        tip = np.eye(4)
+        tip[:3, :3], tip[:3, 3] = upright, place.robot_mm
+        angles = joints.solutions(tip @ behind)
+        turns = rates(arm, angles, place.robot_mm)
+        return _Found(angles, turns, np.sqrt((turns**2).sum(axis=-1)).max(axis=-1, initial=0.0))
+
     postures: list[_Posture] | None = None
     before = None
     for number, place in enumerate(places(made)):
-        found = joints.solutions(flange_at(cell, frame, place.robot_mm))
-        if not len(found):
+        found = find(place)
+        if not len(found.angles_rad):
             return Followed((_out_of_reach(place, arm),), None)
         if postures is None:
-            postures = [_begun(angles) for angles in found]
+            postures = [_Posture(*(angles.copy() for _ in range(5))) for angles in found.angles_rad]
         for posture in postures:
             if posture.failure is None:
-                _go_on(posture, before, place, found, cell, frame, joints)
+                _go_on(posture, before, place, found, find, arm)
                 posture.failed_at, posture.failed = number, place
             elif posture.failure.code == "singularity":
                 _tell_flip(posture, place, found, arm)
         before = place
-    postures = postures or []
+    if not postures:
+        return Followed((), None)
     for posture in postures:
         if posture.failure is None:
             return Followed((), posture.start_rad)
-    if not postures:
-        return Followed((), None)
     return Followed((max(postures, key=lambda each: each.failed_at).failure,), None)
 
 
@@ -104,7 +125,7 @@ def can(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> bool:
     """Whether a posture is within the joints' limits and far from a singularity."""
     if any(_turns(arm, k, angle, angle) is None for k, angle in enumerate(joints_rad)):
         return False
-    return bool(np.linalg.norm(_rates(arm, joints_rad, robot_mm), axis=1).max() <= SINGULAR_RAD_MM)
+    return bool(np.linalg.norm(rates(arm, joints_rad, robot_mm), axis=1).max() <= SINGULAR_RAD_MM)
 
 
 def places(made: Program) -> Iterator[Place]:
@@ -137,71 +158,67 @@ def _along(name, points, speeds, ends, frame, is_first: bool) -> Iterator[Place]
     for k, at in enumerate(looked):
         if k == 0 and not is_first:
             continue  # where the section before ended
-        paper_mm, robot_mm = (np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot))
+        paper_mm, robot_mm = (
+            np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot)
+        )
         yield Place(name, paper_mm, robot_mm, velocities[first[k] : last[k]])
 
 
-def _begun(angles: np.ndarray) -> _Posture:
-    return _Posture(*(angles.copy() for _ in range(5)))
-
-
-def _go_on(posture, before: Place | None, place: Place, found, cell, frame, joints: Joints) -> None:
+def _go_on(posture: _Posture, before: Place | None, place: Place, found: _Found, find, arm: Arm) -> None:
     """The posture at the next place, by halves of the way where its joints turn far; or what forbids it."""
-    if before is not None:
-        turn = _nearest(posture.here_rad, found)
-        gap_mm = np.linalg.norm(place.robot_mm - before.robot_mm)
-        if np.abs(turn).max() > SAME_RAD:
-            if gap_mm < LEAST_STEP_MM:
-                posture.failure = _singular(place, joints.arm, posture)
-                return
-            half = Place(
-                place.name,
-                (before.paper_mm + place.paper_mm) / 2,
-                (before.robot_mm + place.robot_mm) / 2,
-                place.velocities_mm_s,
-            )
-            between = joints.solutions(flange_at(cell, frame, half.robot_mm))
-            if not len(between):
-                posture.failure = _out_of_reach(half, joints.arm)
-                return
-            _go_on(posture, before, half, between, cell, frame, joints)
-            if posture.failure is None:
-                _go_on(posture, half, place, found, cell, frame, joints)
+    turns = _turned(posture.here_rad, found.angles_rad)
+    far = np.abs(turns).max(axis=1)
+    which = int(far.argmin())
+    if before is not None and far[which] > SAME_RAD:
+        if np.linalg.norm(place.robot_mm - before.robot_mm) < LEAST_STEP_MM:
+            posture.failure = _singular(place, arm, posture.most, posture.here_rad)
             return
-        posture.here_rad = posture.here_rad + turn
-    posture.failure = _forbidden(posture, place, joints.arm)
+        middle = (before.paper_mm + place.paper_mm) / 2, (before.robot_mm + place.robot_mm) / 2
+        half = Place(place.name, *middle, place.velocities_mm_s)
+        between = find(half)
+        if not len(between.angles_rad):
+            posture.failure = _out_of_reach(half, arm)
+            return
+        _go_on(posture, before, half, between, find, arm)
+        if posture.failure is None:
+            _go_on(posture, half, place, found, find, arm)
+        return
+    posture.here_rad = posture.here_rad + turns[which]
+    posture.most = found.most[which]
+    posture.failure = _forbidden(posture, place, found.rates[which], arm)
 
 
-def _nearest(here_rad: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """(6,) how far each joint turns to the nearest of solutions (k, 6), the short way round."""
-    turns = (found - here_rad + np.pi) % (2 * np.pi) - np.pi
-    return turns[np.abs(turns).max(axis=1).argmin()]
+def _turned(here_rad: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """(k, 6) how far each joint turns to each of solutions (k, 6), the short way round."""
+    return (found - here_rad + np.pi) % (2 * np.pi) - np.pi
 
 
-def _rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
-    """(6, 3) how each joint turns [rad] for each mm that the tip goes along x, y or z and does not turn."""
+def rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
+    """(..., 6, 3) how each joint turns [rad] for each mm that the tip goes along x, y or z and does not turn."""
     jacobian = flange_rates(arm, joints_rad, robot_mm)
-    jacobian[:3] *= 1e-3  # metres, as radians are of the size of 1
-    return np.linalg.pinv(jacobian, rcond=1e-9)[:, :3] * 1e-3
+    try:
+        return np.linalg.inv(jacobian)[..., :3]
+    except np.linalg.LinAlgError:  # at a singularity to the last digit: whatever is near it turns as fast
+        return np.linalg.inv(jacobian + 1e-9 * np.eye(6))[..., :3]
 
 
-def _forbidden(posture: _Posture, place: Place, arm: Arm) -> Notice | None:
+def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) -> Notice | None:
     angles = posture.here_rad
     least, greatest = np.minimum(posture.least_rad, angles), np.maximum(posture.greatest_rad, angles)
-    for joint in range(len(angles)):
-        if _turns(arm, joint, least[joint], greatest[joint]) is None:
-            return _beyond_limit(place, arm, joint, posture)
+    low, high = np.radians(np.array(arm.limits_deg)).T
+    turns = np.ceil((low - least) / (2 * np.pi) - 1e-9)
+    beyond = greatest + 2 * np.pi * turns > high + 1e-9
+    if beyond.any():
+        return _beyond_limit(place, arm, int(beyond.argmax()), posture)
     posture.least_rad, posture.greatest_rad = least, greatest
-    rates = _rates(arm, angles, place.robot_mm)
-    most = np.linalg.norm(rates, axis=1).max()
-    if most > SINGULAR_RAD_MM:
-        return _singular(place, arm, posture)
-    if most <= CALM_RAD_MM:
+    if posture.most > SINGULAR_RAD_MM:
+        return _singular(place, arm, posture.most, angles)
+    if posture.most <= CALM_RAD_MM:
         posture.calm_rad = angles
-    if len(place.velocities_mm_s):
-        fastest = np.degrees(np.abs(place.velocities_mm_s @ rates.T).max(axis=0))
+    if len(place.velocities_mm_s) and arm.speeds_deg_s:
+        fastest = np.degrees(np.abs(place.velocities_mm_s @ turns_mm.T).max(axis=0))
         over = fastest / np.array(arm.speeds_deg_s)
-        if (worst := int(over.argmax())) >= 0 and over[worst] > 1 + 1e-9:
+        if over[worst := int(over.argmax())] > 1 + 1e-9:
             sentence = (
                 f"{_near(place)} joint {worst + 1} would turn at {fastest[worst]:.0f} degrees/s, outside the range "
                 f"[0, {arm.speeds_deg_s[worst]:g}] degrees/s of arm {arm.name}"
@@ -235,29 +252,26 @@ def _out_of_reach(place: Place, arm: Arm) -> Notice:
     return Notice(place.name, sentence, code="arm-out-of-reach")
 
 
-def _singular(place: Place, arm: Arm, posture: _Posture) -> Notice:
-    rates = np.degrees(np.linalg.norm(_rates(arm, posture.here_rad, place.robot_mm), axis=1))
-    worst = int(rates.argmax())
+def _singular(place: Place, arm: Arm, most: float, joints_rad: np.ndarray) -> Notice:
+    worst = int(np.linalg.norm(rates(arm, joints_rad, place.robot_mm), axis=1).argmax())
     sentence = (
         f"{_near(place)} arm {arm.name} comes to a singularity: joint {worst + 1} would turn by "
-        f"{min(rates[worst], 999):.0f} degrees for each mm, more than {np.degrees(SINGULAR_RAD_MM):g}"
+        f"{np.degrees(most):.1f} degrees for each mm, more than {np.degrees(SINGULAR_RAD_MM):g}"
     )
     return Notice(place.name, sentence, code="singularity", about=str(worst + 1))
 
 
-def _tell_flip(posture: _Posture, place: Place, found: np.ndarray, arm: Arm) -> None:
+def _tell_flip(posture: _Posture, place: Place, found: _Found, arm: Arm) -> None:
     """The failure at a singularity told as a flip where, calm again behind it, the wrist that bends the same way has
     turned over."""
     if np.linalg.norm(place.robot_mm - posture.failed.robot_mm) > AHEAD_MM:
         return
-    turns = (found - posture.calm_rad + np.pi) % (2 * np.pi) - np.pi
-    same = (np.abs(turns[:, :3]).max(axis=1) < SAME_ARM_RAD) & (
-        np.sin(found[:, BENDS]) * np.sin(posture.calm_rad[BENDS]) > 0
-    )
-    for angles, turn in zip(found[same], turns[same], strict=True):
-        calm = np.linalg.norm(_rates(arm, angles, place.robot_mm), axis=1).max() <= CALM_RAD_MM
+    turns = _turned(posture.calm_rad, found.angles_rad)
+    bends = np.sin(found.angles_rad[:, BENDS]) * np.sin(posture.calm_rad[BENDS])
+    same = (np.abs(turns[:, :3]).max(axis=1) < SAME_ARM_RAD) & (bends > 0) & (found.most <= CALM_RAD_MM)
+    for turn in turns[same]:
         joint = TWISTS[int(np.abs(turn[TWISTS]).argmax())]
-        if calm and abs(turn[joint]) > FLIP_RAD:
+        if abs(turn[joint]) > FLIP_RAD:
             sentence = (
                 f"{_near(posture.failed)} the wrist of arm {arm.name} would flip: joint {joint + 1} would turn by "
                 f"{np.degrees(abs(turn[joint])):.0f} degrees on the way past a singularity"

@@ -18,6 +18,8 @@ MM = 1e-3  # ssik's lengths are in metres
 # than any arm repeats a place by; a link of another arm is off by more.
 PREBUILT_MM = 0.01
 
+MOST_STEP_RAD = 0.02  # a longer one is no rounding: at a singularity it leads anywhere
+
 
 @dataclass(frozen=True)
 class Joints:
@@ -45,9 +47,9 @@ def joints_of(arm: Arm) -> Joints:
 def frames(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
     """(..., n + 1, 4, 4) in the robot's frame [mm]: that about whose z each joint (..., n) turns, the flange's last."""
     joints_rad = np.asarray(joints_rad, dtype=float)
-    links = _links(arm)
+    base, links, flange = _fixed(arm)
     theta = joints_rad + np.radians([row[3] for row in arm.dh])
-    here = np.broadcast_to(_base(arm), (*joints_rad.shape[:-1], 4, 4))
+    here = np.broadcast_to(base, (*joints_rad.shape[:-1], 4, 4))
     found = [here]
     for number, link in enumerate(links):
         turn = np.zeros((*joints_rad.shape[:-1], 4, 4))
@@ -57,7 +59,7 @@ def frames(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
         turn[..., 2, 2] = turn[..., 3, 3] = 1.0
         here = here @ turn @ link
         found.append(here)
-    found[-1] = here @ _flange(arm)
+    found[-1] = here @ flange
     return np.stack(found, axis=-3)
 
 
@@ -68,23 +70,23 @@ def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.nda
     return np.concatenate([np.cross(axes, arms), axes], axis=-1).swapaxes(-1, -2)
 
 
-def _links(arm: Arm) -> list[np.ndarray]:
-    """What of each link does not turn: along z by d, along x by a, about x by alpha."""
-    return [frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh]
-
-
-def _base(arm: Arm) -> np.ndarray:
-    return frame_of_pose(arm.base_mm, arm.base_rotation_deg)
-
-
-def _flange(arm: Arm) -> np.ndarray:
-    return frame_of_pose((0.0, 0.0, 0.0), arm.flange_rotation_deg)
+@lru_cache(maxsize=64)
+def _fixed(arm: Arm) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
+    """What does not turn: the base, of each link what goes along z by d, along x by a and about x by alpha, the flange."""
+    links = [frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh]
+    nowhere = (0.0, 0.0, 0.0)
+    return (
+        frame_of_pose(arm.base_mm, arm.base_rotation_deg),
+        links,
+        frame_of_pose(nowhere, arm.flange_rotation_deg),
+    )
 
 
 def _of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     a, alpha, d, theta = np.array(arm.dh).T
     made = ssik.Manipulator.from_dh(np.radians(alpha), a * MM, d * MM)
-    into, behind = np.linalg.inv(_base(arm)), np.linalg.inv(_flange(arm))
+    base, _, flange = _fixed(arm)
+    into, behind = np.linalg.inv(base), np.linalg.inv(flange)
     return _solver(made.solve, into, behind, np.radians(theta))
 
 
@@ -101,9 +103,27 @@ def _of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
         into = frame_of_pose((0, 0, 0), (0, 0, half_turns))
         behind = np.linalg.inv(ours[0]) @ np.linalg.inv(into) @ theirs[0]
         if np.abs(into @ ours @ behind - theirs).max() < PREBUILT_MM:
-            return _solver(made.solve, into, behind, np.zeros(len(arm.dh)))
+            rough = _solver(made.solve, into, behind, np.zeros(len(arm.dh)))
+            return lambda flange: _on_these_links(arm, rough(flange), flange)
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
     raise Error(sentence, where="arm.prebuilt", code="cell-arm")
+
+
+def _on_these_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
+    """Angles found for links that are rounded otherwise, on those of the cell: two steps of Newton's are enough."""
+    if not len(angles):
+        return angles
+    for _ in range(2):
+        there = frames(arm, angles)[:, -1]
+        turned = flange[:3, :3] @ there[:, :3, :3].swapaxes(-1, -2)
+        turn = [turned[:, k - 1, k - 2] - turned[:, k - 2, k - 1] for k in (0, 1, 2)]
+        off = np.concatenate([flange[:3, 3] - there[:, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
+        try:
+            step = np.linalg.solve(flange_rates(arm, angles, flange[:3, 3]), off[..., None])[..., 0]
+        except np.linalg.LinAlgError:  # at a singularity to the last digit
+            return angles
+        angles = angles + np.where(np.abs(step).max(axis=-1, keepdims=True) < MOST_STEP_RAD, step, 0.0)
+    return angles
 
 
 def _solver(solve, into: np.ndarray, behind: np.ndarray, theta: np.ndarray):

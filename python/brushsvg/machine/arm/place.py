@@ -48,7 +48,11 @@ def unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[Notic
     if not problems:
         return []
     found = nearest(made, joints, allowed)
-    advice = f"the sheet {found.told} would do" if found else "no shift or turn of the sheet was found that would do"
+    advice = (
+        f"the sheet {found.told} would do"
+        if found
+        else "no shift or turn of the sheet was found that would do"
+    )
     return [replace(problem, advice=advice) for problem in problems]
 
 
@@ -77,7 +81,9 @@ def at(made: Program, frame: np.ndarray) -> Program:
 
 def cell_at(cell: Cell, frame: np.ndarray) -> Cell:
     """The cell with its paper at a pose (4, 4) in the robot's frame."""
-    origin, turned = (tuple(np.round(each, 6).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3])))
+    origin, turned = (
+        tuple(np.round(each, 6).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3]))
+    )
     return replace(cell, paper=replace(cell.paper, origin_mm=origin, rotation_deg=turned, taught_mm=()))
 
 
@@ -122,10 +128,15 @@ def table_of(cell: Cell, frame: np.ndarray, joints: Joints, step_mm: float) -> T
     what = np.full((len(y), len(x)), REACHED)
     for row, there_y in enumerate(y):
         for column, there_x in enumerate(x):
-            there_z = origin[2] - ((there_x - origin[0]) * normal[0] + (there_y - origin[1]) * normal[1]) / normal[2]
+            there_z = (
+                origin[2]
+                - ((there_x - origin[0]) * normal[0] + (there_y - origin[1]) * normal[1]) / normal[2]
+            )
             paper = np.array([there_x, there_y, there_z])
             for height in (0.0, cell.heights.safe_mm):
-                what[row, column] = min(what[row, column], _what(joints, cell, frame, paper + height * normal))
+                what[row, column] = min(
+                    what[row, column], _what(joints, cell, frame, paper + height * normal)
+                )
     return Table(x, y, what)
 
 
