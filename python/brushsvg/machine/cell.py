@@ -145,7 +145,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class Arm:
-    """The arm's links and joints: `convert`, `check` and `cell place` then follow its joints along the whole program."""
+    """The arm's links and joints: `convert`, `check` and `cell place` then follow its joints along the program."""
 
     name: str = _key("of the arm", "text")
     source: str = _key("where its numbers are from", "text")

@@ -18,6 +18,7 @@ CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
 SPEED_MM_S = 15.0
 STROKE_MM = 12.0
 LANE_MM = 6.0
+LANE_APART_MM = 25.0  # an arm does what is between two such lanes, where it does both
 LONG_EVERY = 5  # every fifth stroke is half as long again, to count by
 LONGER = 1.5
 
@@ -105,6 +106,25 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             )
 
     return _unless_astray(sections, brush, cell, sheet_mm)
+
+
+def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+    """To and fro over a whole sheet, at the safe height and touching it: what any drawing on it may ask of an arm. It
+    is asked and never run; limits are not looked at."""
+    width, height = sheet_mm
+    lanes = np.linspace(0.0, height, max(2, math.ceil(height / LANE_APART_MM) + 1))
+    ends = [((0.0, y), (width, y))[:: 1 if k % 2 == 0 else -1] for k, y in enumerate(lanes)]
+    flat = np.array(ends).reshape(-1, 2)
+    high, low = (np.column_stack([flat, np.full(len(flat), z)]) for z in (cell.heights.safe_mm, 0.0))
+    moves = (
+        Move("travel", high, cell.speeds.travel_mm_s),
+        Move("look", low[::-1], touching_mm_s(brush, cell)),
+        Move("retract", over(low[0], cell.heights.safe_mm), cell.speeds.travel_mm_s),
+    )
+    frame = robot_from_paper(cell, z_offset_mm)
+    rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
+    sections = (Section("the sheet", moves),)
+    return Program((), cell, frame, lambda: iter(sections), *rises_mm, touching_mm_s(brush, cell))
 
 
 def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:

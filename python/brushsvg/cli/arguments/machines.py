@@ -133,6 +133,24 @@ def add_cell(commands) -> None:
     )
     add_quiet(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
+    _add_cell_place(whats)
+
+
+def _add_cell_place(whats) -> None:
+    place = whats.add_parser("place", help="say where paper may lie for the arm of a cell")
+    place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
+    place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
+    place.add_argument("-o", "--output", metavar="FILE", help="a picture of the table (.png .svg)")
+    place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    add_layout(place)
+    add_wide(place)
+    add_quiet(place)
+    place.set_defaults(run="cell_place", parser=place, check=_check_cell_place)
+
+
+def _check_cell_place(args) -> None:
+    read = [(args.drawing, DRAWINGS), (args.brush, None)]
+    check_files(args, read, [(args.output, PICTURES)])
 
 
 def _check_cell_new(args) -> None:

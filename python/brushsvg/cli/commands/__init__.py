@@ -7,7 +7,7 @@ from .animate import animate_file
 from .border import border_file
 from .brush import brush_check, brush_list, brush_new, brush_plot, brush_show
 from .calibrate import calibrate_file
-from .cell import cell_check, cell_list, cell_new, cell_show
+from .cell import cell_check, cell_list, cell_new, cell_place, cell_show
 from .chart import chart_file
 from .check import check_file
 from .compare import compare_files
@@ -32,6 +32,7 @@ __all__ = [
     "cell_check",
     "cell_list",
     "cell_new",
+    "cell_place",
     "cell_show",
     "chart_file",
     "check_file",

@@ -1,1 +1,1 @@
-"""What an arm's joints do while it paints: where they put the flange, how far and fast they turn, where paper may lie."""
+"""What an arm's joints do while it paints, how far and fast they turn, and where paper may lie for them."""

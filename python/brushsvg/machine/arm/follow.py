@@ -121,11 +121,14 @@ def follow(made: Program, joints: Joints) -> Followed:
     return Followed((max(postures, key=lambda each: each.failed_at).failure,), None)
 
 
-def can(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> bool:
-    """Whether a posture is within the joints' limits and far from a singularity."""
-    if any(_turns(arm, k, angle, angle) is None for k, angle in enumerate(joints_rad)):
-        return False
-    return bool(np.linalg.norm(rates(arm, joints_rad, robot_mm), axis=1).max() <= SINGULAR_RAD_MM)
+def within_limits(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
+    """(k,) which of joints (k, 6) can be had within their limits, by whole turns."""
+    return ~_beyond(arm, joints_rad, joints_rad)[0].any(axis=-1)
+
+
+def far_from_singular(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
+    """(k,) at which of joints (k, 6) none turns by more than SINGULAR_RAD_MM for each mm."""
+    return np.linalg.norm(rates(arm, joints_rad, robot_mm), axis=-1).max(axis=-1) <= SINGULAR_RAD_MM
 
 
 def places(made: Program) -> Iterator[Place]:
@@ -205,9 +208,7 @@ def rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
 def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) -> Notice | None:
     angles = posture.here_rad
     least, greatest = np.minimum(posture.least_rad, angles), np.maximum(posture.greatest_rad, angles)
-    low, high = np.radians(np.array(arm.limits_deg)).T
-    turns = np.ceil((low - least) / (2 * np.pi) - 1e-9)
-    beyond = greatest + 2 * np.pi * turns > high + 1e-9
+    beyond, _ = _beyond(arm, least, greatest)
     if beyond.any():
         return _beyond_limit(place, arm, int(beyond.argmax()), posture)
     posture.least_rad, posture.greatest_rad = least, greatest
@@ -227,18 +228,22 @@ def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) 
     return None
 
 
-def _turns(arm: Arm, joint: int, least_rad: float, greatest_rad: float) -> int | None:
-    """By how many whole turns a joint's way from least to greatest is to be moved to lie within its limits; None where
-    no number does."""
-    low, high = np.radians(arm.limits_deg[joint])
-    turns = int(np.ceil((low - least_rad) / (2 * np.pi) - 1e-9))
-    return turns if greatest_rad + 2 * np.pi * turns <= high + 1e-9 else None
+def _beyond(arm: Arm, least_rad: np.ndarray, greatest_rad: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(..., 6) of joints that go from least to greatest, which leave their limits however they are turned by whole
+    turns; and by how many the others are."""
+    low, high = np.radians(np.array(arm.limits_deg)).T
+    turns = np.ceil((low - least_rad) / (2 * np.pi) - 1e-9)
+    return greatest_rad + 2 * np.pi * turns > high + 1e-9, turns
 
 
 def _beyond_limit(place: Place, arm: Arm, joint: int, posture: _Posture) -> Notice:
     low, high = arm.limits_deg[joint]
-    turns = _turns(arm, joint, posture.least_rad[joint], posture.greatest_rad[joint])
-    angle = np.degrees(posture.here_rad[joint]) + 360 * (turns or 0)
+    _, turns = _beyond(arm, posture.least_rad, posture.greatest_rad)  # as it came here
+    angle = np.degrees(posture.here_rad[joint]) + 360 * turns[joint]
+    if not angle < low and angle - high > low - (
+        angle - 360
+    ):  # at the first place: the nearer end is the reason
+        angle -= 360
     sentence = (
         f"{_near(place)} joint {joint + 1} would turn to {angle:.1f} degrees, outside the range [{low:g}, {high:g}] "
         f"degrees of arm {arm.name}"

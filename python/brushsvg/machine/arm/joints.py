@@ -64,7 +64,7 @@ def frames(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
 
 
 def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
-    """(..., 6, n): how the tip at tip_mm (3,), held by the flange, moves [mm/rad] and turns [rad/rad] with each joint."""
+    """(..., 6, n): how the tip at tip_mm (3,), held by the flange, moves [mm/rad] and turns with each joint."""
     at = frames(arm, joints_rad)[..., :-1, :, :]
     axes, arms = at[..., :3, 2], tip_mm - at[..., :3, 3]
     return np.concatenate([np.cross(axes, arms), axes], axis=-1).swapaxes(-1, -2)
@@ -72,7 +72,7 @@ def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.nda
 
 @lru_cache(maxsize=64)
 def _fixed(arm: Arm) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
-    """What does not turn: the base, of each link what goes along z by d, along x by a and about x by alpha, the flange."""
+    """What does not turn: the base; of each link along z by d, along x by a, about x by alpha; the flange."""
     links = [frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh]
     nowhere = (0.0, 0.0, 0.0)
     return (

@@ -11,7 +11,7 @@ from ...errors import Notice
 from ..cell import Cell
 from ..frames import frame_of_pose, moved, rotation, rotation_deg
 from ..motion import Program
-from .follow import can, extremes, flange_at, follow
+from .follow import extremes, far_from_singular, flange_at, follow, within_limits
 from .joints import Joints, joints_of
 
 SHIFTS_MM = (10, 20, 40, 60, 80, 100, 125, 150, 175, 200, 250, 300, 350, 400, 500, 600)
@@ -19,13 +19,15 @@ DIRECTIONS = 16
 TURNS_DEG = (15, -15, 30, -30, 45, -45, 60, -60, 90, -90, 120, -120, 150, -150, 180)
 # Places whose outermost points are in reach are nearly always right; where so many are not, the job is a hopeless one.
 MOST_TRIED = 12
+NOWHERE = "no shift or turn of the sheet was found that would do"
+MOST_SQUARES = 60  # along the longer side of a table
 UNREACHED, LIMITED, SINGULAR, REACHED = range(4)  # what a place on the table is to an arm, from worst to best
 
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """Where the paper would have to lie: moved by shift_mm (x, y) of the robot's frame, or turned in its plane about the
-    job's middle, about_mm (x, y) of the sheet. frame: (4, 4) it then has in the robot's."""
+    """Where the paper would have to lie: moved by shift_mm (x, y) of the robot's frame, or turned in its plane about
+    the job's middle, about_mm (x, y) of the sheet. frame: (4, 4) it then has in the robot's."""
 
     shift_mm: tuple[float, float]
     turn_deg: float
@@ -48,11 +50,7 @@ def unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[Notic
     if not problems:
         return []
     found = nearest(made, joints, allowed)
-    advice = (
-        f"the sheet {found.told} would do"
-        if found
-        else "no shift or turn of the sheet was found that would do"
-    )
+    advice = f"the sheet {found.told} would do" if found else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
 
 
@@ -106,7 +104,7 @@ def _elsewheres(made: Program, outermost: np.ndarray):
 
 def _some(joints: Joints, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> bool:
     found = joints.solutions(flange_at(cell, frame, robot_mm))
-    return any(can(joints.arm, angles, robot_mm) for angles in found)
+    return bool((within_limits(joints.arm, found) & far_from_singular(joints.arm, found, robot_mm)).any())
 
 
 @dataclass(frozen=True)
@@ -119,10 +117,11 @@ class Table:
     what: np.ndarray
 
 
-def table_of(cell: Cell, frame: np.ndarray, joints: Joints, step_mm: float) -> Table:
+def table_of(cell: Cell, frame: np.ndarray, joints: Joints) -> Table:
     """What each square of the table is to the arm: in the cell's box, or as far as the links go."""
     far = sum(float(np.hypot(a, d)) for a, _, d, _ in joints.arm.dh)
     low, high = cell.workspace.box_mm or ((-far,) * 3, (far,) * 3)
+    step_mm = max(high[0] - low[0], high[1] - low[1]) / MOST_SQUARES
     x, y = (np.arange(low[k] + step_mm / 2, high[k], step_mm) for k in (0, 1))
     normal, origin = frame[:3, 2], frame[:3, 3]
     what = np.full((len(y), len(x)), REACHED)
@@ -144,7 +143,7 @@ def _what(joints: Joints, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -
     found = joints.solutions(flange_at(cell, frame, robot_mm))
     if not len(found):
         return UNREACHED
-    if any(can(joints.arm, angles, robot_mm) for angles in found):
+    far, within = far_from_singular(joints.arm, found, robot_mm), within_limits(joints.arm, found)
+    if (far & within).any():
         return REACHED
-    free = replace(joints.arm, limits_deg=((-720.0, 720.0),) * len(joints.arm.dh))
-    return LIMITED if any(can(free, angles, robot_mm) for angles in found) else SINGULAR
+    return LIMITED if far.any() else SINGULAR
