@@ -163,6 +163,13 @@ class Arm:
     flange_rotation_deg: tuple = _key(
         "of the flange behind the last joint, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
     )
+    posture_deg: tuple = _key(
+        "joints somewhere over the paper: programs begin in the posture nearest to them; none: in any that does it all",
+        (None,),
+        -1e4,
+        1e4,
+        default=(),
+    )
     prebuilt: str = _key("an arm of the same links that the library ssik has ready", "text", default="")
 
 

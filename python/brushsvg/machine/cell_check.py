@@ -72,7 +72,7 @@ def _check_arm(cell: Cell) -> None:
         raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
     if len(arm.dh) != JOINTS:
         raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
-    for key in ("limits_deg", "speeds_deg_s"):
+    for key in ("limits_deg", "speeds_deg_s", "posture_deg"):
         if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
             sentence = f"{len(given)} values are given for {JOINTS} joints"
             raise Error(sentence, where=f"arm.{key}", code="cell-arm")

@@ -127,9 +127,8 @@ def _svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
         data = "M" + "L".join(at(*point) for point in ring) + "Z"
         lines.append(f'<path class="sheet" fill="none" stroke="{colour}" stroke-width="2" d="{data}"/>')
         x, y = ring.mean(axis=0)
-        lines.append(
-            f'<text x="{x - low[0]:.1f}" y="{head + high[1] - y:.1f}" text-anchor="middle" fill="{colour}">{words}</text>'
-        )
+        place = f'x="{x - low[0]:.1f}" y="{head + high[1] - y:.1f}"'
+        lines.append(f'<text {place} text-anchor="middle" fill="{colour}">{words}</text>')
     for number, (colour, words) in enumerate(COLOURS.values()):
         x, y = 6 + number % 2 * 230, head + height + 12 + number // 2 * 24
         lines.append(f'<rect x="{x}" y="{y:.1f}" width="14" height="14" fill="{colour}"/>')

@@ -62,6 +62,7 @@ class _Found:
     angles_rad: np.ndarray
     rates: np.ndarray
     most: np.ndarray  # (k,) of any joint
+    sides: np.ndarray  # (k,) on which side of all singularities: where two differ, there is one between them
 
 
 @dataclass
@@ -72,9 +73,11 @@ class _Posture:
     greatest_rad: np.ndarray
     calm_rad: np.ndarray  # before it came near a singularity
     most: float = 0.0
+    side: float = 0.0
     failure: Notice | None = None
     failed_at: int = -1
     failed: Place | None = None
+    beyond_deg: float = 0.0  # of its limits a joint is, where that is the reason
 
 
 def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
@@ -85,8 +88,9 @@ def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray
     return tip @ np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
 
 
-def follow(made: Program, joints: Joints) -> Followed:
-    """The joints of the arm along a program, from its first place on; how it gets there nobody knows."""
+def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
+    """The joints of the arm along a program, from its first place on; how it gets there nobody knows. to_the_end: where
+    no posture is left it goes on, since what is out of all reach is the better reason."""
     cell, arm, frame = made.cell, joints.arm, made.robot_from_frame
     behind = np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
     upright = frame[:3, :3] @ down(cell.tool.spin_deg)
@@ -96,7 +100,8 @@ def follow(made: Program, joints: Joints) -> Followed:
         tip[:3, :3], tip[:3, 3] = upright, place.robot_mm
         angles = joints.solutions(tip @ behind)
         turns = rates(arm, angles, place.robot_mm)
-        return _Found(angles, turns, np.sqrt((turns**2).sum(axis=-1)).max(axis=-1, initial=0.0))
+        most = np.sqrt((turns**2).sum(axis=-1)).max(axis=-1, initial=0.0)
+        return _Found(angles, turns, most, np.sign(np.linalg.det(flange_rates(arm, angles, place.robot_mm))))
 
     postures: list[_Posture] | None = None
     before = None
@@ -105,7 +110,11 @@ def follow(made: Program, joints: Joints) -> Followed:
         if not len(found.angles_rad):
             return Followed((_out_of_reach(place, arm),), None)
         if postures is None:
-            postures = [_Posture(*(angles.copy() for _ in range(5))) for angles in found.angles_rad]
+            begun = found.angles_rad
+            if arm.posture_deg:
+                far = np.abs(_turned(np.radians(arm.posture_deg), begun)).max(axis=1)
+                begun = begun[[(far + 9.0 * ~within_limits(arm, begun)).argmin()]]
+            postures = [_Posture(*(angles.copy() for _ in range(5))) for angles in begun]
         for posture in postures:
             if posture.failure is None:
                 _go_on(posture, before, place, found, find, arm)
@@ -113,12 +122,14 @@ def follow(made: Program, joints: Joints) -> Followed:
             elif posture.failure.code == "singularity":
                 _tell_flip(posture, place, found, arm)
         before = place
+        if not to_the_end and all(posture.failure for posture in postures):
+            break
     if not postures:
         return Followed((), None)
     for posture in postures:
         if posture.failure is None:
             return Followed((), posture.start_rad)
-    return Followed((max(postures, key=lambda each: each.failed_at).failure,), None)
+    return Followed((max(postures, key=lambda each: (each.failed_at, -each.beyond_deg)).failure,), None)
 
 
 def within_limits(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
@@ -174,7 +185,7 @@ def _go_on(posture: _Posture, before: Place | None, place: Place, found: _Found,
     which = int(far.argmin())
     if before is not None and far[which] > SAME_RAD:
         if np.linalg.norm(place.robot_mm - before.robot_mm) < LEAST_STEP_MM:
-            posture.failure = _singular(place, arm, posture.most, posture.here_rad)
+            posture.failure = _near_singularity(place, arm, posture.most, posture.here_rad)
             return
         middle = (before.paper_mm + place.paper_mm) / 2, (before.robot_mm + place.robot_mm) / 2
         half = Place(place.name, *middle, place.velocities_mm_s)
@@ -188,6 +199,10 @@ def _go_on(posture: _Posture, before: Place | None, place: Place, found: _Found,
         return
     posture.here_rad = posture.here_rad + turns[which]
     posture.most = found.most[which]
+    if before is not None and found.sides[which] != posture.side:
+        posture.failure = _through_singularity(place, arm)
+        return
+    posture.side = found.sides[which]
     posture.failure = _forbidden(posture, place, found.rates[which], arm)
 
 
@@ -213,7 +228,7 @@ def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) 
         return _beyond_limit(place, arm, int(beyond.argmax()), posture)
     posture.least_rad, posture.greatest_rad = least, greatest
     if posture.most > SINGULAR_RAD_MM:
-        return _singular(place, arm, posture.most, angles)
+        return _near_singularity(place, arm, posture.most, angles)
     if posture.most <= CALM_RAD_MM:
         posture.calm_rad = angles
     if len(place.velocities_mm_s) and arm.speeds_deg_s:
@@ -257,10 +272,17 @@ def _out_of_reach(place: Place, arm: Arm) -> Notice:
     return Notice(place.name, sentence, code="arm-out-of-reach")
 
 
-def _singular(place: Place, arm: Arm, most: float, joints_rad: np.ndarray) -> Notice:
+def _through_singularity(place: Place, arm: Arm) -> Notice:
+    sentence = (
+        f"{_near(place)} arm {arm.name} passes through a singularity, where its joints rush or it stops"
+    )
+    return Notice(place.name, sentence, code="singularity")
+
+
+def _near_singularity(place: Place, arm: Arm, most: float, joints_rad: np.ndarray) -> Notice:
     worst = int(np.linalg.norm(rates(arm, joints_rad, place.robot_mm), axis=1).argmax())
     sentence = (
-        f"{_near(place)} arm {arm.name} comes to a singularity: joint {worst + 1} would turn by "
+        f"{_near(place)} arm {arm.name} comes near a singularity: joint {worst + 1} would turn by "
         f"{np.degrees(most):.1f} degrees for each mm, more than {np.degrees(SINGULAR_RAD_MM):g}"
     )
     return Notice(place.name, sentence, code="singularity", about=str(worst + 1))

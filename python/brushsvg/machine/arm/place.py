@@ -18,9 +18,9 @@ SHIFTS_MM = (10, 20, 40, 60, 80, 100, 125, 150, 175, 200, 250, 300, 350, 400, 50
 DIRECTIONS = 16
 TURNS_DEG = (15, -15, 30, -30, 45, -45, 60, -60, 90, -90, 120, -120, 150, -150, 180)
 # Places whose outermost points are in reach are nearly always right; where so many are not, the job is a hopeless one.
-MOST_TRIED = 12
+MOST_TRIED = 80
 NOWHERE = "no shift or turn of the sheet was found that would do"
-MOST_SQUARES = 60  # along the longer side of a table
+MOST_SQUARES = 45  # along the longer side of a table
 UNREACHED, LIMITED, SINGULAR, REACHED = range(4)  # what a place on the table is to an arm, from worst to best
 
 
@@ -63,7 +63,7 @@ def nearest(made: Program, joints: Joints, allowed: Callable[[Program], bool]) -
         robot = moved(place.frame, outermost)
         if not all(_some(joints, there.cell, place.frame, each) for each in robot) or not allowed(there):
             continue
-        if not follow(there, joints).problems:
+        if not follow(there, joints, to_the_end=False).problems:
             return place
         tried += 1
         if tried == MOST_TRIED:
@@ -80,7 +80,7 @@ def at(made: Program, frame: np.ndarray) -> Program:
 def cell_at(cell: Cell, frame: np.ndarray) -> Cell:
     """The cell with its paper at a pose (4, 4) in the robot's frame."""
     origin, turned = (
-        tuple(np.round(each, 6).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3]))
+        tuple((np.round(each, 6) + 0.0).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3]))
     )
     return replace(cell, paper=replace(cell.paper, origin_mm=origin, rotation_deg=turned, taught_mm=()))
 
