@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from arm_judge import compare
 
+from brushsvg.errors import Error
 from brushsvg.machine.arm.joints import frames, joints_of
 from brushsvg.machine.cell_file import cell_names, find_cell
 
@@ -134,3 +138,18 @@ def test_all_angles_that_are_found_put_the_flange_where_it_was_asked_for(name):
         assert there == pytest.approx(np.broadcast_to(wanted, there.shape), abs=1e-6)
         turns = (found - joints_rad + np.pi) % (2 * np.pi) - np.pi
         assert np.abs(turns).max(axis=1).min() < 1e-6
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_another_library_finds_the_same_angles(name):
+    told = compare(name, 60, seed=3)
+    assert told["differ"] == 0
+    assert told["agree"] > 50
+    assert told["judge"] == ("forward chain" if name == "xarm6" else "EAIK")
+
+
+def test_links_of_another_arm_are_refused():
+    arm = find_cell("ur5e").arm
+    with pytest.raises(Error) as said:
+        joints_of(replace(arm, prebuilt="ur3e"))
+    assert (said.value.code, said.value.where) == ("cell-arm", "arm.prebuilt")

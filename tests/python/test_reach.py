@@ -1,161 +1,167 @@
-"""Outlines wider than the brush: the nearest width, several passes, or a refusal."""
+"""Jobs that an arm cannot do: refused with the reason, and the place that is advised does."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, refused
-from svg_text import read
+from arm_judge import judge_of
 
-from brushsvg import _core, find_brush
-from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.trial_mark import trial_mark
-from brushsvg.strokes.wide_shapes import within_reach
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.cli import main
+from brushsvg.machine import preflight
+from brushsvg.machine.arm import joints, place
+from brushsvg.machine.arm.follow import flange_at, rates
+from brushsvg.machine.cell import robot_from_paper
+from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.program import unchecked_program
 
-WIDE = "M10 10H90V26H10Z"  # 16 mm; round-6 paints 8.4
-WEDGE = "M10 20L90 12V28Z"
+BRUSH = find_brush("round-6")
+ALONG, ACROSS = ((10, 20), (90, 20)), ((50, 5), (50, 55))
+UP_FRONT = (90.0, -36.0, 126.0, 0.0, 5.0, 0.0)  # a KR 6 with its elbow up, the hand hanging
 
-
-def of(d: str, rest: str = 'fill="red" stroke="none"'):
-    return strokes(read(f'<path id="p" d="{d}" {rest}/>'))[0]
-
-
-@pytest.fixture
-def brush():
-    return find_brush("round-6")
-
-
-def painted(made) -> list:
-    bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
-    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
-
-
-def test_what_is_in_reach_and_what_was_drawn_stays(brush):
-    narrow = of("M10 20H60V26H10Z")
-    line = of("M10 20H60", 'fill="none" stroke="red" stroke-width="20"')
-    for made in (narrow, line):
-        assert within_reach(made, brush) == (made, made, [])
-    with refused("width-out-of-reach 20.000"):
-        _core.compensate(line, brush, (100, 50))
-
-
-def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
-    made = of(WEDGE)
-    (narrower,), wanted, (notice,) = within_reach(made, brush, "clamp")
-    assert wanted == made
-    halves = np.array(narrower.half_width)
-    assert halves[:, 1].max() == pytest.approx(4.2)
-    assert np.interp(0.2, *halves.T) == pytest.approx(np.interp(0.2, *np.array(made[0].half_width).T))
-    assert [r.tolist() for r in narrower.wanted_mm] == [r.tolist() for r in made[0].wanted_mm]
-    assert agrees(notice, "width-out-of-reach '[0, 8.4] mm' round-6 nearest", "p")
+# cell, paper's corner in the robot's frame and how it leans, the stroke, the posture, speeds: why not
+JOBS = [
+    ("ur5e", (-50, -980, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("ur5e", (-50, -150, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("ur3e", (-50, -20, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("irb120", (-50, -650, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("jaka-zu3", (-50, -640, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("xarm6", (-50, -800, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("cr5", (-50, -950, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("irb120", (-50, -180, 20), (), ALONG, (), {}, "joint-limit"),
+    ("irb120", (-450, -30, 20), (), ACROSS, (), {}, "joint-limit"),
+    ("kr6-r900", (-50, -450, 20), (), ACROSS, UP_FRONT, {}, "wrist-flip"),
+    ("kr6-r900", (-50, -450, 20), (0, 1, 0), ACROSS, UP_FRONT, {}, "wrist-flip"),
+    ("kr6-r900", (-50, -450, 20), (0, 5, 0), ACROSS, UP_FRONT, {"travel_mm_s": 1000.0}, "joint-too-fast"),
+]
 
 
-def test_passes_cover_the_shape_and_stay_in_it(brush):
-    for d in (
-        WIDE,
-        WEDGE,
-        "M30 25A14 14 0 1 1 58 25A14 14 0 1 1 30 25Z",
-        "M10 5H60A20 20 0 0 1 60 45V33A8 8 0 0 0 60 17H10Z",
-        "M10 4H26V24H60V40H10Z",
-        "M10 30Q25 4 50 18T90 15V17Q70 38 48 30T12 32Z",
-    ):
-        made = of(d)
-        passes, wanted, (notice,) = within_reach(made, brush, "passes")
-        assert [each.id for each in passes] == ["p", *(f"p~{k}" for k in range(2, len(passes) + 1))]
-        assert len(wanted) == len(passes) > 1
-        assert agrees(notice, f"width-out-of-reach '{len(passes)} passes'")
-        assert max(half for each in passes for _, half in each.half_width) <= 4.2 + 1e-9
-        shape, paint = made[0].wanted_mm, painted(passes)
-        beyond = _core.area(_core.unite([*shape, *paint])) - _core.area(shape)
-        assert beyond < 0.006 * _core.area(shape)
-        assert _core.overlap(paint, shape) > 0.97, d
+def job(name, corner, leans, line, posture, speeds):
+    cell = find_cell(name)
+    paper = replace(cell.paper, origin_mm=corner, rotation_deg=leans or (0, 0, 0))
+    cell = replace(cell, paper=paper, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
+    cell = replace(cell, arm=replace(cell.arm, posture_deg=posture), speeds=replace(cell.speeds, **speeds))
+    return cell, plan_of(line)
 
 
-def test_refusal_names_stroke_width_and_range(brush):
-    with refused("width-out-of-reach 16 '[0, 8.4] mm' round-6", "p") as caught:
-        within_reach(of(WIDE), brush, "refuse")
-    assert caught.value.value == pytest.approx(16, abs=0.1)
+def plan_of(line):
+    start, end = line
+    poses = [[*start, 0], [*start, -2], [*end, -2], [*end, 0]]
+    return _core.Plan("round-6", "", (100, 60), [_core.Pass("line", poses, 15.0)])
 
 
-def test_a_pen_of_one_width_is_not_asked(brush):
-    made = of(WIDE)
-    assert within_reach(made, find_brush("rigid"), "refuse") == (made, made, [])
+def look(cell, plan):
+    return preflight.look(in_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05)
 
 
-def overlap(strokes, shape, brush) -> float:
-    marks = _core.simulate(_core.compensate(strokes, brush, (200, 200), start="auto", end="auto").plan, brush)
-    _core.trace_outlines(marks, brush)
-    return _core.overlap(marks.outline_mm, shape)
+@pytest.mark.parametrize("which", range(len(JOBS)))
+def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which):
+    *given, code = JOBS[which]
+    cell, plan = job(*given)
+    (problem,) = look(cell, plan).problems
+    assert (problem.where, problem.code) == ("line", code)
+    x, y = map(float, re.match(r"near x (-?[\d.]+), y (-?[\d.]+) mm", problem.sentence).groups())
+    (x0, y0), (x1, y1) = given[3]
+    assert min(x0, x1) <= x <= max(x0, x1) and min(y0, y1) <= y <= max(y0, y1)
+    dx, dy = map(float, re.search(r"moved by x ([+-]\d+), y ([+-]\d+) mm in", problem.advice).groups())
+    moved = tuple(np.add(cell.paper.origin_mm, (dx, dy, 0)).tolist())
+    there = replace(cell, paper=replace(cell.paper, origin_mm=moved))
+    assert look(there, plan).problems == []
+    # the other library has the same to say of the place that is named
+    frame, judge = robot_from_paper(cell), judge_of(cell.arm)
+    if judge is not None and code == "arm-out-of-reach":
+        for height in (0.0, cell.heights.safe_mm):
+            robot_mm = frame @ (x, y, height, 1)
+            if not len(judge(flange_at(cell, frame, robot_mm[:3]))):
+                break
+        else:
+            pytest.fail("EAIK reaches it, touching and above")
+    if judge is not None and code == "joint-limit":
+        low, high = np.radians(cell.arm.limits_deg).T
+        robot_mm = (frame @ (x, y, cell.heights.safe_mm, 1))[:3]
+        found = judge(flange_at(cell, frame, robot_mm))
+        wrapped = np.stack([found + turn * 2 * np.pi for turn in (-1, 0, 1)])
+        assert not (((wrapped >= low) & (wrapped <= high)).any(axis=0)).all(axis=1).any()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("d", "is_filled"),
-    [
-        *((f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10) for wide_mm in (8.2, 8.6, 9.0, 10.8, 12.0, 24.0)),
-        ("M44.8 30a5.2 5.2 0 1 0 10.4 0a5.2 5.2 0 1 0 -10.4 0Z", True),
-    ],
-)
-def test_passes_are_taken_where_the_mark_at_the_nearest_width_overlaps_too_little(brush, d, is_filled):
-    """Of a bar of 16 mm half was painted, unless passes were asked for; a disc of 9.4 mm became a drop, since a round
-    disc of the brush's greatest width covers 0.8 of it.
-    Turned on the spot it is a disc; of 10.4 mm a third stays bare."""
-    made = of(d)
-    narrower, _, _ = within_reach(made, brush, "clamp")
-    shape = made[0].wanted_mm
-    nearest = overlap(narrower, shape, brush)
-    passes, _, notices = within_reach(made, brush)
-    if not is_filled:
-        assert nearest > 0.8
-        assert len(passes) == 1
-        assert [each.half_width for each in passes] == [each.half_width for each in narrower]
-        return
-    assert nearest < 0.8
-    filled, _, _ = within_reach(made, brush, "passes")
-    assert [each.id for each in passes] == [each.id for each in filled]
-    assert len(passes) > 1
-    assert overlap(passes, shape, brush) > nearest + 0.1
-    assert agrees(notices[0], f"width-out-of-reach {nearest:.2f}")
+def test_joint_rates_are_those_of_two_places_close_together():
+    cell, _ = job(*JOBS[0][:-1])
+    found, frame = joints.joints_of(cell.arm), robot_from_paper(cell)
+    at = np.array([-100.0, -500.0, 30.0])
+    here = found.solutions(flange_at(cell, frame, at))[0]
+    expected = rates(cell.arm, here, at)
+    for axis in range(3):
+        step = np.zeros(3)
+        step[axis] = 1e-3
+        there = found.solutions(flange_at(cell, frame, at + step))
+        turned = there[np.abs(there - here).max(axis=1).argmin()] - here
+        assert turned / 1e-3 == pytest.approx(expected[:, axis], abs=1e-5)
 
 
-def test_the_stems_of_a_drawing_are_of_one_weight(brush):
-    """Of h66 in a bold serif the h was filled with 11 mm wide stems, the 6 kept to 8.4 mm."""
-    slim, wide = "M10 40H90V49H10Z", "M10 5H90V29H10Z"
-    assert len(within_reach(of(slim), brush)[0]) == 1
-    passes, _, _ = within_reach(of(f"{wide} {slim}"), brush)
-    lanes = {}
-    for stroke in passes:
-        lanes.setdefault(stroke.origin.part, []).append(stroke.origin.lane)
-    assert len(lanes) == 2
-    assert min(len(each) for each in lanes.values()) > 1
+def test_the_nearest_place_may_be_a_turn():
+    """Behind the robot, beside the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
+    cell, plan = job("irb120", (-450, 90, 20), (), ACROSS, (), {})
+    (problem,) = look(cell, plan).problems
+    assert problem.code == "joint-limit"
+    made = unchecked_program(in_loads(plan, BRUSH, cell), BRUSH, cell)
+    found = place.nearest(
+        made, joints.joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999
+    )
+    assert found.turn_deg != 0
+    there = place.cell_at(cell, found.frame)
+    assert look(there, plan).problems == []
+    assert f"turned by {found.turn_deg:g} degrees" in found.told
 
 
-def test_passes_are_advised_only_where_they_paint_more(brush):
-    """A short bar of 8.9 mm was said to be painted better by passes, whose discs cover more; their mark does not."""
-    for d, is_advised in (("M10 10H28V18.9H10Z", False), ("M10 10H90V20H10Z", True)):
-        strokes = of(d)
-        (notice,) = within_reach(strokes, brush, "clamp")[2]
-        assert bool(notice.advice) == is_advised
-        clamped, filled = (
-            _core.overlap(trial_mark(within_reach(strokes, brush, wide)[0], brush), strokes[0].wanted_mm)
-            for wide in ("clamp", "passes")
-        )
-        assert (filled > clamped + 0.01) == is_advised
+def test_convert_and_check_ask_the_arm(tmp_path, capsys):
+    cell, plan = job(*JOBS[0][:-1])
+    drawing, near, far = (tmp_path / name for name in ("plan.json", "near.toml", "far.toml"))
+    drawing.write_text(_core.write_plan(plan))
+    far.write_text(write_cell(cell))
+    near.write_text(write_cell(replace(cell, paper=replace(cell.paper, origin_mm=(-50.0, -500.0, 20.0)))))
+    program = tmp_path / "line.script"
+    assert main(["convert", str(drawing), str(program), "--cell", str(far)]) == 1
+    assert "out of reach of arm UR5e" in capsys.readouterr().err and not program.exists()
+    assert main(["convert", str(drawing), str(program), "--cell", str(near), "--quiet"]) == 0
+    assert main(["check", str(program), "--cell", str(near)]) == 0
+    text = program.read_text()
+    program.write_text(text.replace("-0.500000", "-0.980000", 1))  # the line that sets the paper
+    assert program.read_text() != text
+    capsys.readouterr()
+    assert main(["check", str(program), "--cell", str(far)]) == 1
+    assert "out of reach of arm UR5e" in capsys.readouterr().err
 
 
-def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
-    """8.45 mm in place of 8.4 was told of nine strokes of a word."""
-    for wide_mm, is_told in ((8.45, False), (8.55, False), (8.7, True)):
-        painted, _, notices = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush)
-        assert bool(notices) == is_told
-        assert max(half for _, half in painted[0].half_width) <= 4.2
-    with refused("width-out-of-reach"):
-        within_reach(of("M10 10H90V18.45H10Z"), brush, "refuse")
+def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, monkeypatch):
+    cell, plan = job(*JOBS[0][:-1])
+    drawing, far = tmp_path / "plan.json", tmp_path / "far.toml"
+    drawing.write_text(_core.write_plan(plan))
+    far.write_text(write_cell(cell))
+    monkeypatch.setitem(sys.modules, "ssik", None)
+    joints.joints_of.cache_clear()
+    assert main(["convert", str(drawing), str(tmp_path / "a.script"), "--cell", str(far)]) == 0
+    assert "pip install ssik" in capsys.readouterr().err
+    assert main(["cell", "place", str(far)]) == 1
+    assert "pip install ssik" in capsys.readouterr().err
 
 
-def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
-    """The trial of a letter with such an arm was refused and counted as nothing: all other letters were filled."""
-    arm, bar = "M10 10H90V18.45H54.8V60H44.2V18.45H10Z", "M10 70H90V80.4H10Z"
-    bare = 'fill="red" stroke="none"'
-    both = strokes(read(f'<path id="arm" d="{arm}" {bare}/><path id="bar" d="{bar}" {bare}/>'))[0]
-    _, _, notices = within_reach(both, brush)
-    told = [each.told for each in notices]
-    assert any("would overlap" in each for each in told) or not any("as others" in each for each in told)
+def test_place_tells_where_the_paper_would_do_and_draws_the_table(tmp_path, capsys):
+    cell, plan = job(*JOBS[0][:-1])
+    drawing, far = tmp_path / "plan.json", tmp_path / "far.toml"
+    drawing.write_text(_core.write_plan(plan))
+    box = ((-400.0, -1000.0, -50.0), (400.0, -700.0, 500.0))
+    far.write_text(write_cell(replace(cell, workspace=replace(cell.workspace, box_mm=box))))
+    picture = tmp_path / "table.svg"
+    assert main(["cell", "place", str(far), str(drawing), "-o", str(picture)]) == 1
+    said = capsys.readouterr()
+    assert "the sheet moved by" in said.out and "origin_mm = [" in said.out
+    assert "begins with its joints at" in said.out and "out of reach" in said.err
+    assert picture.read_text().count('class="sheet"') == 2
+    assert main(["cell", "place", "linuxcnc-3axis"]) == 1
+    assert "has no table arm" in capsys.readouterr().err
