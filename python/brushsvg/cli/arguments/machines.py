@@ -19,6 +19,22 @@ from .flags import (
 from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
+def add_first_run(commands) -> None:
+    first = commands.add_parser("first-run", help="make what a careful person runs before the first job")
+    first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
+    first.add_argument("-o", "--output", metavar="OUT", required=True, help=programs())
+    first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    first.add_argument(
+        "--sheet", metavar="WxH", type=values.size, default=(200.0, 100.0), help="default: 200x100"
+    )
+    add_quiet(first)
+    first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
+
+
+def _check_first_run(args) -> None:
+    check_files(args, [(args.brush, None)], [(args.output, PROGRAMS)])
+
+
 def add_border(commands) -> None:
     border = commands.add_parser("border", help="make an air run round what will be painted, at safe height")
     add_input(border)

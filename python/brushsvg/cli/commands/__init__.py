@@ -12,6 +12,7 @@ from .chart import chart_file
 from .check import check_file
 from .compare import compare_files
 from .convert import convert_file
+from .first_run import first_run_file
 from .height import height_file
 from .import_drawing import import_file
 from .plugin import install_plugin
@@ -38,6 +39,7 @@ __all__ = [
     "check_file",
     "compare_files",
     "convert_file",
+    "first_run_file",
     "height_file",
     "import_file",
     "install_plugin",

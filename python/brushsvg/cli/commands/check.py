@@ -46,7 +46,7 @@ def check_file(args) -> None:
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, suffix_of(args.program), cell)
     warn_of_arm(cell)
-    if made.border_mm or made.heights_mm:
+    if made.border_mm or made.heights_mm or made.first_mm:
         return _check_job(args, text, made, read, cell, brush, z_offset_mm)
     work = _as_made(args, made, cell, brush) if args.input else None
     with about(args.program):
@@ -116,7 +116,7 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
     with about(args.program):
         if args.preview:
             raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
-        if made.heights_mm and args.input:
+        if (made.heights_mm or made.first_mm) and args.input:
             raise Error(
                 "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
             )
@@ -131,14 +131,21 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
             )
             problems = looked.problems + (_border_notices(made, work) if work else [])
             does = f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
+        elif made.first_mm:
+            looked = setup_programs.look_at_first_run(text, read, made, brush, cell)
+            problems = looked.problems
+            does = "goes round the sheet in the air, touches it at four points, strokes at heights from {:g} to {:g} mm"
+            does = does.format(*made.first_mm)
         else:
             looked = setup_programs.look_at_heights(text, read, made, brush, cell)
             problems = looked.problems
             highest, lowest, step = made.heights_mm
             does = f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
     if args.json:
-        told = {"job": "border" if made.border_mm else "height", "time_s": round(looked.time_s, 3)}
-        told |= {"border_mm": made.border_mm} if made.border_mm else {"heights_mm": made.heights_mm}
+        job = "border" if made.border_mm else "first-run" if made.first_mm else "height"
+        told = {"job": job, "time_s": round(looked.time_s, 3)}
+        heights_mm = made.first_mm or made.heights_mm
+        told |= {"border_mm": made.border_mm} if made.border_mm else {"heights_mm": heights_mm}
         tell(json.dumps(told) + "\n")
     else:
         tell(f"{args.program}: {does}; takes about {clock(looked.time_s)}\n")
