@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arm_judge import judge_of
+from diagnostics import in_json, is_told
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -126,16 +127,16 @@ def test_convert_and_check_ask_the_arm(tmp_path, capsys):
     far.write_text(write_cell(cell))
     near.write_text(write_cell(replace(cell, paper=replace(cell.paper, origin_mm=(-50.0, -500.0, 20.0)))))
     program = tmp_path / "line.script"
-    assert main(["convert", str(drawing), str(program), "--cell", str(far)]) == 1
-    assert "out of reach of arm UR5e" in capsys.readouterr().err and not program.exists()
+    status, _, told = in_json(capsys, "convert", drawing, program, "--cell", far)
+    assert status == 1 and is_told(told, "arm-out-of-reach UR5e", "line") and not program.exists()
     assert main(["convert", str(drawing), str(program), "--cell", str(near), "--quiet"]) == 0
     assert main(["check", str(program), "--cell", str(near)]) == 0
     text = program.read_text()
-    program.write_text(text.replace("-0.500000", "-0.980000", 1))  # the line that sets the paper
-    assert program.read_text() != text
+    assert text.count("-0.5000000") == 1  # in the line that sets the paper
+    program.write_text(text.replace("-0.5000000", "-0.9800000").replace("-500.0 20.0", "-980.0 20.0"))
     capsys.readouterr()
-    assert main(["check", str(program), "--cell", str(far)]) == 1
-    assert "out of reach of arm UR5e" in capsys.readouterr().err
+    status, _, told = in_json(capsys, "check", program, "--cell", far)
+    assert status == 1 and is_told(told, "arm-out-of-reach UR5e", "line")
 
 
 def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, monkeypatch):
@@ -145,23 +146,25 @@ def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, m
     far.write_text(write_cell(cell))
     monkeypatch.setitem(sys.modules, "ssik", None)
     joints.joints_of.cache_clear()
-    assert main(["convert", str(drawing), str(tmp_path / "a.script"), "--cell", str(far)]) == 0
-    assert "pip install ssik" in capsys.readouterr().err
-    assert main(["cell", "place", str(far)]) == 1
-    assert "pip install ssik" in capsys.readouterr().err
+    status, _, told = in_json(capsys, "convert", drawing, tmp_path / "a.script", "--cell", far)
+    assert status == 0 and is_told(told, "arm-not-followed ssik UR5e")
+    status, _, told = in_json(capsys, "cell", "place", far)
+    assert status == 1 and is_told(told, "package-missing ssik")
 
 
 def test_place_tells_where_the_paper_would_do_and_draws_the_table(tmp_path, capsys):
     cell, plan = job(*JOBS[0][:-1])
-    drawing, far = tmp_path / "plan.json", tmp_path / "far.toml"
+    drawing, far, near, picture = (tmp_path / n for n in ("plan.json", "far.toml", "near.toml", "table.svg"))
     drawing.write_text(_core.write_plan(plan))
     box = ((-400.0, -1000.0, -50.0), (400.0, -700.0, 500.0))
-    far.write_text(write_cell(replace(cell, workspace=replace(cell.workspace, box_mm=box))))
-    picture = tmp_path / "table.svg"
-    assert main(["cell", "place", str(far), str(drawing), "-o", str(picture)]) == 1
-    said = capsys.readouterr()
-    assert "the sheet moved by" in said.out and "origin_mm = [" in said.out
-    assert "begins with its joints at" in said.out and "out of reach" in said.err
+    cell = replace(cell, workspace=replace(cell.workspace, box_mm=box))
+    far.write_text(write_cell(cell))
+    status, said, told = in_json(capsys, "cell", "place", far, drawing, "-o", picture)
+    assert status == 1 and is_told(told, "arm-out-of-reach UR5e")
     assert picture.read_text().count('class="sheet"') == 2
-    assert main(["cell", "place", "linuxcnc-3axis"]) == 1
-    assert "has no table arm" in capsys.readouterr().err
+    numbers = re.search(r"origin_mm = \[(.*?)\]", said).group(1).split(",")
+    moved = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
+    near.write_text(write_cell(replace(cell, paper=moved)))
+    assert in_json(capsys, "cell", "place", near, drawing)[0] == 0
+    status, _, told = in_json(capsys, "cell", "place", "linuxcnc-3axis")
+    assert status == 1 and is_told(told, "arm-missing")

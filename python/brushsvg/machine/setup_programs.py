@@ -63,7 +63,10 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
             "first run: round the sheet, at safe height", (_ask("all clear of the tool"), *look.steps)
         )
         for number, corner in enumerate(_inner_corners(sheet_mm), 1):
-            yield Section(f"first run: touch the paper, point {number} of 4", _touch(corner, brush, cell))
+            yield Section(
+                f"first run: touch the paper, point {number} of 4",
+                _touch(corner, _over_all(highest_mm, cell), brush, cell),
+            )
         for number, section in enumerate(strokes.sections()):
             steps = (
                 (_ask("the brush has paint, strokes follow"), *section.steps)
@@ -71,7 +74,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
                 else section.steps
             )
             yield Section(section.title, steps)
-        one = _stroke_at(ends, -depth_mm, cell.heights.clearance_mm, brush, cell)
+        one = _stroke_at(ends, -depth_mm, _over_all(highest_mm, cell), brush, cell)
         yield Section(
             f"first run: one stroke, {depth_mm:g} mm deep", (_ask("the brush has paint again"), *one)
         )
@@ -84,7 +87,11 @@ def _ask(message: str) -> Wait:
 
 
 def _raised(step: Move | Wait, by_mm: float) -> Move | Wait:
-    return step if isinstance(step, Wait) else replace(step, points_mm=step.points_mm + (0.0, 0.0, by_mm))
+    return (
+        step
+        if isinstance(step, Wait)
+        else replace(step, points_mm=step.points_mm + np.array([0.0, 0.0, by_mm]))
+    )
 
 
 def _highest_air(cell: Cell, sheet_mm) -> float:
@@ -93,7 +100,10 @@ def _highest_air(cell: Cell, sheet_mm) -> float:
     corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
     frame, safe_mm = robot_from_paper(cell), cell.heights.safe_mm
     for more_mm in (HIGH_MM, HIGH_MM / 2):
-        told = [told_mm(over(corner, safe_mm), cell.machine)[0] + (0.0, 0.0, more_mm) for corner in corners]
+        told = [
+            told_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
+            for corner in corners
+        ]
         if not astray(ways([np.array(told)]), frame, cell, sheet_mm):
             return safe_mm + more_mm
     return safe_mm
@@ -109,10 +119,10 @@ def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
     )
 
 
-def _touch(place, brush, cell: Cell) -> tuple[Move | Wait, ...]:
+def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
     """Down to where the tip should just touch, twice asked: a person stops it who sees the brush bend."""
     press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
-    touching, down = (told_mm(over(place, z), cell.machine) for z in (0.0, cell.heights.clearance_mm))
+    touching, down = (told_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
     return (
         Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
@@ -162,7 +172,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
         )
     starts = _lanes(len(heights), sheet_mm)
     safe = cell.heights.safe_mm
-    clearance = max(cell.heights.clearance_mm, highest_mm + 0.5)
+    clearance = _over_all(highest_mm, cell)
     if clearance > safe:
         raise Error(
             f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height",
@@ -187,6 +197,11 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             )
 
     return _unless_astray(sections, brush, cell, sheet_mm)
+
+
+def _over_all(highest_mm: float, cell: Cell) -> float:
+    """From there down all is slow, since the paper may lie as high as highest_mm [mm]."""
+    return max(cell.heights.clearance_mm, highest_mm + 0.5)
 
 
 def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -> tuple[Move, ...]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import replace
-
-import numpy as np
 
 from ...brush.library import find_brush
 from ...errors import Error, Notice
@@ -86,7 +85,7 @@ def cell_place(args) -> None:
         pose = place.cell_at(cell, found.frame).paper
         tell(f"{args.input}: the sheet {found.told} would do: {_pose(pose)}\n")
     if there.start_rad is not None:
-        told = ", ".join(f"{angle:.0f}" for angle in np.degrees(there.start_rad))
+        told = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
         tell(f"{args.input}: it begins with its joints at {told} degrees, or turned by whole turns\n")
     if problems:
         if not found:
