@@ -34,6 +34,8 @@ COMMANDS = [
     "animate IN OUT.html",
     "import IN OUT.png",
     "border IN OUT.ngc",
+    "first-run CELL -o OUT.ngc",
+    "first-run linuxcnc-3axis -o OUT.ngc --brush BRUSH",
     "height OUT.ngc --brush BRUSH",
     "check PROGRAM",
     "check own.ngc IN --preview OUT.svg",
@@ -53,6 +55,8 @@ COMMANDS = [
     "cell show CELL",
     "cell check CELL",
     "cell new OUT.toml --like CELL",
+    "cell place CELL",
+    "cell place ur5e IN",
     "install-plugin inkscape ZIP",
 ]
 NONSENSE = {  # None: a folder; False: nothing

@@ -157,6 +157,36 @@ class Machine:
 
 
 @dataclass(frozen=True)
+class Arm:
+    """The arm's links and joints: `convert`, `check` and `cell place` then follow its joints along the program."""
+
+    name: str = _key("of the arm", "text")
+    source: str = _key("where its numbers are from", "text")
+    dh: tuple = _key(
+        "a row for each joint, a and d in mm, alpha and theta in degrees: turned by theta and the joint about z, "
+        "along z by d, along x by a, turned about x by alpha",
+        (None, 4),
+    )
+    limits_deg: tuple = _key("least and greatest angle of each joint", (None, 2), -1e4, 1e4)
+    speeds_deg_s: tuple = _key(
+        "the most that each joint turns by in a second; none: not asked", (None,), 0.1, 1e4, default=()
+    )
+    base_mm: tuple = _key("where the first joint's frame lies in the robot's", (3,), default=(0.0, 0.0, 0.0))
+    base_rotation_deg: tuple = _key("of that frame, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0))
+    flange_rotation_deg: tuple = _key(
+        "of the flange behind the last joint, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
+    )
+    posture_deg: tuple = _key(
+        "joints somewhere over the paper: programs begin in the posture nearest to them; none: in any that does it all",
+        (None,),
+        -1e4,
+        1e4,
+        default=(),
+    )
+    prebuilt: str = _key("an arm of the same links that the library ssik has ready", "text", default="")
+
+
+@dataclass(frozen=True)
 class Station:
     """A vessel, or a place to wait for a person with one. In the paper's frame, as all heights."""
 
@@ -222,6 +252,7 @@ class Cell:
     reload: Reload | None = None
     machine: Machine | None = None
     robodk: RoboDK | None = None
+    arm: Arm | None = None
     stations: tuple[Station, ...] = ()
 
 
@@ -236,8 +267,9 @@ TABLES = {
     "reload": Reload,
     "machine": Machine,
     "robodk": RoboDK,
+    "arm": Arm,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "robodk")
+OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "robodk", "arm")
 NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), "tool"
 )

@@ -27,6 +27,7 @@ from .frames import moved, normal_tilt_deg
 from .move_extents import from_origin, ways
 from .workspace_limits import astray
 
+JOINTS = 6  # of an arm: with more of them, angles for a place are no longer few
 COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
 
 
@@ -58,6 +59,24 @@ def check(cell: Cell) -> None:
         _check_servo(cell)
         _check_machine_of_servo(cell)
     _check_paint(cell)
+    if cell.arm:
+        _check_arm(cell)
+
+
+def _check_arm(cell: Cell) -> None:
+    arm = cell.arm
+    if cell.tool is None:
+        raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
+    if len(arm.dh) != JOINTS:
+        raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
+    for key in ("limits_deg", "speeds_deg_s", "posture_deg"):
+        if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
+            sentence = f"{len(given)} values are given for {JOINTS} joints"
+            raise Error(sentence, where=f"arm.{key}", code="cell-arm")
+    for number, (low, high) in enumerate(arm.limits_deg, 1):
+        if not low < high:
+            sentence = f"joint {number}: the least angle {low:g} must be below the greatest, {high:g} degrees"
+            raise Error(sentence, where="arm.limits_deg", code="cell-arm")
 
 
 OWN = {  # keys that one language has, and why another has none

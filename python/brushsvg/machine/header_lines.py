@@ -48,6 +48,17 @@ def height_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str,
     )
 
 
+def first_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
+    """The header of a first run with strokes from the highest to the lowest height [mm], a step apart."""
+    return (
+        "title: first run",
+        f"brush: {brush}, {sum(1 for each in made.sections() if each.title.startswith('stroke '))} strokes",
+        _sheet_line(sheet_mm),
+        "first: heights {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
+        *about(made),
+    )
+
+
 def _sheet_line(sheet_mm) -> str:
     return "sheet: {:g} x {:g} mm".format(*sheet_mm)
 

@@ -13,7 +13,7 @@ from .cell import Cell, robot_from_paper
 from .corner_blending import blend_radii, blended
 from .distortion import true_pass
 from .paint_reload import PlanInLoads
-from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, walked
+from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked
 from .rounding import as_written
 from .workspace_limits import beyond_edges
 
@@ -30,6 +30,7 @@ def look(loads: PlanInLoads, brush, marks, cell: Cell, tolerance_mm: float, job:
             return walk
         marks = _core.simulate(loads.as_plan(), brush)
     found = walk.problems + off_sheet(marks, brush, loads.sheet_mm)
+    found = found or out_of_arm(walk.made, loads.sheet_mm)
     return replace(walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm))
 
 

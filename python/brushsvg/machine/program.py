@@ -10,6 +10,8 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
+from .arm.joints import is_installed
+from .arm.place import unreachable
 from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
 from .distortion import told_high_mm, told_mm, true_mm
@@ -128,6 +130,14 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
         ends = list(moved(frame, np.reshape(ends, (-1, 3))))
         frame, height_mm = np.eye(4), made.rise_in_robot_mm
     return found + rise_astray(height_mm, ends, frame, made.cell)
+
+
+def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
+    """A notice, with the place where the paper would have to lie, for what the cell's arm cannot do of a program; none
+    where the cell has no arm, or nothing is installed that knows its joints."""
+    if made.cell.arm is None or not is_installed():
+        return []
+    return unreachable(made, lambda there: not astray_in(there, sheet_mm))
 
 
 def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,15 +12,19 @@ from ..errors import Error
 from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper
 from .distortion import told_mm
 from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
-from .program import approach_mm_s, astray_in, over, safely_over
-from .workspace_limits import touching_mm_s
+from .move_extents import ways
+from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
+from .workspace_limits import astray, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
 SPEED_MM_S = 15.0
 STROKE_MM = 12.0
 LANE_MM = 6.0
+LANE_APART_MM = 25.0  # an arm does what is between two such lanes, where it does both
 LONG_EVERY = 5  # every fifth stroke is half as long again, to count by
 LONGER = 1.5
+HIGH_MM = 30.0  # over the safe height: what was measured wrongly is seen before anything is hit
+ONE_STROKE_MM, ONE_STROKE_DEPTH_MM = 30.0, 2.0
 
 
 def around(bounds_mm) -> tuple[float, float, float, float]:
@@ -27,6 +32,106 @@ def around(bounds_mm) -> tuple[float, float, float, float]:
     left, bottom, right, top = bounds_mm
     out = [math.floor(side * 100 + 1e-6) / 100 for side in (left, bottom, -right, -top)]
     return (out[0], out[1], -out[2], -out[3])
+
+
+def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
+    """What a careful person does before the first job: round the sheet high in the air and again at safe height, down
+    to the paper at four points, the strokes of `paper_height`, one stroke; a person lets it go on in between.
+
+    Error when it leaves the workspace or the strokes do not fit on the sheet.
+    """
+    width, height = sheet_mm
+    high_mm = _highest_air(cell, sheet_mm) - cell.heights.safe_mm
+    round_it = border((0.0, 0.0, width, height), brush, cell, sheet_mm)
+    strokes = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    used_mm = max(x for x, _ in _lanes(len(strokes_at(highest_mm, lowest_mm, step_mm)), sheet_mm))
+    start = (width - LANE_MM - ONE_STROKE_MM, LANE_MM)
+    if start[0] < used_mm + STROKE_MM * LONGER + LANE_MM:
+        room_mm = used_mm + STROKE_MM * LONGER + 2 * LANE_MM + ONE_STROKE_MM
+        raise Error(
+            f"the sheet is {width:g} mm wide, less than the {room_mm:g} mm that a first run needs on it",
+            code="strokes-out-of-range",
+        )
+    depth_mm = min(ONE_STROKE_DEPTH_MM, brush.depth_range_mm[1], -cell.heights.lowest_mm)
+    ends = (start, (start[0] + ONE_STROKE_MM, start[1]))
+
+    def sections() -> Iterator[Section]:
+        (look,) = round_it.sections()
+        lifted = tuple(_raised(step, high_mm) for step in look.steps)
+        yield Section("first run: round the sheet, high in the air", lifted)
+        yield Section(
+            "first run: round the sheet, at safe height", (_ask("all clear of the tool"), *look.steps)
+        )
+        for number, corner in enumerate(_inner_corners(sheet_mm), 1):
+            yield Section(
+                f"first run: touch the paper, point {number} of 4",
+                _touch(corner, _over_all(highest_mm, cell), brush, cell),
+            )
+        for number, section in enumerate(strokes.sections()):
+            steps = (
+                (_ask("the brush has paint, strokes follow"), *section.steps)
+                if number == 0
+                else section.steps
+            )
+            yield Section(section.title, steps)
+        one = _stroke_at(ends, -depth_mm, _over_all(highest_mm, cell), brush, cell)
+        yield Section(
+            f"first run: one stroke, {depth_mm:g} mm deep", (_ask("the brush has paint again"), *one)
+        )
+
+    return _unless_astray(sections, brush, cell, sheet_mm)
+
+
+def _ask(message: str) -> Wait:
+    return Wait(None, message)
+
+
+def _raised(step: Move | Wait, by_mm: float) -> Move | Wait:
+    return (
+        step
+        if isinstance(step, Wait)
+        else replace(step, points_mm=step.points_mm + np.array([0.0, 0.0, by_mm]))
+    )
+
+
+def _highest_air(cell: Cell, sheet_mm) -> float:
+    """As far over the safe height as an air run goes, by whole halves of it, where the workspace has the room."""
+    width, height = sheet_mm
+    corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
+    frame, safe_mm = robot_from_paper(cell), cell.heights.safe_mm
+    for more_mm in (HIGH_MM, HIGH_MM / 2):
+        told = [
+            told_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
+            for corner in corners
+        ]
+        if not astray(ways([np.array(told)]), frame, cell, sheet_mm):
+            return safe_mm + more_mm
+    return safe_mm
+
+
+def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
+    (width, height), inset = sheet_mm, min(LANE_MM, *(side / 4 for side in sheet_mm))
+    return (
+        (inset, inset),
+        (width - inset, inset),
+        (width - inset, height - inset),
+        (inset, height - inset),
+    )
+
+
+def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
+    """Down to where the tip should just touch, twice asked: a person stops it who sees the brush bend."""
+    press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
+    touching, down = (told_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
+    return (
+        Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
+        Move("approach", down, approach_mm_s(brush, cell)),
+        _ask("the tip is just over the paper"),
+        Move("land", touching, press_mm_s),
+        _ask("the tip just touches"),
+        Move("lift", down, press_mm_s),
+        Move("retract", safely_over(down[0], cell), cell.speeds.travel_mm_s),
+    )
 
 
 def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
@@ -66,8 +171,8 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             code="height-out-of-range",
         )
     starts = _lanes(len(heights), sheet_mm)
-    safe, speeds = cell.heights.safe_mm, cell.speeds
-    clearance = max(cell.heights.clearance_mm, highest_mm + 0.5)
+    safe = cell.heights.safe_mm
+    clearance = _over_all(highest_mm, cell)
     if clearance > safe:
         raise Error(
             f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height",
@@ -80,23 +185,10 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             f"of cell {cell.name}",
             code="speed-out-of-range",
         )
-    press = min(speeds.press_mm_s, speed)
     steps = []
     for number, (height, (x, y)) in enumerate(zip(heights, starts, strict=True)):
         length = STROKE_MM * (LONGER if number % LONG_EVERY == 0 else 1.0)
-        ends = (x, y), (x + length, y)
-        first, last = (told_mm(over(end, height), cell.machine) for end in ends)
-        down, up = (told_mm(over(end, clearance), cell.machine) for end in ends)
-        steps.append(
-            (
-                Move("travel", safely_over(down[0], cell), speeds.travel_mm_s),
-                Move("approach", down, approach_mm_s(brush, cell)),
-                Move("land", first, press),
-                Move("paint", last, speed),
-                Move("lift", up, press),
-                Move("retract", safely_over(up[0], cell), speeds.travel_mm_s),
-            )
-        )
+        steps.append(_stroke_at(((x, y), (x + length, y)), height, clearance, brush, cell))
 
     def sections() -> Iterator[Section]:
         for number, (height, each) in enumerate(zip(heights, steps, strict=True), 1):
@@ -105,6 +197,46 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
             )
 
     return _unless_astray(sections, brush, cell, sheet_mm)
+
+
+def _over_all(highest_mm: float, cell: Cell) -> float:
+    """From there down all is slow, since the paper may lie as high as highest_mm [mm]."""
+    return max(cell.heights.clearance_mm, highest_mm + 0.5)
+
+
+def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -> tuple[Move, ...]:
+    """A stroke from one place (x, y) to another at a height."""
+    speed_mm_s = min(touching_mm_s(brush, cell), SPEED_MM_S)
+    press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
+    first, last = (told_mm(over(end, height_mm), cell.machine) for end in ends)
+    down, up = (told_mm(over(end, clearance_mm), cell.machine) for end in ends)
+    return (
+        Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
+        Move("approach", down, approach_mm_s(brush, cell)),
+        Move("land", first, press_mm_s),
+        Move("paint", last, speed_mm_s),
+        Move("lift", up, press_mm_s),
+        Move("retract", safely_over(up[0], cell), cell.speeds.travel_mm_s),
+    )
+
+
+def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+    """To and fro over a whole sheet, at the safe height and touching it: what any drawing on it may ask of an arm. It
+    is asked and never run; limits are not looked at."""
+    width, height = sheet_mm
+    lanes = np.linspace(0.0, height, max(2, math.ceil(height / LANE_APART_MM) + 1))
+    ends = [((0.0, y), (width, y))[:: 1 if k % 2 == 0 else -1] for k, y in enumerate(lanes)]
+    flat = np.array(ends).reshape(-1, 2)
+    high, low = (np.column_stack([flat, np.full(len(flat), z)]) for z in (cell.heights.safe_mm, 0.0))
+    moves = (
+        Move("travel", high, cell.speeds.travel_mm_s),
+        Move("look", low[::-1], touching_mm_s(brush, cell)),
+        Move("retract", over(low[0], cell.heights.safe_mm), cell.speeds.travel_mm_s),
+    )
+    frame = robot_from_paper(cell, z_offset_mm)
+    rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
+    sections = (Section("the sheet", moves),)
+    return Program((), cell, frame, lambda: iter(sections), *rises_mm, touching_mm_s(brush, cell))
 
 
 def strokes_at(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
@@ -141,6 +273,6 @@ def _unless_astray(sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0
         return (at_told_speeds(section, cell) for section in sections())
 
     made = Program((), cell, frame, told, *rises_mm, touching_mm_s(brush, cell))
-    for notice in astray_in(made, sheet_mm):
-        raise Error(notice.sentence, code=notice.code)
+    for notice in astray_in(made, sheet_mm) or out_of_arm(made, sheet_mm):
+        raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return made

@@ -9,10 +9,10 @@ import numpy as np
 from ..errors import Notice
 from ..machine.cell import Cell
 from ..machine.distortion import true_mm
-from ..machine.header_lines import border_header, height_header
+from ..machine.header_lines import border_header, first_header, height_header
 from ..machine.motion import Program, duration_s
 from ..machine.program import Job
-from ..machine.setup_programs import border, paper_height
+from ..machine.setup_programs import ONE_STROKE_DEPTH_MM, border, first_run, paper_height
 from .against_regenerated import differing_line
 from .readback import Readback
 from .readback.header import Made
@@ -50,6 +50,17 @@ def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) ->
     again = replace(again, header=height_header(brush.name, sheet_mm, made.heights_mm, again))
     sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     return _looked(text, read, again, sections, cell, lowest_mm, "height of the lowest stroke")
+
+
+def look_at_first_run(text: str, read: Readback, made: Made, brush, cell: Cell) -> Looked:
+    """A first run: the same for all that it does. Error when it leaves the workspace or does not fit on the sheet."""
+    sheet_mm = made.sheet_mm
+    highest_mm, lowest_mm, step_mm = made.first_mm
+    again = first_run(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    again = replace(again, header=first_header(brush.name, sheet_mm, made.first_mm, again))
+    sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
+    deepest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)
+    return _looked(text, read, again, sections, cell, deepest_mm, "height of the deepest stroke")
 
 
 def _looked(

@@ -20,6 +20,22 @@ from .flags import (
 from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
+def add_first_run(commands) -> None:
+    first = commands.add_parser("first-run", help="make what a careful person runs before the first job")
+    first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
+    first.add_argument("-o", "--output", metavar="OUT", required=True, help=programs())
+    first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    first.add_argument(
+        "--sheet", metavar="WxH", type=values.size, default=(200.0, 100.0), help="default: 200x100"
+    )
+    add_quiet(first)
+    first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
+
+
+def _check_first_run(args) -> None:
+    check_files(args, [(args.brush, None)], [(args.output, PROGRAMS)])
+
+
 def add_border(commands) -> None:
     border = commands.add_parser("border", help="make an air run round what will be painted, at safe height")
     add_input(border)
@@ -135,6 +151,24 @@ def add_cell(commands) -> None:
     )
     add_quiet(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
+    _add_cell_place(whats)
+
+
+def _add_cell_place(whats) -> None:
+    place = whats.add_parser("place", help="say where paper may lie for the arm of a cell")
+    place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
+    place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
+    place.add_argument("-o", "--output", metavar="FILE", help="a picture of the table (.png .svg)")
+    place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    add_layout(place)
+    add_wide(place)
+    add_quiet(place)
+    place.set_defaults(run="cell_place", parser=place, check=_check_cell_place)
+
+
+def _check_cell_place(args) -> None:
+    read = [(args.drawing, DRAWINGS), (args.brush, None)]
+    check_files(args, read, [(args.output, PICTURES)])
 
 
 def _check_cell_new(args) -> None:

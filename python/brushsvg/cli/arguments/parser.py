@@ -61,6 +61,7 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_animate(commands)
     drawings.add_import(commands)
     drawings.add_text(commands)
+    machines.add_first_run(commands)
     machines.add_border(commands)
     machines.add_height(commands)
     machines.add_check(commands)

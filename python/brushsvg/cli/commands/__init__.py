@@ -8,11 +8,12 @@ from .article import article_files
 from .border import border_file
 from .brush import brush_check, brush_list, brush_new, brush_plot, brush_show
 from .calibrate import calibrate_file
-from .cell import cell_check, cell_list, cell_new, cell_show
+from .cell import cell_check, cell_list, cell_new, cell_place, cell_show
 from .chart import chart_file
 from .check import check_file
 from .compare import compare_files
 from .convert import convert_file
+from .first_run import first_run_file
 from .height import height_file
 from .import_drawing import import_file
 from .plugin import install_plugin
@@ -34,11 +35,13 @@ __all__ = [
     "cell_check",
     "cell_list",
     "cell_new",
+    "cell_place",
     "cell_show",
     "chart_file",
     "check_file",
     "compare_files",
     "convert_file",
+    "first_run_file",
     "height_file",
     "import_file",
     "install_plugin",

@@ -9,7 +9,7 @@ from ...machine.motion import duration_s
 from ...machine.program import Job
 from ...pipeline import outputs
 from ..console import about
-from ..steps.options import settled, typed, warn_of_example
+from ..steps.options import settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import look
 
@@ -31,5 +31,5 @@ def border_file(args) -> None:
             title, work.brush.name, count, work.plan.sheet_mm, outputs.notes(work), around_mm, made, job
         )
         text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
-    warn_of_example(args, cell)
+    warn_of_cell(args, cell)
     write(args, {args.output: text}, seconds=duration_s(made))

@@ -1,17 +1,24 @@
-"""brushsvg cell: list, show, check, new."""
+"""brushsvg cell: list, show, check, new, place."""
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import replace
 
-from ...errors import Notice
+from ...brush.library import find_brush
+from ...errors import Error, Notice
 from ...machine import cell_check as cell_checks
 from ...machine.cell_file import DEFAULT_CELL, cell_names, find_cell, parse_cell, write_cell
 from ...machine.describe_cell import cell_page
+from ...machine.paint_reload import in_loads
 from ...machine.posts import POSTS
-from ..console import RefusedError, about, tell, warn
-from ..steps.output_places import check_places, tell_list, write
+from ...machine.writer import whole_program
+from ...pipeline.preparation import DEFAULT_BRUSH
+from ..console import RefusedError, about, stage, tell, warn
+from ..steps.options import brush_of, exact_cell, typed
+from ..steps.output_places import check_places, suffix_of, tell_list, write
+from ..steps.prepared import prepare
 
 
 def cell_list(_args) -> None:
@@ -34,6 +41,64 @@ def cell_check(args) -> None:
         raise RefusedError(args.input, problems)
     warn(args.input, cell_checks.remarks(cell))
     tell(f"{args.input}: cell {cell.name} can be used\n")
+
+
+def cell_place(args) -> None:
+    from ...machine.arm import place
+    from ...machine.arm.follow import follow
+    from ...machine.arm.joints import joints_of
+    from ...machine.program import astray_in
+    from ...machine.setup_programs import over_sheet
+    from ...pictures.table_picture import table_picture
+
+    check_places(args.output)
+    cell = exact_cell(args.input)
+    with about(args.input):
+        if cell.arm is None:
+            raise Error(
+                f"cell {cell.name} has no table arm: nobody knows what its machine reaches",
+                code="arm-missing",
+            )
+        joints = joints_of(cell.arm)
+    if args.drawing:
+        work = prepare(typed(args, input=args.drawing, cell=args.input), cell)
+        sheet_mm = work.plan.sheet_mm
+        made = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
+    else:
+        sheet_mm = args.sheet or SHEET_MM
+        made = over_sheet(brush_of(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
+    stage("following the joints")
+    followed = follow(made, joints)
+    problems = [*followed.problems, *astray_in(made, sheet_mm)]
+    found = place.nearest(made, joints, lambda there: not astray_in(there, sheet_mm)) if problems else None
+    there = followed if found is None else follow(place.at(made, found.frame), joints)
+    if args.output:
+        stage("looking at the table")
+        table = place.table_of(cell, made.robot_from_frame, joints)
+        drawn = table_picture(
+            suffix_of(args.output), table, cell, sheet_mm, made.robot_from_frame, found and found.frame
+        )
+        write(args, {args.output: drawn})
+    if not problems:
+        tell(f"{args.input}: arm {cell.arm.name} does it all with the paper where it lies\n")
+    elif found:
+        pose = place.cell_at(cell, found.frame).paper
+        tell(f"{args.input}: the sheet {found.told} would do: {_pose(pose)}\n")
+    if there.start_rad is not None:
+        told = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
+        tell(f"{args.input}: it begins with its joints at {told} degrees, or turned by whole turns\n")
+    if problems:
+        if not found:
+            problems[0] = replace(problems[0], advice=place.NOWHERE)
+        raise RefusedError(args.drawing or args.input, problems)
+
+
+SHEET_MM = (200.0, 100.0)
+
+
+def _pose(paper) -> str:
+    origin, turned = (", ".join(f"{v:g}" for v in each) for each in (paper.origin_mm, paper.rotation_deg))
+    return f"origin_mm = [{origin}], rotation_deg = [{turned}]"
 
 
 def cell_new(args) -> None:

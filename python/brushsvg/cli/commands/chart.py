@@ -11,7 +11,7 @@ from ...pipeline import preparation
 from ...text_summary import summarized
 from ..arguments.values import EDGE_NOISE_MM
 from ..console import RefusedError, about, stage, tell
-from ..steps.options import brush_of, exact_cell, settled, typed, warn_of_example
+from ..steps.options import brush_of, exact_cell, settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import seconds_written
 
@@ -48,7 +48,7 @@ def chart_file(args) -> None:
             files[args.page] = chart_pdf(made) if pdf else chart_page(made).encode()
     if args.chart:
         files[args.chart] = write_chart(made).encode()
-    warn_of_example(args, cell)
+    warn_of_cell(args, cell)
     write(args, files, len(loads.loads), seconds_written(suffix, made.plan, walk, brush, cell))
     tell(
         dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise or EDGE_NOISE_MM)

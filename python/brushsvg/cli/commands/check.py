@@ -16,13 +16,14 @@ from ...machine.cell_file import cell_names
 from ...machine.motion import duration_s
 from ...machine.paint_reload import in_loads
 from ...machine.posts import GCODE
+from ...machine.program import out_of_arm
 from ...machine.writer import beside
 from ...pipeline import outputs, prediction, preparation
 from ...pipeline.foreign_program import foreign_program
 from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
-from ..steps.options import brush_of, cell_of, exact_cell, typed
+from ..steps.options import brush_of, cell_of, exact_cell, typed, warn_of_arm
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
 
@@ -67,7 +68,8 @@ def check_file(args) -> None:
         brush = brush_of(args.brush) or find_brush(made.brush)
         z_offset_mm = made.z_offset_mm if args.z_offset is None else args.z_offset
         read = read_program(text, suffix_of(args.program), cell)
-    if made.border_mm or made.heights_mm:
+    warn_of_arm(cell)
+    if made.border_mm or made.heights_mm or made.first_mm:
         return _check_job(args, text, made, read, cell, brush, z_offset_mm)
     work = _as_made(args, made, cell, brush) if args.input else None
     with about(args.program):
@@ -100,6 +102,8 @@ def check_file(args) -> None:
             )
         changed = again and against_regenerated.differing_line(text, read, again, cell, least_s)
         problems = problems + ([Notice("", changed, code="program-changed")] if changed else [])
+        if again and not problems:
+            problems = out_of_arm(again, sheet_mm)
         shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
         if args.preview:
             outlined = prediction.outlined(ran.marks, brush, stage)
@@ -161,7 +165,7 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
     with about(args.program):
         if args.preview:
             raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
-        if made.heights_mm and args.input:
+        if (made.heights_mm or made.first_mm) and args.input:
             raise Error(
                 "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
             )
@@ -176,14 +180,21 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
             )
             problems = looked.problems + (_border_notices(made, work) if work else [])
             does = f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
+        elif made.first_mm:
+            looked = setup_programs.look_at_first_run(text, read, made, brush, cell)
+            problems = looked.problems
+            does = "goes round the sheet in the air, touches it at four points, strokes at heights from {:g} to {:g} mm"
+            does = does.format(*made.first_mm)
         else:
             looked = setup_programs.look_at_heights(text, read, made, brush, cell)
             problems = looked.problems
             highest, lowest, step = made.heights_mm
             does = f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
     if args.json:
-        told = {"job": "border" if made.border_mm else "height", "time_s": round(looked.time_s, 3)}
-        told |= {"border_mm": made.border_mm} if made.border_mm else {"heights_mm": made.heights_mm}
+        job = "border" if made.border_mm else "first-run" if made.first_mm else "height"
+        told = {"job": job, "time_s": round(looked.time_s, 3)}
+        heights_mm = made.first_mm or made.heights_mm
+        told |= {"border_mm": made.border_mm} if made.border_mm else {"heights_mm": heights_mm}
         tell(json.dumps(told) + "\n")
     else:
         tell(f"{args.program}: {does}; takes about {clock(looked.time_s)}\n")

@@ -11,7 +11,7 @@ from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, warn
-from ..steps.options import settled, typed, warn_of_example
+from ..steps.options import settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare, seconds_written
 
@@ -59,7 +59,7 @@ def convert_file(args) -> None:
     warn(args.input, too_long(loads, brush, cell))
     if is_program:
         warn(args.input, with_one_pen(loads, cell, job.first_stroke))
-    warn_of_example(args, cell)
+    warn_of_cell(args, cell)
     seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
     stops = pens_changed(loads, cell, job.first_stroke) if is_program and may_pause(cell) else 0
     more = f"stops {'once' if stops == 1 else f'{stops} times'} for another pen" if stops else ""

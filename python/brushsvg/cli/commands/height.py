@@ -9,7 +9,7 @@ from ...machine import header_lines, writer
 from ...machine.motion import duration_s
 from ...pipeline import preparation
 from ..console import about
-from ..steps.options import brush_of, exact_cell, warn_of_example
+from ..steps.options import brush_of, exact_cell, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
 
 
@@ -26,5 +26,5 @@ def height_file(args) -> None:
         heights_mm = (args.highest, args.lowest, args.step)
         header = header_lines.height_header(brush.name, args.sheet, heights_mm, made)
         text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
-    warn_of_example(args, cell)
+    warn_of_cell(args, cell)
     write(args, {args.output: text}, sum(1 for _ in made.sections()), duration_s(made))

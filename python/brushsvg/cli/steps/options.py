@@ -7,7 +7,8 @@ from dataclasses import dataclass, fields, replace
 from ...brush.library import brush_names, find_brush
 from ...drawing import ReadOptions, settings_in
 from ...drawing.layout import Layout
-from ...errors import Error
+from ...errors import Error, Notice, lacking
+from ...machine.arm.joints import is_installed
 from ...machine.cell import Cell
 from ...machine.cell_check import OF_EXAMPLE
 from ...machine.cell_file import cell_names, find_cell
@@ -127,6 +128,17 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> prepara
     )
 
 
-def warn_of_example(args, cell: Cell) -> None:
-    if cell.paper.example and suffix_of(args.output) != ".json":
+def warn_of_cell(args, cell: Cell) -> None:
+    """Of what makes a program less sure than it looks: a paper that nobody taught, an arm that is not followed."""
+    if suffix_of(args.output) == ".json":
+        return
+    if cell.paper.example:
         warn(cell.name, [OF_EXAMPLE])
+    warn_of_arm(cell)
+
+
+def warn_of_arm(cell: Cell) -> None:
+    if cell.arm and not is_installed():
+        sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"
+        advice = lacking("its joints need", "ssik").sentence
+        warn(cell.name, [Notice("arm", sentence, code="arm-not-followed", advice=advice)])

@@ -14,7 +14,7 @@ class Made:
 
     strokes: how many the job has; notes: the lines that tell how it was planned, as they are written.
     border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
-    that find the paper; None for programs that paint.
+    that find the paper; first_mm: the same of a first run; None for programs that paint.
     """
 
     title: str
@@ -34,6 +34,7 @@ class Made:
     notes: tuple[str, ...] = ()
     border_mm: tuple[float, ...] | None = None
     heights_mm: tuple[float, ...] | None = None
+    first_mm: tuple[float, ...] | None = None
 
 
 def made(text: str) -> Made:
@@ -50,6 +51,7 @@ def made(text: str) -> Made:
     resumed = _said(header, "resumed", r"from stroke (\d+)", (1, 1e6))
     border = _said(header, "border", r"(\S+) to (\S+) mm, (\S+) to (\S+) mm", (-1e5, 1e6))
     heights = _said(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
+    first = _said(header, "first", r"heights (\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
     ends = r"(?:, start (?:exposed|hidden|squared|auto))?(?:, end (?:lifted|squared|auto))?"
     told = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
@@ -87,6 +89,7 @@ def made(text: str) -> Made:
         ),
         border_mm=(border[0], border[2], border[1], border[3]) if border else None,
         heights_mm=tuple(heights) if heights else None,
+        first_mm=tuple(first) if first else None,
     )
 
 

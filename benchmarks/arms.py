@@ -1,0 +1,21 @@
+"""All joint angles for random places of each arm that comes along, held against EAIK's: see tests/python/arm_judge.py.
+
+python benchmarks/arms.py [PLACES]
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
+
+from arm_judge import compare
+
+from brushsvg.machine.cell_file import cell_names, find_cell
+
+if __name__ == "__main__":
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
+    for name in cell_names():
+        if find_cell(name).arm:
+            print(name, compare(name, count), flush=True)

@@ -1,0 +1,155 @@
+"""Joints of the arms that come along, judged by chains of their own descriptions and by another library."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from arm_judge import compare
+
+from brushsvg.errors import Error
+from brushsvg.machine.arm.joints import frames, joints_of
+from brushsvg.machine.cell_file import cell_names, find_cell
+
+ARMS = [name for name in cell_names() if find_cell(name).arm]
+
+# Joints as the arms' own descriptions have them: xyz [mm], roll pitch yaw [quarter turns], axis; the flange's roll
+# pitch yaw last. UR's are those of the frame that its controller calls base.
+UR = [
+    ((0, 0, "d1"), (0, 0, 0)),
+    ((0, 0, 0), (1, 0, 0)),
+    (("a2", 0, 0), (0, 0, 0)),
+    (("a3", 0, "d4"), (0, 0, 0)),
+    ((0, "-d5", 0), (1, 0, 0)),
+    ((0, "d6", 0), (-1, 0, 0)),
+]
+
+
+def ur(d1, a2, a3, d4, d5, d6):
+    named = {"d1": d1, "a2": -a2, "a3": -a3, "d4": d4, "-d5": -d5, "d6": d6}
+    rows = [(tuple(named.get(v, v) for v in xyz), rpy, (0, 0, 1)) for xyz, rpy in UR]
+    return rows, (0, 0, 0)
+
+
+DESCRIBED = {
+    "ur3e": ur(151.85, 243.55, 213.2, 131.05, 85.35, 92.1),
+    "ur5e": ur(162.5, 425.0, 392.2, 133.3, 99.7, 99.6),
+    "ur10e": ur(180.7, 612.7, 571.55, 174.15, 119.85, 116.55),
+    "irb120": (
+        [
+            ((0, 0, 0), (0, 0, 0), (0, 0, 1)),
+            ((0, 0, 290), (0, 0, 0), (0, 1, 0)),
+            ((0, 0, 270), (0, 0, 0), (0, 1, 0)),
+            ((0, 0, 70), (0, 0, 0), (1, 0, 0)),
+            ((302, 0, 0), (0, 0, 0), (0, 1, 0)),
+            ((72, 0, 0), (0, 0, 0), (1, 0, 0)),
+        ],
+        (0, 1, 0),
+    ),
+    "kr6-r900": (
+        [
+            ((0, 0, 400), (0, 0, 0), (0, 0, -1)),
+            ((25, 0, 0), (0, 0, 0), (0, 1, 0)),
+            ((455, 0, 0), (0, 0, 0), (0, 1, 0)),
+            ((0, 0, 35), (0, 0, 0), (-1, 0, 0)),
+            ((420, 0, 0), (0, 0, 0), (0, 1, 0)),
+            ((80, 0, 0), (0, 0, 0), (-1, 0, 0)),
+        ],
+        (0, 1, 0),
+    ),
+    "xarm6": (
+        [
+            ((0, 0, 267), (0, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (-1, 0, 0), (0, 0, 1)),
+            ((53.5, -284.5, 0), (0, 0, 0), (0, 0, 1)),
+            ((77.5, 342.5, 0), (-1, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (1, 0, 0), (0, 0, 1)),
+            ((76, 97, 0), (-1, 0, 0), (0, 0, 1)),
+        ],
+        (0, 0, 0),
+    ),
+    "cr5": (
+        [
+            ((0, 0, 147), (0, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (1, 1, 0), (0, 0, 1)),
+            ((-427, 0, 0), (0, 0, 0), (0, 0, 1)),
+            ((-357, 0, 141), (0, 0, -1), (0, 0, 1)),
+            ((0, -116, 0), (1, 0, 0), (0, 0, 1)),
+            ((0, 105, 0), (-1, 0, 0), (0, 0, 1)),
+        ],
+        (0, 0, 0),
+    ),
+    "jaka-zu3": (
+        [
+            ((0, 0, 150.55), (0, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (1, 0, 0), (0, 0, 1)),
+            ((248, 0, 0), (0, 0, 0), (0, 0, 1)),
+            ((228, 0, -115), (0, 0, 0), (0, 0, 1)),
+            ((0, -117.5, 0), (1, 0, 0), (0, 0, 1)),
+            ((0, 106.5, 0), (-1, 0, 0), (0, 0, 1)),
+        ],
+        (0, 0, 0),
+    ),
+}
+
+
+def about(axis, angle):
+    """(4, 4), by Rodrigues' formula."""
+    x, y, z = np.array(axis, dtype=float)
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turned = np.eye(4)
+    turned[:3, :3] += np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
+    return turned
+
+
+def placed(xyz, quarters):
+    r, p, y = np.array(quarters) * np.pi / 2
+    frame = about((0, 0, 1), y) @ about((0, 1, 0), p) @ about((1, 0, 0), r)
+    frame[:3, 3] = xyz
+    return frame
+
+
+def described(name, joints_rad):
+    """(4, 4) the flange [mm]."""
+    rows, flange = DESCRIBED[name]
+    here = np.eye(4)
+    for (xyz, rpy, axis), angle in zip(rows, joints_rad, strict=True):
+        here = here @ placed(xyz, rpy) @ about(axis, angle)
+    return here @ placed((0, 0, 0), flange)
+
+
+@pytest.mark.parametrize("name", DESCRIBED)
+def test_an_arms_links_put_the_flange_where_its_own_description_puts_it(name):
+    arm, rng = find_cell(name).arm, np.random.default_rng(1)
+    for joints_rad in rng.uniform(-np.pi, np.pi, (20, 6)):
+        assert frames(arm, joints_rad)[-1] == pytest.approx(described(name, joints_rad), abs=2e-5)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_all_angles_that_are_found_put_the_flange_where_it_was_asked_for(name):
+    arm, rng = find_cell(name).arm, np.random.default_rng(2)
+    joints = joints_of(arm)
+    for joints_rad in rng.uniform(-2.5, 2.5, (20, 6)):
+        wanted = frames(arm, joints_rad)[-1]
+        found = joints.solutions(wanted)
+        assert len(found) >= 2
+        there = frames(arm, found)[:, -1]
+        assert there == pytest.approx(np.broadcast_to(wanted, there.shape), abs=1e-6)
+        turns = (found - joints_rad + np.pi) % (2 * np.pi) - np.pi
+        assert np.abs(turns).max(axis=1).min() < 1e-6
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_another_library_finds_the_same_angles(name):
+    told = compare(name, 60, seed=3)
+    assert told["differ"] == 0
+    assert told["agree"] > 50
+    assert told["judge"] == ("forward chain" if name == "xarm6" else "EAIK")
+
+
+def test_links_of_another_arm_are_refused():
+    arm = find_cell("ur5e").arm
+    with pytest.raises(Error) as said:
+        joints_of(replace(arm, prebuilt="ur3e"))
+    assert (said.value.code, said.value.where) == ("cell-arm", "arm.prebuilt")

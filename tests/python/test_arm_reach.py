@@ -1,0 +1,170 @@
+"""Jobs that an arm cannot do: refused with the reason, and the place that is advised does."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from arm_judge import judge_of
+from diagnostics import in_json, is_told
+
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.cli import main
+from brushsvg.machine import preflight
+from brushsvg.machine.arm import joints, place
+from brushsvg.machine.arm.follow import flange_at, rates
+from brushsvg.machine.cell import robot_from_paper
+from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.program import unchecked_program
+
+BRUSH = find_brush("round-6")
+ALONG, ACROSS = ((10, 20), (90, 20)), ((50, 5), (50, 55))
+UP_FRONT = (90.0, -36.0, 126.0, 0.0, 5.0, 0.0)  # a KR 6 with its elbow up, the hand hanging
+
+# cell, paper's corner in the robot's frame and how it leans, the stroke, the posture, speeds: why not
+JOBS = [
+    ("ur5e", (-50, -980, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("ur5e", (-50, -150, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("ur3e", (-50, -20, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("irb120", (-50, -650, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("jaka-zu3", (-50, -640, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("xarm6", (-50, -800, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("cr5", (-50, -950, 20), (), ALONG, (), {}, "arm-out-of-reach"),
+    ("irb120", (-50, -180, 20), (), ALONG, (), {}, "joint-limit"),
+    ("irb120", (-450, -30, 20), (), ACROSS, (), {}, "joint-limit"),
+    ("kr6-r900", (-50, -450, 20), (), ACROSS, UP_FRONT, {}, "wrist-flip"),
+    ("kr6-r900", (-50, -450, 20), (0, 1, 0), ACROSS, UP_FRONT, {}, "wrist-flip"),
+    ("kr6-r900", (-50, -450, 20), (0, 5, 0), ACROSS, UP_FRONT, {"travel_mm_s": 1000.0}, "joint-too-fast"),
+]
+
+
+def job(name, corner, leans, line, posture, speeds):
+    cell = find_cell(name)
+    paper = replace(cell.paper, origin_mm=corner, rotation_deg=leans or (0, 0, 0))
+    cell = replace(cell, paper=paper, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
+    cell = replace(cell, arm=replace(cell.arm, posture_deg=posture), speeds=replace(cell.speeds, **speeds))
+    return cell, plan_of(line)
+
+
+def plan_of(line):
+    start, end = line
+    poses = [[*start, 0], [*start, -2], [*end, -2], [*end, 0]]
+    return _core.Plan("round-6", "", (100, 60), [_core.Pass("line", poses, 15.0)])
+
+
+def look(cell, plan):
+    return preflight.look(in_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05)
+
+
+@pytest.mark.parametrize("which", range(len(JOBS)))
+def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which):
+    *given, code = JOBS[which]
+    cell, plan = job(*given)
+    (problem,) = look(cell, plan).problems
+    assert (problem.where, problem.code) == ("line", code)
+    x, y = map(float, re.match(r"near x (-?[\d.]+), y (-?[\d.]+) mm", problem.sentence).groups())
+    (x0, y0), (x1, y1) = given[3]
+    assert min(x0, x1) <= x <= max(x0, x1) and min(y0, y1) <= y <= max(y0, y1)
+    dx, dy = map(float, re.search(r"moved by x ([+-]\d+), y ([+-]\d+) mm in", problem.advice).groups())
+    moved = tuple(np.add(cell.paper.origin_mm, (dx, dy, 0)).tolist())
+    there = replace(cell, paper=replace(cell.paper, origin_mm=moved))
+    assert look(there, plan).problems == []
+    # the other library has the same to say of the place that is named
+    frame, judge = robot_from_paper(cell), judge_of(cell.arm)
+    if judge is not None and code == "arm-out-of-reach":
+        for height in (0.0, cell.heights.safe_mm):
+            robot_mm = frame @ (x, y, height, 1)
+            if not len(judge(flange_at(cell, frame, robot_mm[:3]))):
+                break
+        else:
+            pytest.fail("EAIK reaches it, touching and above")
+    if judge is not None and code == "joint-limit":
+        low, high = np.radians(cell.arm.limits_deg).T
+        robot_mm = (frame @ (x, y, cell.heights.safe_mm, 1))[:3]
+        found = judge(flange_at(cell, frame, robot_mm))
+        wrapped = np.stack([found + turn * 2 * np.pi for turn in (-1, 0, 1)])
+        assert not (((wrapped >= low) & (wrapped <= high)).any(axis=0)).all(axis=1).any()
+
+
+def test_joint_rates_are_those_of_two_places_close_together():
+    cell, _ = job(*JOBS[0][:-1])
+    found, frame = joints.joints_of(cell.arm), robot_from_paper(cell)
+    at = np.array([-100.0, -500.0, 30.0])
+    here = found.solutions(flange_at(cell, frame, at))[0]
+    expected = rates(cell.arm, here, at)
+    for axis in range(3):
+        step = np.zeros(3)
+        step[axis] = 1e-3
+        there = found.solutions(flange_at(cell, frame, at + step))
+        turned = there[np.abs(there - here).max(axis=1).argmin()] - here
+        assert turned / 1e-3 == pytest.approx(expected[:, axis], abs=1e-5)
+
+
+def test_the_nearest_place_may_be_a_turn():
+    """Behind the robot, beside the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
+    cell, plan = job("irb120", (-450, 90, 20), (), ACROSS, (), {})
+    (problem,) = look(cell, plan).problems
+    assert problem.code == "joint-limit"
+    made = unchecked_program(in_loads(plan, BRUSH, cell), BRUSH, cell)
+    found = place.nearest(
+        made, joints.joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999
+    )
+    assert found.turn_deg != 0
+    there = place.cell_at(cell, found.frame)
+    assert look(there, plan).problems == []
+    assert f"turned by {found.turn_deg:g} degrees" in found.told
+
+
+def test_convert_and_check_ask_the_arm(tmp_path, capsys):
+    cell, plan = job(*JOBS[0][:-1])
+    drawing, near, far = (tmp_path / name for name in ("plan.json", "near.toml", "far.toml"))
+    drawing.write_text(_core.write_plan(plan))
+    far.write_text(write_cell(cell))
+    near.write_text(write_cell(replace(cell, paper=replace(cell.paper, origin_mm=(-50.0, -500.0, 20.0)))))
+    program = tmp_path / "line.script"
+    status, _, told = in_json(capsys, "convert", drawing, program, "--cell", far)
+    assert status == 1 and is_told(told, "arm-out-of-reach UR5e", "line") and not program.exists()
+    assert main(["convert", str(drawing), str(program), "--cell", str(near), "--quiet"]) == 0
+    assert main(["check", str(program), "--cell", str(near)]) == 0
+    text = program.read_text()
+    assert text.count("-0.5000000") == 1  # in the line that sets the paper
+    program.write_text(text.replace("-0.5000000", "-0.9800000").replace("-500.0 20.0", "-980.0 20.0"))
+    capsys.readouterr()
+    status, _, told = in_json(capsys, "check", program, "--cell", far)
+    assert status == 1 and is_told(told, "arm-out-of-reach UR5e", "line")
+
+
+def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, monkeypatch):
+    cell, plan = job(*JOBS[0][:-1])
+    drawing, far = tmp_path / "plan.json", tmp_path / "far.toml"
+    drawing.write_text(_core.write_plan(plan))
+    far.write_text(write_cell(cell))
+    monkeypatch.setitem(sys.modules, "ssik", None)
+    joints.joints_of.cache_clear()
+    status, _, told = in_json(capsys, "convert", drawing, tmp_path / "a.script", "--cell", far)
+    assert status == 0 and is_told(told, "arm-not-followed ssik UR5e")
+    status, _, told = in_json(capsys, "cell", "place", far)
+    assert status == 1 and is_told(told, "package-missing ssik")
+
+
+def test_place_tells_where_the_paper_would_do_and_draws_the_table(tmp_path, capsys):
+    cell, plan = job(*JOBS[0][:-1])
+    drawing, far, near, picture = (tmp_path / n for n in ("plan.json", "far.toml", "near.toml", "table.svg"))
+    drawing.write_text(_core.write_plan(plan))
+    box = ((-400.0, -1000.0, -50.0), (400.0, -700.0, 500.0))
+    cell = replace(cell, workspace=replace(cell.workspace, box_mm=box))
+    far.write_text(write_cell(cell))
+    status, said, told = in_json(capsys, "cell", "place", far, drawing, "-o", picture)
+    assert status == 1 and is_told(told, "arm-out-of-reach UR5e")
+    assert picture.read_text().count('class="sheet"') == 2
+    numbers = re.search(r"origin_mm = \[(.*?)\]", said).group(1).split(",")
+    moved = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
+    near.write_text(write_cell(replace(cell, paper=moved)))
+    assert in_json(capsys, "cell", "place", near, drawing)[0] == 0
+    status, _, told = in_json(capsys, "cell", "place", "linuxcnc-3axis")
+    assert status == 1 and is_told(told, "arm-missing")

@@ -1,0 +1,62 @@
+"""First runs: written for every cell that comes along, accepted by check, never fast or deep near the paper."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told
+
+from brushsvg.brush.library import find_brush
+from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.motion import Wait
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.setup_programs import first_run
+
+SHEET_MM = (200.0, 100.0)
+
+
+@pytest.mark.parametrize("name", cell_names())
+def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
+    program = tmp_path / f"first{POSTS[find_cell(name).language].extensions[0]}"
+    assert in_json(capsys, "first-run", name, "-o", program)[0] == 0
+    status, _, told = in_json(capsys, "check", program)
+    assert status == 0, told
+
+
+@pytest.mark.parametrize("name", cell_names())
+def test_it_does_what_a_careful_person_does_in_this_order(name):
+    cell = find_cell(name)
+    sections = [*first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1).sections()]
+    lows = [min(move.points_mm[:, 2].min() for move in section.moves) for section in sections]
+    safe_mm = cell.heights.safe_mm
+    high, border, touches, strokes, one = lows[0], lows[1], lows[2:6], lows[6:-1], lows[-1]
+    assert high > safe_mm or cell.servo  # whose table ends there
+    assert border == safe_mm and touches == [0.0] * 4
+    assert strokes == pytest.approx(np.arange(1.0, -1.05, -0.1), abs=1e-9)
+    assert one == -2.0
+    asks = [sum(isinstance(s, Wait) and s.seconds is None for s in section.steps) for section in sections]
+    assert asks == [0, 1, 2, 2, 2, 2, 1, *[0] * (len(strokes) - 1), 1]
+    assert sections[-1].moves[-1].points_mm[-1, 2] == safe_mm
+    for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
+        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may lie 1 mm higher
+            assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
+
+
+def all_moves(sections):
+    return [move for section in sections for move in section.moves]
+
+
+def test_a_first_run_that_was_changed_is_refused(tmp_path, capsys):
+    program = tmp_path / "first.ngc"
+    assert in_json(capsys, "first-run", "linuxcnc-3axis", "-o", program)[0] == 0
+    text = program.read_text()
+    assert "Y6.0000 Z0.0000" in text
+    program.write_text(text.replace("Y6.0000 Z0.0000", "Y6.0000 Z-3.0000", 1))
+    status, _, told = in_json(capsys, "check", program)
+    assert status == 1 and is_told(told, "too-low -3.00")
+
+
+def test_a_sheet_that_is_too_small_is_refused(tmp_path, capsys):
+    command = ("first-run", "linuxcnc-3axis", "-o", tmp_path / "first.ngc", "--sheet", "60x60")
+    status, _, told = in_json(capsys, *command)
+    assert status == 1 and is_told(told, "strokes-out-of-range")
