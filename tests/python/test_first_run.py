@@ -13,9 +13,10 @@ from brushsvg.machine.posts import POSTS
 from brushsvg.machine.setup_programs import first_run
 
 SHEET_MM = (200.0, 100.0)
+WAITING = [name for name in cell_names() if name not in ("grbl-servo", "fr3")]
 
 
-@pytest.mark.parametrize("name", cell_names())
+@pytest.mark.parametrize("name", WAITING)
 def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
     program = tmp_path / f"first{POSTS[find_cell(name).language].extensions[0]}"
     assert in_json(capsys, "first-run", name, "-o", program)[0] == 0
@@ -23,14 +24,14 @@ def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
     assert status == 0, told
 
 
-@pytest.mark.parametrize("name", cell_names())
+@pytest.mark.parametrize("name", WAITING)
 def test_it_does_what_a_careful_person_does_in_this_order(name):
     cell = find_cell(name)
     sections = [*first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1).sections()]
     lows = [min(move.points_mm[:, 2].min() for move in section.moves) for section in sections]
     safe_mm = cell.heights.safe_mm
     high, border, touches, strokes, one = lows[0], lows[1], lows[2:6], lows[6:-1], lows[-1]
-    assert high > safe_mm or cell.servo  # whose table ends there
+    assert high > safe_mm
     assert border == safe_mm and touches == [0.0] * 4
     assert strokes == pytest.approx(np.arange(1.0, -1.05, -0.1), abs=1e-9)
     assert one == -2.0
@@ -40,6 +41,13 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
     for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
         if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may lie 1 mm higher
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
+
+
+@pytest.mark.parametrize(("name", "program"), [("grbl-servo", "first.nc"), ("fr3", "first.csv")])
+def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, capsys):
+    """A servo's brush would fall, a trajectory would go on."""
+    status, _, told = in_json(capsys, "first-run", name, "-o", tmp_path / program)
+    assert status == 1 and is_told(told, "cannot-wait") and not (tmp_path / program).exists()
 
 
 def all_moves(sections):

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Error
-from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper
+from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
 from .distortion import told_mm
 from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
 from .move_extents import ways
@@ -38,8 +38,12 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
     """What a careful person does before the first job: round the sheet high in the air and again at safe height, down
     to the paper at four points, the strokes of `paper_height`, one stroke; a person lets it go on in between.
 
-    Error when it leaves the workspace or the strokes do not fit on the sheet.
+    Error when the program cannot wait for a person, when it leaves the workspace, when the strokes do not fit.
     """
+    if why := why_no_waiting(cell):
+        raise Error(
+            f"{why}, as a first run must", code="cannot-wait", advice="use border and height one by one"
+        )
     width, height = sheet_mm
     high_mm = _highest_air(cell, sheet_mm) - cell.heights.safe_mm
     round_it = border((0.0, 0.0, width, height), brush, cell, sheet_mm)
