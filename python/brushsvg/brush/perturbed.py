@@ -18,3 +18,25 @@ def with_lag(brush, change: np.ndarray):
         (np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope
     )
     return other
+
+
+def with_factors(brush, factors: dict[str, tuple[float, ...]]):
+    """The brush with laws times a polynomial of depth, coefficients ascending: fit to be simulated. Of the half width,
+    its footprints become as much wider."""
+    other = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
+    for name, factor in factors.items():
+        law = getattr(brush, name)
+        times = np.convolve(law.coefficients, factor).tolist()
+        made = _core.Profile(times, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0])
+        setattr(other, name, made)
+    if "half_width" in factors:
+        other.footprints = _core.FootprintTable(
+            dragged=[_wider(one, factors["half_width"]) for one in brush.footprints.dragged],
+            pressed=[_wider(one, factors["half_width"]) for one in brush.footprints.pressed],
+        )
+    return other
+
+
+def _wider(footprint, factor):
+    times = np.polynomial.polynomial.polyval(footprint.depth_mm, factor)
+    return _core.Footprint(footprint.depth_mm, np.array(footprint.outline_mm) * [1.0, times])

@@ -70,5 +70,6 @@ def _parser() -> argparse.ArgumentParser:
     brushes.add_calibrate(commands)
     brushes.add_brush(commands)
     drawings.add_compare(commands)
+    drawings.add_simulate_photo(commands)
     machines.add_install_plugin(commands)
     return parser

@@ -15,6 +15,7 @@ from ..steps.prepared import prepare
 
 def compare_files(args) -> None:
     from ...painted.comparison import Wanted, compare_photos
+    from ...painted.faults import whose_fault
     from ...painted.job_page import job_page
     from ...painted.next_time import next_corrections
     from ...painted.picture import comparison_png
@@ -27,7 +28,8 @@ def compare_files(args) -> None:
     with about(args.input):
         refuse_corrected(work.plan)
         marks = prediction.predict(work, True, stage)
-        page = job_page(corrected(work.plan, before), work.title)
+        told = corrected(work.plan, before)
+        page = job_page(told, work.title)
         wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
         strokes = [
             Wanted(each.stroke, wanted.get(each.stroke), [ring for ring in each.outline_mm])
@@ -36,18 +38,22 @@ def compare_files(args) -> None:
     with about(args.photos[0]):
         stage("reading the photographs")
         found = compare_photos(page, strokes, [(path, read_bytes(path)) for path in args.photos])
+    stage("looking for what is amiss")
+    faults = whose_fault(told, work.brush, strokes, found)
     corrections, too_far = next_corrections(found, work.plan, before)
     warn(args.photos[0], [*found.notices, *too_far])
     title = work.title or "untitled"
     files = {}
-    as_figures = as_json(title, found, corrections)
+    as_figures = as_json(title, found, corrections, faults)
     if args.output:
-        files[args.output] = as_figures if suffix_of(args.output) == ".json" else as_text(title, found)
+        files[args.output] = (
+            as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults)
+        )
     if args.picture:
-        files[args.picture] = comparison_png(page, strokes, found, title)
+        files[args.picture] = comparison_png(page, strokes, found, title, faults)
     if files:
         write(args, files)
-    tell(as_figures if args.json else as_text(title, found))
+    tell(as_figures if args.json else as_text(title, found, faults))
     reached = found.overlap_wanted if found.overlap_wanted is not None else found.overlap_predicted
     if args.at_least is not None and reached < args.at_least:
         raise RefusedError(
