@@ -21,9 +21,11 @@ def with_lag(brush, change: np.ndarray):
 
 
 def with_factors(brush, factors: dict[str, tuple[float, ...]]):
-    """The brush with laws times a polynomial of depth, coefficients ascending: fit to be simulated. Of the half width,
-    its footprints become as much wider."""
+    """The brush with laws times a polynomial of depth, coefficients ascending: fit to be simulated. With the half width
+    its footprints become as much larger, as those of a brush with more bristles."""
     other = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
+    if "half_width" in factors:
+        factors = factors | {"tip_to_widest": factors["half_width"]}
     for name, factor in factors.items():
         law = getattr(brush, name)
         times = np.convolve(law.coefficients, factor).tolist()
@@ -31,12 +33,12 @@ def with_factors(brush, factors: dict[str, tuple[float, ...]]):
         setattr(other, name, made)
     if "half_width" in factors:
         other.footprints = _core.FootprintTable(
-            dragged=[_wider(one, factors["half_width"]) for one in brush.footprints.dragged],
-            pressed=[_wider(one, factors["half_width"]) for one in brush.footprints.pressed],
+            dragged=[_larger(one, factors["half_width"]) for one in brush.footprints.dragged],
+            pressed=[_larger(one, factors["half_width"]) for one in brush.footprints.pressed],
         )
     return other
 
 
-def _wider(footprint, factor):
+def _larger(footprint, factor):
     times = np.polynomial.polynomial.polyval(footprint.depth_mm, factor)
-    return _core.Footprint(footprint.depth_mm, np.array(footprint.outline_mm) * [1.0, times])
+    return _core.Footprint(footprint.depth_mm, np.array(footprint.outline_mm) * times)

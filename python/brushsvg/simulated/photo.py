@@ -21,7 +21,7 @@ MOST_TEXELS, FINEST, COARSEST = (
     3.0,
 )  # of the sheet; per mm, above the last its edges would be blurred
 GREY = np.array([0.46, 0.46, 0.46])  # of printed letters
-STRIP = 0.026  # of the picture's height
+STRIP = 0.032  # of the picture's height
 DRIES_OVER = 0.6  # of the way that the paint lasts: from where it begins to run out until none is left
 
 
@@ -88,7 +88,7 @@ def _print(sheet: Sheet, page: JobPage) -> None:
         left, _, right, _ = label_box(label)
         (wide, tall), under = cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 1)
         scale = (right - left) * sheet.texels / wide
-        size = math.ceil((tall + under) * scale) + 4, math.ceil(wide * scale) + 4
+        size = math.ceil((tall + under) * scale) + 4, math.ceil(1.3 * wide * scale) + 4
         at = 2, math.ceil(tall * scale) + 2
         letters = np.zeros(size, np.uint8)
         cv2.putText(
@@ -130,7 +130,7 @@ def _say(pixels: np.ndarray) -> None:
     tall = round(STRIP * rows)
     pixels[rows - tall :] = (120, 0, 0)
     (wide, high), _ = cv2.getTextSize(SAYS, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 2)
-    scale = min(0.6 * tall / high, 0.9 * columns / wide)
+    scale = min(0.7 * tall / high, 0.9 * columns / wide)
     at = round((columns - scale * wide) / 2), round(rows - 0.5 * tall + 0.5 * scale * high)
     cv2.putText(
         pixels,
