@@ -40,6 +40,13 @@ class FaultModel:
     middle_mm: np.ndarray
 
     @cached_property
+    def _depths_mm(self) -> tuple[float, float]:
+        """The usual depth, and how far from it a law is off by another number: as the deepest one, or as the paper."""
+        depths = -np.concatenate([np.array(one.poses_mm)[:, 2] for one in self.plan.passes])
+        usual = float(np.median(depths[depths > 0.1])) if (depths > 0.1).any() else 1.0
+        return usual, max(float(depths.max()) - usual, usual)
+
+    @cached_property
     def numbers(self) -> tuple[Number, ...]:
         half = 0.5 * np.array(self.plan.sheet_mm)
         deepest = max(float(-np.array(one.poses_mm)[:, 2].min()) for one in self.plan.passes)
@@ -61,9 +68,9 @@ class FaultModel:
             Number(PAPER, "tilt in x", "mm per mm", 1.0 / half[0], 0.1 / half[0]),
             Number(PAPER, "tilt in y", "mm per mm", 1.0 / half[1], 0.1 / half[1]),
             Number(BRUSH, "lag", "of it", 0.15, lag),
-            Number(BRUSH, "lag, deep against shallow", "of it", 0.1, lag),
+            Number(BRUSH, "lag, deepest against usual", "of it", 0.1, lag),
             Number(BRUSH, "width", "of it", 0.15, width),
-            Number(BRUSH, "width, deep against shallow", "of it", 0.1, width),
+            Number(BRUSH, "width, deepest against usual", "of it", 0.1, width),
         )
 
     def rings(self, amiss: np.ndarray) -> dict[str, list[np.ndarray]]:
@@ -84,8 +91,9 @@ class FaultModel:
         if (backlash < 0).any():  # as far the other way: only a derivative at 0 asks for it
             run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
         asked = [one for one in run if one.stroke in self.names]
+        usual, spread = self._depths_mm
         factors = {
-            name: (1 + even - slope, 2 * slope / deepest)
+            name: (1 + even - slope * usual / spread, slope / spread)
             for name, (even, slope) in (("lag", lag), ("half_width", width))
         }
         brush = with_factors(self.brush, factors)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
+from ..errors import Error
 from .comparison import Comparison, Wanted
 from .edge_offsets import LEVEL, Outline, along, offsets_of, seen
 from .fault_model import BRUSH, MACHINE, PAPER, SHEET, FaultModel, Number
@@ -21,6 +22,7 @@ CAUSES = (SHEET, MACHINE, PAPER, BRUSH, OWN, DRY)
 REACHES_MM = (2.5, 1.2, 0.8)  # of the search for edges: first those of a brush that is 20 % off
 OWN_MM = (0.02, 0.2, 1.0)  # standard deviation of own places: at least, to begin with, at most
 EDGE_MM = 0.03  # the same of what reading an edge leaves open
+FLOOR_MM = 0.03  # of edges, standard deviation: as far as two simulators differ, which know the same brush
 LEAST_EDGES = 60  # on fewer the numbers rest on their priors
 FEW_STROKES, MOST_STROKES = (
     3,
@@ -69,7 +71,8 @@ class Faults:
 
 
 def whose_fault(plan, brush, strokes: list[Wanted], seen_of: Comparison) -> Faults | None:
-    """plan: as it was told; strokes: those that were compared. None where too few edges are seen."""
+    """plan: as it was told; strokes: those that were compared. None where too few edges are seen, or where no
+    brush has the numbers that would explain them."""
     painting = [stroke for stroke in strokes if stroke.predicted]
     if len(painting) < FEW_STROKES:
         return None
@@ -84,7 +87,10 @@ def whose_fault(plan, brush, strokes: list[Wanted], seen_of: Comparison) -> Faul
     ]
     names = [stroke.stroke for stroke in strokes]
     model = FaultModel(plan, brush, tuple(names), middle)
-    fit = _fit(model, names, seen_of, beside)
+    try:
+        fit = _fit(model, names, seen_of, beside)
+    except Error:
+        return None
     if fit is None:
         return None
     amiss, own, covariance, outline, slopes, residual, edges = fit
@@ -138,12 +144,12 @@ def _fit(model: FaultModel, names, found: Comparison, beside):
 def _solved(slopes, off, stroke, prior, now):
     """A step, its covariance, and what is left: Huber's weights, and as many edges as are independent of each other."""
     weight, like = np.ones(len(off)), 1.0
-    scale = max(1.4826 * float(np.median(np.abs(off - np.median(off)))), 0.01)
+    scale = max(1.4826 * float(np.median(np.abs(off - np.median(off)))), FLOOR_MM)
     for _ in range(5):
         information = (slopes.T * (weight * like / scale**2)) @ slopes + np.diag(prior)
         step = np.linalg.solve(information, slopes.T @ (weight * like / scale**2 * off) - prior * now)
         residual = off - slopes @ step
-        scale = max(1.4826 * float(np.median(np.abs(residual))), 0.01)
+        scale = max(1.4826 * float(np.median(np.abs(residual))), FLOOR_MM)
         weight = np.minimum(1.0, TUNING * scale / np.maximum(np.abs(residual), 1e-9))
         clipped = np.clip(residual, -3 * scale, 3 * scale)
         same = stroke[1:] == stroke[:-1]

@@ -21,14 +21,14 @@ MOST_TEXELS, FINEST, COARSEST = (
     3.0,
 )  # of the sheet; per mm, above the last its edges would be blurred
 GREY = np.array([0.46, 0.46, 0.46])  # of printed letters
+FILLS = (0.88, 0.84, 0.8, 0.75, 0.7)  # of the picture by the page: the first that shows all of it
 STRIP = 0.032  # of the picture's height
 DRIES_OVER = 0.6  # of the way that the paint lasts: from where it begins to run out until none is left
 
 
 def simulated_photo(page: JobPage, strokes: list[PaintedStroke], studio: Studio, seed: int) -> bytes:
     """A JPEG. Error where the page is too large, or is not seen whole."""
-    camera = camera_of(studio.camera, page.size_mm)
-    _refuse_cut(camera, page.size_mm)
+    camera = camera_over(studio.camera, page.size_mm)
     width, height = page.size_mm
     texels = min(FINEST, math.sqrt(MOST_TEXELS / (width * height)))
     if texels < COARSEST:
@@ -45,7 +45,23 @@ def simulated_photo(page: JobPage, strokes: list[PaintedStroke], studio: Studio,
     return encoded(pixels, camera.quality)
 
 
-def camera_of(lens: Lens, page_mm) -> Camera:
+def camera_over(lens: Lens, page_mm) -> Camera:
+    """So high that it sees the whole page. Error where it would have to be far off."""
+    for fill in FILLS:
+        camera = _camera(lens, page_mm, fill)
+        width, height = page_mm
+        at = corners_seen(camera, page_mm, [(0, 0), (width, 0), (width, height), (0, height)])
+        if (at > 0).all() and (at < (camera.size_px[0], camera.size_px[1] * (1 - STRIP))).all():
+            return camera
+    across, up = lens.tilt_deg
+    sentence = (
+        f"tilted by {across:g} and {up:g} degrees and turned by {lens.turn_deg:g} the camera does not see the whole "
+        "page: tilt or turn it less"
+    )
+    raise Error(sentence, "camera", code="out-of-range")
+
+
+def _camera(lens: Lens, page_mm, fill: float) -> Camera:
     long = max(page_mm)
     size = tuple(round(lens.long_side_px * side / long) for side in page_mm)
     return Camera(
@@ -54,26 +70,13 @@ def camera_of(lens: Lens, page_mm) -> Camera:
         lens.tilt_deg,
         lens.turn_deg,
         lens.bend,
-        fill=0.88,
+        fill=fill,
         aside_mm=(0.004 * long, 0.0),
         blur_px=lens.blur_px,
         noise=lens.noise,
         shadow=lens.shadow,
         quality=round(lens.quality),
     )
-
-
-def _refuse_cut(camera: Camera, page_mm) -> None:
-    width, height = page_mm
-    at = corners_seen(camera, page_mm, [(0, 0), (width, 0), (width, height), (0, height)])
-    right, bottom = camera.size_px[0], camera.size_px[1] * (1 - STRIP)
-    if (at < 0).any() or (at > (right, bottom)).any():
-        across, up = camera.tilt_deg
-        sentence = (
-            f"tilted by {across:g} and {up:g} degrees and turned by {camera.turn_deg:g} the camera does not see the "
-            "whole page: tilt or turn it less"
-        )
-        raise Error(sentence, "camera", code="out-of-range")
 
 
 def _print(sheet: Sheet, page: JobPage) -> None:

@@ -68,6 +68,11 @@ def add_compare(commands) -> None:
         type=values.share,
         help="exit with 1 where the paint overlaps by less with what was wanted",
     )
+    compare.add_argument(
+        "--sheets",
+        action="store_true",
+        help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
+    )
     compare.add_argument("--json", action="store_true", help="as JSON")
     add_quiet(compare)
     compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
@@ -75,6 +80,9 @@ def add_compare(commands) -> None:
 
 def _check_compare(args) -> None:
     check_drawing(args)
+    for flag, value in (("picture", args.picture), ("at-least", args.at_least)):
+        if args.sheets and value is not None:
+            args.parser.error(f"--{flag} is for one sheet, not for --sheets")
     read = [*((path, PHOTOS) for path in args.photos), (args.input, DRAWINGS), (args.brush, None)]
     read.append((args.corrections, (".json",)))
     check_files(args, read, [(args.output, (".json", ".txt")), (args.picture, (".png",))])

@@ -35,6 +35,9 @@ def compare_files(args) -> None:
             Wanted(each.stroke, wanted.get(each.stroke), [ring for ring in each.outline_mm])
             for each in marks.passes
         ]
+    if args.sheets:
+        _repeats(args, work, page, told, strokes)
+        return
     with about(args.photos[0]):
         stage("reading the photographs")
         found = compare_photos(page, strokes, [(path, read_bytes(path)) for path in args.photos])
@@ -64,3 +67,23 @@ def compare_files(args) -> None:
                 ).notice()
             ],
         )
+
+
+def _repeats(args, work, page, plan, strokes) -> None:
+    """How well the same strokes lie on several sheets, or copies of strokes on one."""
+    from ...painted.comparison import compare_photos
+    from ...painted.repeats import as_json, as_text, repeats
+
+    sheets = []
+    for path in args.photos:
+        with about(path):
+            stage("reading the photographs")
+            sheets.append(compare_photos(page, strokes, [(path, read_bytes(path))]))
+            warn(path, list(sheets[-1].notices))
+    with about(args.photos[0]):
+        found = repeats(plan, sheets)
+    title = work.title or "untitled"
+    if args.output:
+        makes = as_json if suffix_of(args.output) == ".json" else as_text
+        write(args, {args.output: makes(title, found)})
+    tell(as_json(title, found) if args.json else as_text(title, found))
