@@ -13,6 +13,7 @@ from brushsvg.cli import main
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.preparation import prepare
 
+pytestmark = pytest.mark.long  # sheets are rendered and read
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100">'
 LINES = "".join(
     f'<path id="s{k}" fill="none" stroke="#000" stroke-width="3" d="M{x} {y} l24 4 l0 10"/>'

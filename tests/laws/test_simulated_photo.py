@@ -9,6 +9,7 @@ from diagnostics import in_json, is_told
 
 from brushsvg.cli import main
 
+pytestmark = pytest.mark.long  # sheets are rendered and read
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
 <title>six</title><g fill="none" stroke="#000" stroke-width="3">
 <path id="a" d="M20 20 L50 16"/><path id="b" d="M100 20 L70 24"/><path id="c" d="M20 40 C30 60 40 60 50 40"/>
