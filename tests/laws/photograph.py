@@ -1,102 +1,32 @@
-"""Photographs of painted charts, rendered: a camera with a lens that bends, tilted over a sheet under uneven light.
-
-Nothing of the reader: polygons become paint by the exact length of each scan line inside of them, every pixel looks
-along its ray down to the sheet. Only the JPEG is OpenCV's, and how two pixels are mixed. Lengths in mm, sheets with y
-up, light in linear units.
+"""Photographs of painted charts and jobs, by the package's renderer, which knows nothing of the reader. What is printed
+on them is drawn here, marker by marker from its bits. Lengths in mm, sheets with y up.
 """
 
 from __future__ import annotations
 
 from copy import deepcopy
-from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from dataclasses import replace
+from functools import lru_cache
 
 import cv2
 import numpy as np
 
-TEXELS = 20.0  # per mm of the sheet
-INK = np.array([0.05, 0.04, 0.04])  # of a printer: share of the light thrown back, red green blue
-BLUE = np.array([0.05, 0.09, 0.35])
+from brushsvg.simulated.camera import (
+    BLUE,
+    INK,
+    TEXELS,
+    Camera,
+    Sheet,
+    _blurred,
+    box,
+    coded,
+    corners_seen,
+    encoded,
+    exposed,
+    photograph,
+)
+
 TEXT = np.array([0.46, 0.46, 0.46])
-
-
-@dataclass(frozen=True)
-class Camera:
-    """Above the sheet's middle, tilted. focal: in picture widths; bend: of the lens, 0.02 moves corners by 2 %."""
-
-    size_px: tuple[int, int] = (1700, 2300)
-    focal: float = 1.1
-    tilt_deg: tuple[float, float] = (4.0, -3.0)
-    turn_deg: float = 2.0
-    bend: float = -0.03
-    fill: float = 0.93  # of the picture by the sheet
-    aside_mm: tuple[float, float] = (3.0, -2.0)
-    blur_px: float = 0.8
-    noise: float = 0.008
-    light: tuple[float, float] = (0.25, -0.18)  # how much it changes across and up the sheet
-    vignette: float = 0.15
-    shadow: float = 0.0  # depth of a soft shadow over a corner
-    quality: int = 92
-    sag_mm: float = 0.0  # the paper bulges so high in the middle
-    exposure: float = 1.0  # 2: what throws back half of the light is white already
-    motion_px: tuple[float, float] = (0.0, 0.0)  # the camera moves so far right and down
-    glare: tuple[float, float, float] = (0.0, 0.0, 0.0)  # x, y and radius in mm of a lamp's mirror image
-    edge: float = 0.0  # depth of a shadow with a hard edge across the sheet
-
-
-class Sheet:
-    """What a sheet throws back, painted over ring by ring."""
-
-    def __init__(self, size_mm, seed=0):
-        self.size_mm = size_mm
-        columns, rows = (round(side * TEXELS) for side in size_mm)
-        rng = np.random.default_rng(seed)
-        grain = rng.normal(size=(rows // 8 + 2, columns // 8 + 2)).astype(np.float32)
-        grain = np.repeat(np.repeat(grain, 8, axis=0), 8, axis=1)[:rows, :columns]
-        self.shown = np.empty((rows, columns, 3), np.float32)
-        for k, tint in enumerate((0.86, 0.85, 0.82)):
-            self.shown[..., k] = tint * (1 + 0.006 * grain)
-
-    def paint(self, rings, colour, opacity=1.0):
-        share, (r0, r1, c0, c1) = self._covered(rings)
-        if share.size:
-            share = (opacity * share)[..., None].astype(np.float32)
-            here = self.shown[r0:r1, c0:c1]
-            here *= 1 - share
-            here += share * np.asarray(colour, np.float32)
-
-    def _covered(self, rings):
-        """Share of each texel inside of the rings (even-odd), and where."""
-        rows, columns = self.shown.shape[:2]
-        rings = [
-            np.column_stack([r[:, 0], self.size_mm[1] - r[:, 1]]) * TEXELS for r in map(np.asarray, rings)
-        ]
-        ends = np.vstack(rings)
-        c0, c1 = max(0, int(ends[:, 0].min()) - 1), min(columns, int(ends[:, 0].max()) + 2)
-        r0, r1 = max(0, int(ends[:, 1].min()) - 1), min(rows, int(ends[:, 1].max()) + 2)
-        lines = 3  # per row
-        xa, ya, xb, yb = np.vstack([np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in rings]).T
-        # which scan lines each edge crosses: those from its lower end on, without its upper end
-        first, last = (
-            np.clip(np.ceil((y - r0) * lines - 0.5), 0, max(r1 - r0, 0) * lines).astype(int)
-            for y in (np.minimum(ya, yb), np.maximum(ya, yb))
-        )
-        edge = np.repeat(np.arange(len(xa)), last - first)
-        line = np.arange(len(edge)) - np.repeat(np.cumsum(last - first) - last, last - first)
-        y = r0 + (line + 0.5) / lines
-        x = xa[edge] + (y - ya[edge]) / (yb - ya)[edge] * (xb - xa)[edge] - c0
-        order = np.lexsort((x, line))
-        row = line[order][::2] // lines
-        wide = max(c1 - c0, 0) + 1
-        a, b = np.clip(x[order].reshape(-1, 2).T, 0, wide - 1)
-        # of each span two texels in part, and those between them whole
-        left, right = a.astype(int), b.astype(int)
-        begun = np.zeros((max(r1 - r0, 0), wide + 1))
-        np.add.at(begun, (row, left), left + 1 - a)
-        np.add.at(begun, (row, left + 1), a - left)
-        np.add.at(begun, (row, right), b - right - 1)
-        np.add.at(begun, (row, right + 1), right - b)
-        return np.cumsum(begun, axis=1)[:, : wide - 1] / lines, (r0, r1, c0, c1)
 
 
 def page(made, seed=0):
@@ -129,174 +59,6 @@ def _printed(sheet_mm, dictionary_name, markers, bar, labels, seed):
     return sheet
 
 
-def box(left, bottom, right, top):
-    return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
-
-
-def corners_seen(camera, sheet_mm, points_mm):
-    """Pixels (n, 2) at which points of the sheet are seen; (0, 0) is the middle of the first pixel."""
-    rotation, place, focal_px, middle = _posed(camera, sheet_mm)
-    world = np.column_stack(
-        [np.asarray(points_mm, float), _height(camera, sheet_mm, np.asarray(points_mm, float))]
-    )
-    ray = (world - place) @ rotation
-    ideal = ray[:, :2] / ray[:, 2:]
-    return ideal * _bent(camera, np.hypot(*ideal.T))[:, None] * focal_px + middle
-
-
-def _bent(camera, radius):
-    """Seen over ideal distance from the axis."""
-    widest = 0.5 * np.hypot(*camera.size_px) / (camera.focal * camera.size_px[0])
-    square = (radius / widest) ** 2
-    return 1 + camera.bend * square + 0.2 * camera.bend * square**2
-
-
-def _posed(camera, sheet_mm):
-    """Columns of rotation: the camera's right, down and forward in the sheet's frame; where it is."""
-    across, up, turn = np.radians([*camera.tilt_deg, camera.turn_deg])
-    forward = np.array([np.sin(across), np.sin(up), -np.cos(across) * np.cos(up)])
-    forward /= np.linalg.norm(forward)
-    right = np.array([np.cos(turn), np.sin(turn), 0.0])
-    right -= (right @ forward) * forward
-    right /= np.linalg.norm(right)
-    down = np.cross(forward, right)
-    focal_px = camera.focal * camera.size_px[0]
-    scale = min(c / s for c, s in zip(camera.size_px, sheet_mm, strict=True)) * camera.fill
-    middle = np.array([*np.array(sheet_mm) / 2 + camera.aside_mm, 0.0])
-    place = middle - forward * focal_px / scale
-    centre = (np.array(camera.size_px) - 1) / 2 + [3.0, -4.0]  # no lens sits quite in the middle
-    return np.column_stack([right, down, forward]), place, focal_px, centre
-
-
-def _height(camera, sheet_mm, points):
-    """Paper that lies flat on two edges and bulges in between."""
-    return camera.sag_mm * np.sin(np.pi * np.clip(points[..., 0] / sheet_mm[0], 0, 1))
-
-
-def photograph(sheet, camera=Camera(), seed=1, mirrored=False):
-    """JPEG bytes."""
-    return encoded(exposed(sheet, camera, seed, mirrored), camera.quality)
-
-
-def encoded(pixels, quality=92):
-    return cv2.imencode(".jpg", pixels[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
-
-
-def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
-    """8-bit sRGB pixels (rows, columns, 3)."""
-    rng = np.random.default_rng(seed)
-    at, aside = _seen(
-        *(sheet.size_mm, camera.size_px, camera.focal, camera.tilt_deg, camera.turn_deg),
-        *(camera.bend, camera.fill, camera.aside_mm, camera.sag_mm),
-    )
-    out = _looked_up(sheet, at)
-    out *= _lit(camera, sheet.size_mm, at)[..., None]
-    if camera.glare[2]:
-        away = np.hypot(at[..., 0] - camera.glare[0], at[..., 1] - camera.glare[1]) / camera.glare[2]
-        out += 1.5 * np.exp(-((np.minimum(away, 5.0)) ** 4))[..., None]
-    out *= (camera.exposure * (1 - camera.vignette * aside**2))[..., None]
-    if camera.blur_px:
-        out = _blurred(out, camera.blur_px)
-    if any(camera.motion_px):
-        out = _moved(out, camera.motion_px)
-    grain = rng.standard_normal(size=out.shape).astype(np.float32)
-    grain *= np.float32(camera.noise) * np.sqrt(np.maximum(out, np.float32(0.02)))
-    out += grain
-    pixels = coded(out)
-    return np.ascontiguousarray(pixels[:, ::-1]) if mirrored else pixels
-
-
-@lru_cache(maxsize=2)  # most photographs of a file differ in paint alone
-def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sag_mm):
-    """Of each pixel, in single precision: the place on the sheet (rows, columns, 2), and its distance from the axis
-    over the corner's."""
-    camera = Camera(size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sag_mm=sag_mm)
-    columns, rows = size_px
-    rotation, place, focal_px, middle = _posed(camera, sheet_mm)
-    # the lens is the same all around its axis
-    farthest = np.hypot(*(np.array(size_px) / 2 + 10)) / focal_px
-    seen_at = np.linspace(0, 1.1 * farthest, 10_000)
-    ideal_at = seen_at.copy()
-    for _ in range(6):
-        ideal_at = seen_at / _bent(camera, ideal_at)
-    at = np.empty((rows, columns, 2), np.float32)
-    aside = np.empty((rows, columns), np.float32)
-    for top in range(0, rows, 256):
-        v, u = np.mgrid[top : min(top + 256, rows), 0:columns].astype(float)
-        seen = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
-        distance = np.hypot(seen[..., 0], seen[..., 1])
-        seen *= (np.interp(distance, seen_at, ideal_at) / np.maximum(distance, 1e-12))[..., None]
-        ray = seen @ rotation[:, :2].T + rotation[:, 2]
-        height = 0.0
-        for _ in range(1 if sag_mm == 0 else 4):
-            here = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
-            height = _height(camera, sheet_mm, here)
-        at[top : top + len(v)] = here
-        aside[top : top + len(v)] = distance / (0.5 * np.hypot(columns, rows) / focal_px)
-    at.flags.writeable = aside.flags.writeable = False
-    return at, aside
-
-
-def coded(light):
-    """8-bit sRGB of linear light."""
-    out = np.empty(light.shape, np.uint8)
-    for top in range(0, len(light), 32):  # which the processor's own memory holds
-        here = np.clip(light[top : top + 32], 0, 1)
-        here *= 65535
-        here += 0.5
-        out[top : top + 32] = _codes()[here.astype(np.uint16)]
-    return out
-
-
-@cache
-def _codes():
-    light = np.arange(65536) / 65535
-    code = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
-    return np.round(code * 255).astype(np.uint8)
-
-
-def _lit(camera, size_mm, at):
-    x, y = at[..., 0] / size_mm[0] - 0.5, at[..., 1] / size_mm[1] - 0.5
-    light = 0.85 * (1 + camera.light[0] * x + camera.light[1] * y - 0.1 * (x * x + y * y))
-    if camera.shadow:
-        light = light * (1 - camera.shadow / (1 + np.exp(-(x + y - 0.2) * 25)))
-    if camera.edge:
-        light = np.where(x + 0.6 * y > 0.05, light * (1 - camera.edge), light)
-    return light
-
-
-def _looked_up(sheet, at):
-    """Between texels; beside the sheet a brown table."""
-    rows, columns = sheet.shown.shape[:2]
-    c = at[..., 0] * TEXELS - 0.5
-    r = (sheet.size_mm[1] - at[..., 1]) * TEXELS - 0.5
-    inside = (c >= 0) & (r >= 0) & (c <= columns - 2) & (r <= rows - 2)
-    value = cv2.remap(sheet.shown, c, r, cv2.INTER_LINEAR)
-    value[~inside] = (0.22, 0.15, 0.1)
-    return value
-
-
-def _blurred(picture, sigma):
-    reach = int(np.ceil(4 * sigma))
-    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
-    kernel /= kernel.sum()
-    return cv2.sepFilter2D(picture, -1, kernel, kernel, borderType=cv2.BORDER_REPLICATE)
-
-
-def _moved(picture, way_px):
-    """The mean of what is seen along a straight way, in steps of half a pixel."""
-    steps = max(2, round(2 * np.hypot(*way_px)))
-    reach = int(np.ceil(0.5 * np.abs(way_px).max())) + 1
-    kernel = np.zeros((2 * reach + 1, 2 * reach + 1))
-    for share in np.linspace(-0.5, 0.5, steps):
-        right, down = share * np.array(way_px)
-        (r, fr), (c, fc) = ((int(np.floor(v)), v - np.floor(v)) for v in (-down, -right))
-        for dr, wr in ((r, 1 - fr), (r + 1, fr)):
-            for dc, wc in ((c, 1 - fc), (c + 1, fc)):
-                kernel[reach + dr, reach + dc] += wr * wc / steps
-    return cv2.filter2D(picture, -1, kernel, borderType=cv2.BORDER_REPLICATE)
-
-
 def with_turn(jpeg, orientation):
     """A JPEG whose EXIF says how the camera was held."""
     tiff = (
@@ -308,4 +70,20 @@ def with_turn(jpeg, orientation):
     return jpeg[:2] + b"\xff\xe1" + (len(body) + 2).to_bytes(2, "big") + body + jpeg[2:]
 
 
-__all__ = ["BLUE", "Camera", "Sheet", "box", "corners_seen", "page", "photograph", "replace", "with_turn"]
+__all__ = [
+    "BLUE",
+    "INK",
+    "TEXELS",
+    "Camera",
+    "Sheet",
+    "_blurred",
+    "box",
+    "coded",
+    "corners_seen",
+    "encoded",
+    "exposed",
+    "page",
+    "photograph",
+    "replace",
+    "with_turn",
+]

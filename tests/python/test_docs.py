@@ -10,7 +10,7 @@ from brushsvg.cli.arguments.parser import parse
 
 HOUSE = Path(__file__).parents[2]
 PAGES = [HOUSE / "README.md", *sorted((HOUSE / "docs").glob("*.md"))]
-TYPED = re.compile(r"^ +brushsvg +(.*?)(?: +#.*)?$", re.MULTILINE)
+TYPED = re.compile(r"^ +brushsvg +(.*?)(?: +[#>].*)?$", re.MULTILINE)
 COMMANDS = [
     pytest.param(command, id=f"{page.name}: {command}")
     for page in PAGES

@@ -18,3 +18,27 @@ def with_lag(brush, change: np.ndarray):
         (np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope
     )
     return other
+
+
+def with_factors(brush, factors: dict[str, tuple[float, ...]]):
+    """The brush with laws times a polynomial of depth, coefficients ascending: fit to be simulated. With the half width
+    its footprints become as much larger, as those of a brush with more bristles."""
+    other = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
+    if "half_width" in factors:
+        factors = factors | {"tip_to_widest": factors["half_width"]}
+    for name, factor in factors.items():
+        law = getattr(brush, name)
+        times = np.convolve(law.coefficients, factor).tolist()
+        made = _core.Profile(times, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0])
+        setattr(other, name, made)
+    if "half_width" in factors:
+        other.footprints = _core.FootprintTable(
+            dragged=[_larger(one, factors["half_width"]) for one in brush.footprints.dragged],
+            pressed=[_larger(one, factors["half_width"]) for one in brush.footprints.pressed],
+        )
+    return other
+
+
+def _larger(footprint, factor):
+    times = np.polynomial.polynomial.polyval(footprint.depth_mm, factor)
+    return _core.Footprint(footprint.depth_mm, np.array(footprint.outline_mm) * times)

@@ -25,6 +25,7 @@ from .from_marks import (
     refuse_unlike,
     wetter_where_wider,
 )
+from .machine_found import ask_for
 from .mark_input import Painted, depths_painted
 from .prior import DEPTHS, KnownLaws, known_laws, numbers_of, root_of_inverse
 from .stray_marks import Stray, strays
@@ -53,6 +54,7 @@ class Updated:
     painted: Painted
     covariance: np.ndarray
     strays: tuple[Stray, ...]
+    options: object
 
     def is_told(self, law: str) -> bool:
         return self.told[law][0] < TOLD
@@ -64,8 +66,16 @@ def marks_beside_a_prior(marks: list) -> Painted:
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
 
-def update_brush(painted: Painted, brush: _core.Brush, name: str, edge_mm: float = 0.0) -> Updated:
-    """edge_mm: as for calibrate_marks. Error where the marks are not of this brush at all."""
+def update_brush(
+    painted: Painted,
+    brush: _core.Brush,
+    name: str,
+    edge_mm: float = 0.0,
+    machine: tuple[str, ...] = (),
+    displacement_mm: float | None = None,
+) -> Updated:
+    """edge_mm: as for calibrate_marks; machine: parts of it that are found as well; displacement_mm: standard deviation
+    of where a mark lies, in x and in y, where that is known. Error where the marks are not of this brush at all."""
     need_fits()
     known = known_laws(brush)
     options = _core.MarkOptions()
@@ -74,6 +84,9 @@ def update_brush(painted: Painted, brush: _core.Brush, name: str, edge_mm: float
     options.round_tail = known.laws.round_tail
     options.widest_per_half = _core.Prior(known.laws.widest_per_half, np.inf)
     options.front_per_half = _core.Prior(known.laws.front_per_half, options.front_per_half.sigma)
+    if displacement_mm is not None:
+        options.displacement_mm = displacement_mm
+    ask_for(options, machine)
     fit, wider = _fit_wide_enough(painted.marks, known, options)
     refuse_unlike(fit, painted)
     astray = tuple(strays(painted.marks, fit))
@@ -93,7 +106,7 @@ def update_brush(painted: Painted, brush: _core.Brush, name: str, edge_mm: float
     changed = {law for law in LAWS if told[law][0] < TOLD}
     made = _brush_of(brush, known, laws, covariance, changed, name, painted)
     _core.check(made)
-    return Updated(made, brush, known, wider, told, fit, painted, covariance, astray)
+    return Updated(made, brush, known, wider, told, fit, painted, covariance, astray, options)
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:

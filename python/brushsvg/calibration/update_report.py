@@ -9,6 +9,7 @@ import numpy as np
 from ..brush.confidence import LAWS, law_band
 from ..brush.describe import polynomial
 from .from_prior import found_height
+from .machine_found import cell_table, numbers, told
 from .mark_report import TABLE_ROWS
 
 OFF_MM = 0.05  # a prior is told to be taken another way where that moves a law by more
@@ -26,8 +27,14 @@ def report(made) -> str:
         now = getattr(brush, law)
         lines += [f"{law} = {polynomial(now.coefficients)}", *_halves(now), f"  {_told(made, law)}"]
         lines.append(f"  the prior: {made.known.how[law]}{_taken(made, law)}")
-    lines += ["", *_table(made), *_stays(made)]
+    lines += ["", *_table(made), *_stays(made), *_machine(made)]
     return "\n".join([*lines, ""])
+
+
+def _machine(made) -> list[str]:
+    found = numbers(made.fit, made.covariance, made.options)
+    table = cell_table(made.fit, made.options)
+    return [*(["", "of the machine:"] if found else []), *told(found), *(["", *table] if table else [])]
 
 
 def _halves(law) -> list[str]:

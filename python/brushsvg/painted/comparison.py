@@ -60,7 +60,7 @@ class Comparison:
     """common: how the sheet lies, by the places of all marks, about middle_mm; spread_mm: rms of what is left of their
     displacements, None of fewer than three marks; elsewhere_mm2: paint that lies beside all marks. overlaps: of all
     paint with what was wanted (or, without a drawing, predicted) as it lies, once the sheet's place is put right, and
-    once each stroke's is."""
+    once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas."""
 
     strokes: tuple[Compared, ...]
     common: Placed
@@ -73,6 +73,7 @@ class Comparison:
     view: View
     flat: Flat
     paint: np.ndarray
+    painted: np.ndarray
     canvas: Canvas
     notices: tuple[Notice, ...]
 
@@ -228,6 +229,7 @@ def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparis
         view,
         flat,
         paint,
+        painted,
         canvas,
         tuple(notices),
     )

@@ -23,10 +23,17 @@ class Learnt:
     notices: tuple[Notice, ...]
 
 
-def learn(plan, brush: _core.Brush, photos: list[tuple[str, bytes]], name: str) -> Learnt:
+def learn(
+    plan,
+    brush: _core.Brush,
+    photos: list[tuple[str, bytes]],
+    name: str,
+    machine: tuple[str, ...] = (),
+    displacement_mm: float | None = None,
+) -> Learnt:
     """plan: as it was painted, corrections and all; brush: as it is known without this job; photos: names and what
-    their files hold, of one sheet; name: of the new brush. Error where the photographs are not of this job, or show no
-    stroke that lies alone."""
+    their files hold, of one sheet; name: of the new brush; machine, displacement_mm: as for update_brush. Error where
+    the photographs are not of this job, or show no stroke that lies alone."""
     page, predicted, best = job_page(plan), brush, None
     for _ in range(ROUNDS):
         strokes = _strokes(plan, predicted)
@@ -37,7 +44,8 @@ def learn(plan, brush: _core.Brush, photos: list[tuple[str, bytes]], name: str) 
             raise Error(sentence, file=photos[0][0], code="marks-touch")
         if best and len(marks.rings) <= len(best[1].rings):
             break
-        updated = update_brush(_painted(plan, marks), brush, name, EDGE_PX / found.view.px_per_mm)
+        edge_mm = EDGE_PX / found.view.px_per_mm
+        updated = update_brush(_painted(plan, marks), brush, name, edge_mm, machine, displacement_mm)
         best, predicted = (updated, marks, found), updated.brush
         if not (marks.touching or marks.dry):
             break

@@ -6,15 +6,19 @@ import cv2
 import numpy as np
 
 from .comparison import Comparison, Wanted
+from .faults import Faults
 from .job_page import JobPage
 
 LONG_SIDE_PX = 2400
 WANTED, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
 NAMED = 5
 MARGIN_PX = 90
+ROW_PX = 40
 
 
-def comparison_png(page: JobPage, strokes: list[Wanted], found: Comparison, title: str) -> bytes:
+def comparison_png(
+    page: JobPage, strokes: list[Wanted], found: Comparison, title: str, faults: Faults | None
+) -> bytes:
     left, bottom, right, top = _extent(strokes, found)
     fine = min(LONG_SIDE_PX / max(right - left, top - bottom), 2 * found.flat.px_per_mm)
     corner = found.flat.to_px(np.array([[left, top]]) + page.frame_mm)[0]
@@ -55,7 +59,26 @@ def comparison_png(page: JobPage, strokes: list[Wanted], found: Comparison, titl
         (30, 30, 30),
         0.75,
     )
+    if faults is not None:
+        out = np.vstack([out, _shares(faults, out.shape[1])])
     return cv2.imencode(".png", out)[1].tobytes()
+
+
+def _shares(faults: Faults, width: int) -> np.ndarray:
+    """What mending each cause alone would gain, as bars with their intervals."""
+    shares = sorted(faults.shares, key=lambda one: -one.gain)
+    out = np.full((80 + ROW_PX * len(shares), width, 3), 255, np.uint8)
+    _write(out, "mending it alone would gain in overlap (line: 95 %)", (16, 50), TEXT, 0.75)
+    left = min(760, round(0.55 * width))
+    most = max(0.02, *(share.high for share in shares))
+    per_px = (width - left - 40) / most
+    for row, share in enumerate(shares):
+        y = 80 + ROW_PX * row
+        _write(out, f"{share.gain + 0.0:+.3f}  {share.cause}", (16, y + 26), TEXT, 0.75)
+        ends = [left + round(max(value, 0.0) * per_px) for value in (share.gain, share.low, share.high)]
+        cv2.rectangle(out, (left, y + 4), (ends[0], y + 28), WANTED if row else PREDICTED, -1)
+        cv2.line(out, (ends[1], y + 16), (ends[2], y + 16), TEXT, 2, cv2.LINE_AA)
+    return out
 
 
 def _extent(strokes: list[Wanted], found: Comparison):

@@ -8,12 +8,14 @@ from dataclasses import asdict
 
 from .comparison import BLOT_MM, Compared, Comparison
 from .corrections import FORMAT, Correction
+from .fault_report import in_json, in_words
+from .faults import Faults
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing")
 
 
-def as_text(title: str, found: Comparison) -> str:
+def as_text(title: str, found: Comparison, faults: Faults | None) -> str:
     rows = [HEAD, *(_row(stroke) for stroke in found.strokes)]
     widths = [max(len(row[k]) for row in rows) for k in range(len(HEAD))]
     table = [
@@ -46,6 +48,7 @@ def as_text(title: str, found: Comparison) -> str:
         "Wanted, predicted: overlap of the stroke's paint with them, intersection over union. x, y, off: displacement",
         "from the prediction in mm; turn in degrees; wider: of each edge, in mm; missing: share of the mark, where it",
         "lies, without paint; -: not to be told from its neighbours.",
+        *in_words(faults, found.middle_mm),
     ]
     return "\n".join(lines) + "\n"
 
@@ -66,8 +69,9 @@ def _row(one: Compared) -> tuple[str, ...]:
     )
 
 
-def as_json(title: str, found: Comparison, corrections: dict[str, Correction]) -> str:
-    """corrections: of the strokes that should be led elsewhere next time."""
+def as_json(title: str, found: Comparison, corrections: dict[str, Correction], faults: Faults | None) -> str:
+    """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is
+    told."""
     _, placed, each = found.overlaps
     made = {
         "format": FORMAT,
@@ -85,6 +89,7 @@ def as_json(title: str, found: Comparison, corrections: dict[str, Correction]) -
             "strokes_aside_mm": found.spread_mm,
         },
         "elsewhere_mm2": found.elsewhere_mm2,
+        "faults": in_json(faults),
         "strokes": [
             {
                 "stroke": one.stroke,
@@ -111,7 +116,7 @@ def _told(correction: Correction | None) -> dict | None:
 
 def _rounded(value):
     if isinstance(value, float):
-        return round(value, 4) + 0.0
+        return round(value, 4 if abs(value) > 0.05 else 6) + 0.0
     if isinstance(value, dict):
         return {key: _rounded(item) for key, item in value.items()}
     return [_rounded(item) for item in value] if isinstance(value, list | tuple) else value

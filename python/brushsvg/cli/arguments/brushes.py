@@ -104,6 +104,11 @@ def add_calibrate(commands) -> None:
         metavar="NAME|FILE",
         help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines",
     )
+    fit.add_argument(
+        "--spread",
+        metavar="FILE",
+        help="for photographs: how well the studio repeats, as compare --sheets found it (.json)",
+    )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
@@ -151,6 +156,7 @@ def _check_calibrate(args) -> None:
         ("--dpi", args.dpi),
         ("--picture", args.picture),
         ("--brush", args.brush),
+        ("--spread", args.spread),
     ):
         if value is not None:
             args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")
@@ -162,13 +168,14 @@ def _check_calibrate(args) -> None:
 def _check_update(args) -> None:
     if args.plan is None or args.prior is None:
         args.parser.error("--plan and --prior go together: what was painted, and by which brush")
-    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "machine", "brush", "plot"):
+    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot"):
         if getattr(args, flag):
             args.parser.error(f"--{flag} is not for a job (--plan)")
     if args.norm != "squares":
         args.parser.error("--norm is not for a job (--plan)")
     _refuse_heic(args, args.inputs)
     read = [*((path, PHOTOS) for path in args.inputs), (args.plan, (".json",)), (args.prior, None)]
+    read.append((args.spread, (".json",)))
     check_files(args, read, [(args.output, (".json",))])
 
 

@@ -78,6 +78,11 @@ def add_compare(commands) -> None:
         type=values.share,
         help="exit with 1 where the paint overlaps by less with what was wanted",
     )
+    compare.add_argument(
+        "--sheets",
+        action="store_true",
+        help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
+    )
     compare.add_argument("--json", action="store_true", help="as JSON")
     add_quiet(compare)
     compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
@@ -85,9 +90,44 @@ def add_compare(commands) -> None:
 
 def _check_compare(args) -> None:
     check_drawing(args)
+    for flag, value in (("picture", args.picture), ("at-least", args.at_least)):
+        if args.sheets and value is not None:
+            args.parser.error(f"--{flag} is for one sheet, not for --sheets")
     read = [*((path, PHOTOS) for path in args.photos), (args.input, DRAWINGS), (args.brush, None)]
     read.append((args.corrections, (".json",)))
     check_files(args, read, [(args.output, (".json", ".txt")), (args.picture, (".png",))])
+
+
+def add_simulate_photo(commands) -> None:
+    simulate = commands.add_parser(
+        "simulate-photo", help="try compare without a robot: the photograph of a job that nobody painted"
+    )
+    add_input(simulate)
+    simulate.add_argument("output", metavar="OUT", help="a photograph (.jpg)")
+    add_choices(simulate)
+    add_corrections(simulate)
+    simulate.add_argument(
+        "--studio",
+        metavar="FILE",
+        help="what is amiss (.toml); default: drawn at random by --seed, and printed",
+    )
+    simulate.add_argument(
+        "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
+    )
+    simulate.add_argument("--seed", metavar="N", type=values.count, default=1, help="of chance; default: 1")
+    add_quiet(simulate)
+    simulate.set_defaults(run="simulate_photo", parser=simulate, check=_check_simulate_photo)
+
+
+def _check_simulate_photo(args) -> None:
+    check_drawing(args)
+    read = [
+        (args.input, DRAWINGS),
+        (args.brush, None),
+        (args.true_brush, None),
+        (args.corrections, (".json",)),
+    ]
+    check_files(args, [*read, (args.studio, (".toml",))], [(args.output, (".jpg", ".jpeg"))])
 
 
 def add_predict(commands) -> None:

@@ -72,5 +72,6 @@ def command_parser() -> argparse.ArgumentParser:
     brushes.add_brush(commands)
     drawings.add_compare(commands)
     brushes.add_article(commands)
+    drawings.add_simulate_photo(commands)
     machines.add_install_plugin(commands)
     return parser

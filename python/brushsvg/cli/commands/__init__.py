@@ -20,6 +20,7 @@ from .plugin import install_plugin
 from .predict import predict_file
 from .report import report_file
 from .scan import scan_file
+from .simulate_photo import simulate_photo
 from .text import text_file
 
 __all__ = [
@@ -48,5 +49,6 @@ __all__ = [
     "predict_file",
     "report_file",
     "scan_file",
+    "simulate_photo",
     "text_file",
 ]

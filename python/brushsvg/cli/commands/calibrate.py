@@ -30,7 +30,7 @@ def calibrate_file(args) -> None:
         return
     with about(args.input):
         if read:
-            made, report, report_picture = _from_photo(read, name, args.machine)
+            made, report, report_picture = _from_photo(read, name, args.machine, args.spread)
         else:
             made = calibrate(
                 args.input, name, absolute=args.norm == "absolute", total=args.total, machine=args.machine
@@ -93,7 +93,7 @@ def _calibrate_dabs(args, read, name: str) -> None:
     tell(report(made))
 
 
-def _from_photo(read, name: str, machine: tuple[str, ...]):
+def _from_photo(read, name: str, machine: tuple[str, ...], spread: str | None):
     """The same from a photograph of a chart."""
     import json
 
@@ -103,10 +103,12 @@ def _from_photo(read, name: str, machine: tuple[str, ...]):
     from ...calibration.machine_found import ask_for
     from ...calibration.mark_input import read_painted
     from ...calibration.mark_report import report, report_picture
+    from ...painted.repeats import read_displacement_mm
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    options = options_for(expected(read))
+    known = {"displacement_mm": read_displacement_mm(spread)} if spread else {}
+    options = options_for(expected(read) | known)
     ask_for(options, machine)
     made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture
@@ -119,8 +121,11 @@ def update_file(args) -> None:
     from ...calibration.from_prior import refuse_learned, refuse_other_brush, with_lineage
     from ...calibration.update_report import report
     from ...painted.learning import learn
+    from ...painted.repeats import read_displacement_mm
 
     before, plan = find_brush(args.prior), read_plan(args.plan)
+    with about(args.spread or ""):
+        spread_mm = read_displacement_mm(args.spread) if args.spread else None
     photos = [(path, read_bytes(path)) for path in args.photos]
     of_photos = [hashlib.sha256(data).hexdigest() for _, data in photos]
     with about(args.prior):
@@ -130,7 +135,7 @@ def update_file(args) -> None:
     name = os.path.splitext(os.path.basename(args.output))[0]
     with about(args.photos[0]):
         stage("reading the photographs and fitting the brush")
-        learnt = learn(plan, before, photos, name)
+        learnt = learn(plan, before, photos, name, args.machine, spread_mm)
     made = learnt.updated
     with_lineage(made.brush, before, of_photos)
     warn(args.photos[0], list(learnt.notices))

@@ -1,0 +1,34 @@
+"""brushsvg simulate-photo: the photograph of a job that nobody painted."""
+
+from __future__ import annotations
+
+from ...files import read_bytes
+from ..console import about, stage, tell, warn
+from ..steps.options import brush_of, settled, typed
+from ..steps.output_places import check_places, write
+from ..steps.prepared import prepare
+
+
+def simulate_photo(args) -> None:
+    from ...painted.job_page import job_page
+    from ...simulated.painting import painted
+    from ...simulated.photo import simulated_photo
+    from ...simulated.studio import random_studio, read_studio, write_studio
+
+    check_places(args.output)
+    if args.studio is not None:
+        with about(args.studio):
+            studio = read_studio(read_bytes(args.studio))
+    work = prepare(settled(typed(args), args.input))
+    warn(args.input, work.notices)
+    if args.studio is None:
+        studio = random_studio(args.seed, work.plan.sheet_mm)
+    brush = brush_of(args.true_brush) or work.brush
+    with about(args.input):
+        stage("painting")
+        strokes = painted(work.plan, brush, studio, work.options.cell.machine, args.seed)
+        stage("photographing")
+        made = simulated_photo(job_page(work.plan, work.title), strokes, studio, args.seed)
+    write(args, {args.output: made}, len(strokes), more="simulated")
+    if args.studio is None and not args.quiet:
+        tell(write_studio(studio))

@@ -1,0 +1,110 @@
+"""What a job's marks would be if this or that were amiss: of the sheet, the machine, the paper, the brush."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .. import _core
+from ..brush.perturbed import with_factors
+from ..geometry.rotation import rotation
+from ..machine.as_run import as_run
+from ..machine.cell import Machine
+
+SHEET, MACHINE, PAPER, BRUSH = "place of the sheet", "machine", "height and tilt of the paper", "brush"
+ROUGHLY_MM = 0.1  # between rows of a mark: its area changes by less than 0.05 %
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number that may be amiss, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
+    about 0.1 mm."""
+
+    cause: str
+    name: str
+    unit: str
+    sigma: float
+    step: float
+
+
+@dataclass(frozen=True)
+class FaultModel:
+    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's, all numbers are about
+    the middle of the marks."""
+
+    plan: object
+    brush: object
+    names: tuple[str, ...]
+    middle_mm: np.ndarray
+
+    @cached_property
+    def _depths_mm(self) -> tuple[float, float]:
+        """The usual depth, and how far from it a law is off by another number: as the deepest one, or as the paper."""
+        depths = -np.concatenate([np.array(one.poses_mm)[:, 2] for one in self.plan.passes])
+        usual = float(np.median(depths[depths > 0.1])) if (depths > 0.1).any() else 1.0
+        return usual, max(float(depths.max()) - usual, usual)
+
+    @cached_property
+    def numbers(self) -> tuple[Number, ...]:
+        half = 0.5 * np.array(self.plan.sheet_mm)
+        deepest = max(float(-np.array(one.poses_mm)[:, 2].min()) for one in self.plan.passes)
+        at = self.brush.lag(deepest)
+        wide = self.brush.half_width(deepest)
+        lag, width = min(0.1, 0.15 / max(at, 0.5)), min(0.1, 0.1 / max(wide, 0.5))
+        return (
+            Number(SHEET, "shift in x", "mm", 2.0, 0.1),
+            Number(SHEET, "shift in y", "mm", 2.0, 0.1),
+            Number(SHEET, "turn", "degrees", 1.0, 0.15),
+            Number(MACHINE, "scale in x", "", 0.01, 0.2 / half[0]),
+            Number(MACHINE, "scale in y", "", 0.01, 0.2 / half[1]),
+            Number(MACHINE, "skew", "mm in x per mm in y", 0.005, 0.2 / half[1]),
+            Number(MACHINE, "lean in x", "mm per mm of depth", 0.1, 0.1 / max(deepest, 1.0)),
+            Number(MACHINE, "lean in y", "mm per mm of depth", 0.1, 0.1 / max(deepest, 1.0)),
+            Number(MACHINE, "backlash in x", "mm", 0.3, 0.1),
+            Number(MACHINE, "backlash in y", "mm", 0.3, 0.1),
+            Number(PAPER, "height", "mm", 0.3, 0.1),
+            Number(PAPER, "tilt in x", "mm per mm", 1.0 / half[0], 0.1 / half[0]),
+            Number(PAPER, "tilt in y", "mm per mm", 1.0 / half[1], 0.1 / half[1]),
+            Number(BRUSH, "lag", "of it", 0.15, lag),
+            Number(BRUSH, "lag, deepest against usual", "of it", 0.1, lag),
+            Number(BRUSH, "width", "of it", 0.15, width),
+            Number(BRUSH, "width, deepest against usual", "of it", 0.1, width),
+        )
+
+    def rings(self, amiss: np.ndarray) -> dict[str, list[np.ndarray]]:
+        """By stroke, on the sheet; strokes that would not be painted are left out."""
+        shift, turn = amiss[:2], np.radians(amiss[2])
+        scale, skew, lean, backlash = 1 + amiss[3:5], amiss[5], amiss[6:8], amiss[8:10]
+        height, tilt, lag, width = amiss[10], amiss[11:13], amiss[13:15], amiss[15:17]
+        middle = self.middle_mm
+        machine = Machine(
+            tuple(lean.tolist()),
+            tuple(scale.tolist()),
+            float(skew),
+            float(height - tilt @ middle),  # true_mm has them from the sheet's corner
+            tuple(tilt.tolist()),
+        )
+        deepest = self.brush.depth_range_mm[1]
+        run = as_run(self.plan.passes, machine, np.maximum(backlash, 0.0), deepest)
+        if (backlash < 0).any():  # as far the other way: only a derivative at 0 asks for it
+            run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
+        asked = [one for one in run if one.stroke in self.names]
+        usual, spread = self._depths_mm
+        factors = {
+            name: (1 + even - slope * usual / spread, slope / spread)
+            for name, (even, slope) in (("lag", lag), ("half_width", width))
+        }
+        brush = with_factors(self.brush, factors)
+        marks = _core.simulate(_core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM)
+        off = np.array([[scale[0], skew], [0.0, scale[1]]]) @ middle - middle
+        lie = rotation(turn)
+        rings = {}
+        for mark in marks.passes:
+            alone = _core.Marks()
+            alone.passes = [mark]
+            _core.trace_outlines(alone, brush)
+            outline = alone.passes[0].outline_mm
+            rings[mark.stroke] = [(np.array(ring) - off - middle) @ lie + middle + shift for ring in outline]
+        return rings

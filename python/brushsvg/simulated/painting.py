@@ -1,0 +1,61 @@
+"""What a studio paints of a plan, by the same model that predicts it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from ..brush.perturbed import with_factors
+from ..geometry.rotation import rotation
+from ..machine.arc_chords import with_chords
+from ..machine.as_run import as_run
+from ..machine.cell import Machine
+from ..machine.distortion import told_mm
+from ..machine.pass_way import on_way
+from .studio import Studio
+
+
+@dataclass(frozen=True)
+class PaintedStroke:
+    """rings: on the sheet, as it lies; way: (n, 3) x, y of the brush's contact and how far it has come, mm."""
+
+    stroke: str
+    rings: list[np.ndarray]
+    way: np.ndarray
+
+
+def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int) -> list[PaintedStroke]:
+    """undone: what the cell undoes of the machine's errors. Error where the brush would be pressed beyond its range."""
+    off = studio.machine
+    machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm)
+    brush = with_factors(brush, {"lag": (studio.brush.lag,), "half_width": (studio.brush.half_width,)})
+    run = as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
+    marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush)
+    _core.trace_outlines(marks, brush)
+    always = np.random.default_rng(0)  # of this machine: whatever is random
+    own = {one.stroke: always.normal(0, 1, 2) * off.own_mm for one in plan.passes}
+    random = np.random.default_rng(seed + 1)
+    middle = 0.5 * np.array(plan.sheet_mm)
+    turn = rotation(np.radians(studio.sheet.turn_deg))
+    out = []
+    for mark in marks.passes:
+        aside = own[mark.stroke] + random.normal(0, 1, 2) * off.random_mm
+
+        def laid(points, aside=aside):
+            return (np.asarray(points)[:, :2] + aside - middle) @ turn + middle + studio.sheet.shift_mm
+
+        contact = np.asarray(mark.contact_mm, dtype=float).reshape(-1, 2)
+        come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(contact, axis=0).T))])
+        out.append(
+            PaintedStroke(
+                mark.stroke, [laid(r) for r in mark.outline_mm], np.column_stack([laid(contact), come])
+            )
+        )
+    return out
+
+
+def _told(a_pass, undone: Machine | None):
+    a_pass = with_chords(a_pass)
+    return on_way(a_pass, told_mm(np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3), undone), [])

@@ -1,0 +1,156 @@
+"""A studio whose machine, brush and paper are not as they should be, painted in small steps by the simulator of
+`painter`: nothing of the library but the plan that it is given, and the page that it is painted on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import painter
+import photograph
+from brushsvg._core import MarkLaws
+from photograph import BLUE, INK, Camera
+from shapely import affinity
+from shapely.geometry import Polygon
+from shapely.ops import unary_union
+
+from brushsvg.calibration.from_marks import brush_of
+from brushsvg.painted.job_page import job_page
+
+LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005])
+WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
+
+
+def known_brush(sure=0.08):
+    """The brush as its file has it: each number known to a share `sure` of it (standard deviation)."""
+    laws = MarkLaws(LAG.tolist(), GAP.tolist(), HALF.tolist(), WIDEST, FRONT)
+    numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
+    brush = brush_of(laws, "mine", (0.0, DEEPEST), np.diag((sure * numbers) ** 2))
+    brush.max_speed_mm_s = 25.0
+    return brush
+
+
+@dataclass(frozen=True)
+class Amiss:
+    """What is: lag and half width times so much; scale - 1, skew, lean, backlash of the machine; the paper higher at
+    the sheet's middle, tilted about it; the sheet's place; own: by stroke, always alike; random_mm: sigma."""
+
+    lag: float = 1.0
+    half: float = 1.0
+    scale: tuple = (0.0, 0.0)
+    skew: float = 0.0
+    lean: tuple = (0.0, 0.0)
+    backlash: tuple = (0.0, 0.0)
+    height: float = 0.0
+    tilt: tuple = (0.0, 0.0)
+    shift: tuple = (0.0, 0.0)
+    turn: float = 0.0
+    own: dict = field(default_factory=dict)
+    random_mm: float = 0.0
+
+    def mended(self, cause):
+        """The same without what one cause, by the name that compare has for it, does."""
+        good = Amiss()
+        keys = {
+            "place of the sheet": ("shift", "turn"),
+            "machine": ("scale", "skew", "lean", "backlash"),
+            "height and tilt of the paper": ("height", "tilt"),
+            "brush": ("lag", "half"),
+            "each stroke's own place": ("own", "random_mm"),
+        }[cause]
+        return replace(self, **{key: getattr(good, key) for key in keys})
+
+
+def random_amiss(rng, names, sheet_mm):
+    """A brush up to 20 % off, up to 2 mm of tilt over the sheet, 0.5 mm of backlash, 1 % of scale."""
+    tilt = rng.uniform(-1, 1, 2) * rng.dirichlet([1, 1]) * 2 / np.array(sheet_mm)
+    return Amiss(
+        *(1 + rng.uniform(-0.2, 0.2, 2)),
+        scale=tuple(rng.uniform(-0.01, 0.01, 2)),
+        backlash=tuple(rng.uniform(0, 0.5, 2)),
+        tilt=tuple(tilt),
+        own={name: rng.normal(0, 0.1, 2) for name in names},
+        random_mm=0.1,
+    )
+
+
+def dense(poses, arcs):
+    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
+    arcs = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
+    out = [poses[:1]]
+    for k in range(len(poses) - 1):
+        angle, count = 0.0, max(2, int(np.hypot(*(poses[k + 1] - poses[k])[:2]) / 0.5) + 1)
+        if k in arcs:
+            centre, way = np.array(arcs[k].centre_mm), np.sign(arcs[k].direction)
+            spoke, last = ((poses[j, :2] - centre) @ [1, 1j] for j in (k, k + 1))
+            angle = np.angle(last / spoke)
+            angle += 2 * np.pi * way * (np.sign(angle) != way)
+            count = 2 + int(abs(angle * spoke) / 0.5)
+        share = np.linspace(0, 1, count)[1:, None]
+        steps = poses[k] + share * (poses[k + 1] - poses[k])
+        if angle:
+            place = spoke * np.exp(1j * angle * share[:, 0])
+            steps[:, :2] = centre + np.column_stack([place.real, place.imag])
+        out.append(steps)
+    return np.vstack(out)
+
+
+def ran(plan, amiss):
+    """[(stroke, poses)]: where the tool was, z over the true paper."""
+    middle = 0.5 * np.array(plan.sheet_mm)
+    play, last, out = np.zeros(2), None, []
+    for one in plan.passes:
+        poses = dense(np.array(one.poses_mm), one.arcs)
+        place = poses[:, :2].copy()
+        for k, here in enumerate(poses[:, :2]):  # the slide stands still while the screw crosses its play
+            play = np.clip(
+                play + (here - (here if last is None else last)), *np.outer([-0.5, 0.5], amiss.backlash)
+            )
+            place[k] -= play
+            last = here
+        at = place - middle
+        z = poses[:, 2] - amiss.height - at @ amiss.tilt
+        at = at + at * amiss.scale + np.outer(at[:, 1], [amiss.skew, 0.0])
+        at += np.outer(np.maximum(-z, 0), amiss.lean)
+        out.append((one.stroke, np.column_stack([at + middle, z])))
+    return out
+
+
+def painted(plan, amiss, seed=0):
+    """By stroke its region on the sheet."""
+    rng = np.random.default_rng(seed)
+    brush = painter.TrueBrush(DEEPEST, amiss.lag * LAG, GAP, amiss.half * HALF, WIDEST, FRONT)
+    ways = ran(plan, amiss)
+    middle = tuple(0.5 * np.array(plan.sheet_mm))
+    out = {}
+    for (name, _), region in zip(ways, painter.swept(brush, ways, 0.0), strict=True):
+        if region is not None:
+            aside = amiss.own.get(name, np.zeros(2)) + rng.normal(0, amiss.random_mm, 2)
+            region = affinity.rotate(affinity.translate(region, *aside), amiss.turn, middle)
+            out[name] = affinity.translate(region, *amiss.shift)
+    return out
+
+
+def photographed(plan, regions, title="", camera=None, seed=1):
+    """JPEG bytes."""
+    page = job_page(plan, title)
+    sheet = photograph.page(page.printed)
+    for tick in page.ticks:
+        sheet.paint([tick], INK)
+    for region in regions.values():
+        rings = [
+            ring for part in getattr(region, "geoms", [region]) for ring in (part.exterior, *part.interiors)
+        ]
+        sheet.paint([np.array(ring.coords)[:-1] + page.frame_mm for ring in rings], BLUE)
+    camera = camera or Camera(size_px=(1800, round(1800 * page.size_mm[1] / page.size_mm[0])), fill=0.93)
+    return photograph.photograph(sheet, camera, seed)
+
+
+def overlap(regions, wanted):
+    one, other = (unary_union(list(each.values())) for each in (regions, wanted))
+    return one.intersection(other).area / one.union(other).area
+
+
+def as_region(rings):
+    rings = [Polygon(ring).buffer(0) for ring in rings]
+    return unary_union([ring for ring in rings])

@@ -1,0 +1,107 @@
+"""Whose fault: what is amiss of a studio is named and measured on sheets that another simulator paints."""
+
+import json
+
+import numpy as np
+import pytest
+import studio
+from diagnostics import in_json
+
+core = pytest.importorskip("brushsvg._core")
+if not hasattr(core, "fit_marks"):
+    pytest.skip("built without Ceres", allow_module_level=True)
+
+from brushsvg.brush.library import save_brush  # noqa: E402
+from brushsvg.cli import main  # noqa: E402
+from brushsvg.pipeline.json_files import read_plan  # noqa: E402
+
+pytestmark = pytest.mark.long
+
+WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
+<title>word</title><g fill="none" stroke="#000" stroke-linecap="round">
+<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="5"/>
+<path id="line" d="M60 78 L14 74" stroke-width="3"/>
+<path id="wave" d="M72 76 C84 56 96 92 110 72 S128 66 132 76" stroke-width="2.5"/>
+<path id="hook" d="M70 12 L98 12 C106 12 106 34 92 34 L78 34" stroke-width="4"/>
+<path id="loop" d="M34 46 a9 9 0 1 1 -0.01 0" stroke-width="2"/>
+<path id="slash" d="M58 24 L30 20" stroke-width="3"/>
+<path id="stem" d="M124 20 L126 52" stroke-width="4"/>
+<path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/></g></svg>"""
+NAMES = ("bow", "line", "wave", "hook", "loop", "slash", "stem", "knee")
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("studio")
+    save_brush(studio.known_brush(), folder / "mine.json")
+    (folder / "word.svg").write_text(WORD)
+    words = ["convert", folder / "word.svg", folder / "word.json", "--brush", folder / "mine.json", "--quiet"]
+    assert main([*map(str, words)]) == 0
+    return folder, read_plan(folder / "word.json")
+
+
+def compared(job, amiss, seed=1, *flags):
+    folder, plan = job
+    (folder / "photo.jpg").write_bytes(studio.photographed(plan, studio.painted(plan, amiss, seed), "word"))
+    words = ["compare", "photo.jpg", "word.svg", "--brush", "mine.json", "-o", "seen.json"]
+    words = [str(folder / word) if "." in word else word for word in words]
+    assert main([*words, "--quiet", *flags]) == 0
+    return json.loads((folder / "seen.json").read_text())["faults"]
+
+
+ONE = {
+    "place of the sheet": (
+        studio.Amiss(shift=(0.8, -0.6), turn=0.4),
+        {"shift in x": 0.8, "shift in y": -0.6, "turn": 0.4},
+    ),
+    "machine": (
+        studio.Amiss(scale=(0.01, -0.008), lean=(0.1, -0.08), backlash=(0.5, 0.3)),
+        {"scale in x": 0.01, "scale in y": -0.008, "lean in x": 0.1, "lean in y": -0.08}
+        | {"backlash in x": 0.5, "backlash in y": 0.3},
+    ),
+    "height and tilt of the paper": (
+        studio.Amiss(height=0.3, tilt=(0.008, -0.01)),
+        {"tilt in x": 0.008, "tilt in y": -0.01},
+    ),
+    "brush": (studio.Amiss(lag=1.15, half=0.88), {"lag": 0.15, "width": -0.12}),
+    "each stroke's own place": (
+        studio.Amiss(
+            own={name: np.array([0.6 * (-1) ** k, 0.5 * (-1) ** (k // 2)]) for k, name in enumerate(NAMES)}
+        ),
+        {},
+    ),
+}
+
+
+@pytest.mark.parametrize("cause", ONE)
+def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
+    amiss, numbers = ONE[cause]
+    found = compared(job, amiss, 1)
+    assert found["mend_first"] == cause, found["causes"]
+    rows = {row["name"]: row for row in found["numbers"]}
+    for name, truth in numbers.items():
+        row = rows[name]
+        assert abs(row["value"] - truth) < max(2 * row["half_95"], 0.12 * abs(truth)), (name, truth, row)
+    gains = {row["cause"]: row["gain"] for row in found["causes"]}
+    _, plan = job
+    wanted = studio.painted(plan, studio.Amiss())
+    gap = 1 - studio.overlap(studio.painted(plan, amiss, 1), wanted)
+    assert gains[cause] == pytest.approx(gap, abs=0.25 * gap + 0.01)
+    assert all(gain < 0.4 * gap + 0.01 for other, gain in gains.items() if other != cause), gains
+
+
+def test_nothing_amiss_is_nobodys_fault(job, capsys):
+    found = compared(job, studio.Amiss())
+    assert found["mend_first"] is None, found
+    rows = {row["name"]: row for row in found["numbers"]}
+    assert abs(rows["scale in x"]["value"]) < 0.001 and abs(rows["lag"]["value"]) < 0.02
+    assert found["overlap"] > 0.96
+
+
+def test_few_strokes_blame_nobody(job, capsys, tmp_path):
+    few = WORD[: WORD.index('<path id="wave"')] + "</g></svg>"
+    (tmp_path / "few.svg").write_text(few)
+    words = ["simulate-photo", str(tmp_path / "few.svg"), str(tmp_path / "few.jpg"), "--quiet"]
+    assert main(words) == 0
+    status, out, _ = in_json(capsys, "compare", tmp_path / "few.jpg", tmp_path / "few.svg", "--json")
+    assert status == 0 and json.loads(out)["faults"] is None

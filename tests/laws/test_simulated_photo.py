@@ -1,0 +1,110 @@
+"""simulate-photo: what its studio says is amiss is what compare sees, and it cannot be taken for a photograph."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told
+
+from brushsvg.cli import main
+
+pytestmark = pytest.mark.long  # sheets are rendered and read
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
+<title>six</title><g fill="none" stroke="#000" stroke-width="3">
+<path id="a" d="M20 20 L50 16"/><path id="b" d="M100 20 L70 24"/><path id="c" d="M20 40 C30 60 40 60 50 40"/>
+<path id="d" d="M100 60 L70 50"/><path id="e" d="M60 30 L62 66"/><path id="f" d="M14 70 L50 68 L50 60"/></g></svg>"""
+HEAD = 'format = "brushsvg/studio"\nversion = 1\n'
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    (tmp_path / "six.svg").write_text(DRAWING)
+    return tmp_path / "six.svg"
+
+
+def shown(drawing, capsys, toml, *flags):
+    """What compare says of the photograph of a studio."""
+    folder = drawing.parent
+    (folder / "studio.toml").write_text(HEAD + toml)
+    words = [
+        "simulate-photo",
+        drawing,
+        folder / "p.jpg",
+        "--studio",
+        folder / "studio.toml",
+        "--quiet",
+        *flags,
+    ]
+    assert main([*map(str, words)]) == 0, capsys.readouterr().err
+    assert main(["compare", str(folder / "p.jpg"), str(drawing), "--json", "--quiet"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_a_studio_in_which_nothing_is_amiss_paints_what_was_predicted(drawing, capsys):
+    found = shown(drawing, capsys, "")
+    assert found["overlap_predicted"] > 0.98 and found["faults"]["mend_first"] is None
+
+
+def test_each_key_does_what_it_says(drawing, capsys):
+    found = shown(drawing, capsys, "[sheet]\nshift_mm = [1.5, -1.0]\nturn_deg = 0.6\n")
+    assert found["sheet"]["turn_deg"] == pytest.approx(0.6, abs=0.05)
+    middle = np.array(found["sheet"]["middle_mm"]) - [60, 40]
+    c, s = np.cos(np.radians(0.6)), np.sin(np.radians(0.6))
+    beside = np.array([[c, -s], [s, c]]) @ middle - middle + [1.5, -1.0]
+    assert found["sheet"]["shift_mm"] == pytest.approx(beside, abs=0.05)
+    found = shown(drawing, capsys, "[paint]\nlasts_mm = 15\n")
+    missing = {row["cause"]: row["gain"] for row in found["faults"]["causes"]}
+    assert found["faults"]["mend_first"] == "missing paint" and missing["missing paint"] > 0.1
+    found = shown(drawing, capsys, "[brush]\nlag = 1.15\n")
+    numbers = {row["name"]: row for row in found["faults"]["numbers"]}
+    assert numbers["lag"]["value"] == pytest.approx(0.15, abs=0.03)
+    words = ["simulate-photo", str(drawing), str(drawing.parent / "q.jpg"), "--true-brush", "rigid"]
+    assert main(words) == 1, "which cannot be pressed as deep as the plan presses it"
+
+
+def test_the_same_seed_is_the_same_photograph_and_its_studio_is_told(drawing, capsys):
+    folder = drawing.parent
+    for name, seed in (("a", 7), ("b", 7), ("c", 8)):
+        assert main(["simulate-photo", str(drawing), str(folder / f"{name}.jpg"), "--seed", str(seed)]) == 0
+    a, b, c = ((folder / f"{name}.jpg").read_bytes() for name in "abc")
+    assert a == b != c
+    text = capsys.readouterr().out
+    (folder / "told.toml").write_text(text[text.rindex("format = ") :])
+    words = ["simulate-photo", drawing, folder / "d.jpg", "--seed", "8", "--studio", folder / "told.toml"]
+    assert main([*map(str, words)]) == 0
+    assert (folder / "d.jpg").read_bytes() == c
+
+
+def test_it_says_that_it_is_simulated(drawing):
+    """White letters on a dark red strip, from edge to edge."""
+    folder = drawing.parent
+    assert main(["simulate-photo", str(drawing), str(folder / "p.jpg"), "--quiet"]) == 0
+    strip = cv2.imread(str(folder / "p.jpg"))[-30:].astype(int)
+    red = (strip[..., 2] > 80) & (strip[..., :2].max(axis=-1) < 60)
+    white = strip.min(axis=-1) > 180
+    assert red.mean() > 0.7 and 0.02 < white.mean() < 0.3
+    assert red[:, [3, -4]].mean() > 0.9
+
+
+@pytest.mark.parametrize(
+    ("toml", "code"),
+    [
+        ("[machine]\nbacklash_mm = [4.0, 0.0]\n", "out-of-range 4 0 3"),
+        ("[machine]\nbacklash = 0.1\n", "key-unknown machine.backlash"),
+        ("[brush]\nlag = true\n", "wrong-type brush.lag"),
+        ("[robot]\n", "key-unknown robot"),
+        ("[camera]\ntilt_deg = [25.0, 25.0]\nfocal = 0.5\n", "out-of-range"),
+        ("[machine]\nheight_mm = 5.0\n[brush]\n", ""),
+        ("[machine\n", "not-toml"),
+    ],
+)
+def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
+    folder = drawing.parent
+    (folder / "studio.toml").write_text(HEAD + toml)
+    big = DRAWING.replace('stroke-width="3"', 'stroke-width="7"')
+    drawing.write_text(big if not code else DRAWING)
+    words = ("simulate-photo", drawing, folder / "p.jpg", "--studio", folder / "studio.toml")
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and not (folder / "p.jpg").exists(), told
+    assert is_told(told, code) if code else len(told) >= 1, told
