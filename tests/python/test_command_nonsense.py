@@ -46,6 +46,7 @@ COMMANDS = [
     "calibrate PHOTO --chart CHART -o OUT.json",
     "compare PHOTO a.svg -o OUT.json",
     "compare PHOTO PLAN",
+    "simulate-photo a.svg OUT.jpg",
     "brush new OUT.json --lag 5 --widths WIDTHS",
     "brush show BRUSH",
     "brush check BRUSH",
