@@ -45,6 +45,8 @@ class Camera:
 class Sheet:
     """What a sheet throws back, painted over ring by ring; so many texels per mm."""
 
+    texels = TEXELS
+
     def __init__(self, size_mm, seed=0, texels=TEXELS):
         self.size_mm, self.texels = size_mm, texels
         columns, rows = (round(side * texels) for side in size_mm)
