@@ -63,7 +63,7 @@ $(VENV)/.modules: $(VENV)/.created FORCE
 
 $(VENV)/.installed: $(VENV)/.created $(VENV)/.modules pyproject.toml $(CPP_SOURCES)
 	@echo "building (a few minutes the first time)"
-	$(BIN)/pip install -q --no-build-isolation -e ".[text,plot]"
+	$(BIN)/pip install -q --no-build-isolation -e ".[text,plot,arm]"
 	touch $@
 
 $(VENV)/.dev: $(VENV)/.installed pyproject.toml

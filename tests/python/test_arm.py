@@ -12,6 +12,8 @@ from brushsvg.errors import Error
 from brushsvg.machine.arm.joints import frames, joints_of
 from brushsvg.machine.cell_file import cell_names, find_cell
 
+pytestmark = pytest.mark.arm
+
 ARMS = [name for name in cell_names() if find_cell(name).arm]
 
 # Joints as the arms' own descriptions have them: xyz [mm], roll pitch yaw [quarter turns], axis; the flange's roll

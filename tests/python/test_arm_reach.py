@@ -22,6 +22,8 @@ from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.program import unchecked_program
 
+pytestmark = pytest.mark.arm
+
 BRUSH = find_brush("round-6")
 ALONG, ACROSS = ((10, 20), (90, 20)), ((50, 5), (50, 55))
 UP_FRONT = (90.0, -36.0, 126.0, 0.0, 5.0, 0.0)  # a KR 6 with its elbow up, the hand hanging

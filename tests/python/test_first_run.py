@@ -12,6 +12,8 @@ from brushsvg.machine.motion import Wait
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.setup_programs import first_run
 
+pytestmark = pytest.mark.arm
+
 SHEET_MM = (200.0, 100.0)
 WAITING = [name for name in cell_names() if name not in ("grbl-servo", "fr3")]
 

@@ -76,9 +76,9 @@ def test_what_is_set_up_has_the_extras_that_its_commands_need():
         r'lacking\("[^"]*", (.*)\)', "".join(map(Path.read_text, root.glob("python/brushsvg/**/*.py")))
     )
     named = {name for each in asked for name in re.findall('"(.*?)"', each)}
-    assert named == {re.split("[<>=]", each)[0] for name in ("text", "plot") for each in extras[name]}
+    assert named == {re.split("[<>=]", each)[0] for name in ("text", "plot", "arm") for each in extras[name]}
     (installs,) = re.findall(r"-e (\S*)$", (root / "Makefile").read_text().split("$(VENV)/.dev:")[0], re.M)
-    assert installs.strip("\"'") == ".[text,plot]"
+    assert installs.strip("\"'") == ".[text,plot,arm]"
 
 
 def test_importing_the_package_loads_nothing():
