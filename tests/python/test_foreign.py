@@ -126,3 +126,13 @@ def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
     assert status == 0 and RUNNABLE in out
     status, _, said = in_json(capsys, "convert", "out.ngc", "again.ngc")
     assert status == 1 and is_told(said, "program-ours")
+
+
+@pytest.mark.parametrize(
+    "flags",
+    ["--width 3", "--scale 2", "--z-offset 1", "--speed 5", "--as stroke", "--lenient", "--wide clamp"],
+)
+def test_check_refuses_flags_that_would_change_nothing(desk, capsys, flags):
+    (desk / "f.ngc").write_text(INCHES)
+    status, _, told = in_json(capsys, "check", "f.ngc", *flags.split())
+    assert status == 1 and is_told(told, f"flag-without-effect {flags.split()[0]}")

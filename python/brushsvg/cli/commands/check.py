@@ -25,7 +25,7 @@ from ...units import clock
 from ..console import RefusedError, about, stage, tell
 from ..steps.options import brush_of, cell_of, exact_cell, typed, warn_of_arm
 from ..steps.output_places import check_places, suffix_of, write
-from ..steps.prepared import prepare
+from ..steps.prepared import LAYOUT_FLAGS, MADE_FLAGS, prepare
 
 
 def check_file(args) -> None:
@@ -123,8 +123,11 @@ def _check_foreign(args, text: str) -> None:
     if args.input:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
-    if args.z_offset:
-        raise Error("brushsvg did not write it: --z-offset would not move it", code="flag-without-effect")
+    dest = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset"}
+    for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections", "lenient"):
+        if flag != "sheet" and getattr(args, dest.get(flag, flag), None):
+            sentence = f"brushsvg did not write it: --{flag} would change nothing"
+            raise Error(sentence, code="flag-without-effect")
     cell = cell_of(args.cell)
     brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
     found = foreign_program(text, brush, cell, args.sheet)

@@ -17,12 +17,12 @@ from .options import Choices, options_of
 from .output_places import suffix_of
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
+MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
 
 
 def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> preparation.Work:
     if suffix_of(chosen.input) == ".json":
-        made = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
-        for flag in (*LAYOUT_FLAGS, *made):
+        for flag in (*LAYOUT_FLAGS, *MADE_FLAGS):
             if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None:
                 sentence = f"--{flag} has no effect on a plan, whose poses are fixed"
                 warn(chosen.input, [Notice("", sentence, code="flag-without-effect", about=flag)])
