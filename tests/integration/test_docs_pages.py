@@ -32,7 +32,8 @@ def test_every_page_is_built_and_can_be_searched(site):
 
 def test_every_public_name_has_its_place(site):
     page = (site / "reference" / "python.html").read_text(encoding="utf-8")
-    assert [name for name in brushsvg.__all__ if name[0] != "_" and f'id="brushsvg.{name}"' not in page] == []
+    names = [f"brushsvg.{name}" for name in brushsvg.__all__ if name[0] != "_"]
+    assert [name for name in names if f'id="{name}"' not in page and f'id="module-{name}"' not in page] == []
 
 
 def test_every_command_and_cell_has_its_place(site):

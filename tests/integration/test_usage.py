@@ -40,7 +40,7 @@ USAGE = [
 LATER = {
     "flags": ["--caps"],
     "commands": ["learn"],
-    "formats": [".ls", ".pdf", ".krl"],
+    "formats": [".ebb", ".hpgl", ".pdf", ".krl"],
 }
 PAGES = [
     [],
@@ -92,7 +92,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     commands = set(re.findall(r"(?m)^    ([a-z]+)(?: |$)", pages[()]))
     assert commands == {
         *("convert", "border", "height", "predict", "animate", "check", "report", "import", "text"),
-        *("brush", "calibrate", "cell", "chart", "compare", "scan"),
+        *("article", "brush", "calibrate", "cell", "chart", "compare", "scan"),
     }
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {
         "list",
