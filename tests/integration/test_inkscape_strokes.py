@@ -84,7 +84,8 @@ def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, ink
 
 
 def assert_painted_alike(letters: Path, strokes: Path) -> None:
-    """The same strokes with the same marks; poses may differ within the tolerance of the mark."""
+    """The same strokes with the same marks; poses may differ within the tolerance of the mark, and ends that are squared
+    to a slanted cut by what Inkscape's own outline of the stroke has of that cut: 0.13 mm on an S."""
     plans, marks = [], []
     for drawn in (letters, strokes):
         for command, found in (("convert", plans), ("predict", marks)):
@@ -96,8 +97,8 @@ def assert_painted_alike(letters: Path, strokes: Path) -> None:
         assert (letter["layer"], letter["colour"]) == (stroke["layer"], stroke["colour"])
     for letter, stroke in zip(*marks, strict=True):
         a, b = (np.vstack(each["outline_mm"]) for each in (letter, stroke))
-        assert np.abs(a.min(axis=0) - b.min(axis=0)).max() < 0.1
-        assert np.abs(a.max(axis=0) - b.max(axis=0)).max() < 0.1
+        assert np.abs(a.min(axis=0) - b.min(axis=0)).max() < 0.15
+        assert np.abs(a.max(axis=0) - b.max(axis=0)).max() < 0.15
 
 
 def test_letters_that_are_sheared_are_painted_alike(plugin, inkscape, tmp_path):
