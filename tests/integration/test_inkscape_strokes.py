@@ -84,8 +84,8 @@ def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, ink
 
 
 def assert_painted_alike(letters: Path, strokes: Path) -> None:
-    """The same strokes with the same marks; poses may differ within the tolerance of the mark, and ends that are squared
-    to a slanted cut by what Inkscape's own outline of the stroke has of that cut: 0.13 mm on an S."""
+    """The same strokes with the same marks; poses may differ within the tolerance of the mark, and ends that are
+    squared to a slanted cut by what the stroke's outline has of that cut: 0.13 mm on an S."""
     plans, marks = [], []
     for drawn in (letters, strokes):
         for command, found in (("convert", plans), ("predict", marks)):
