@@ -1,7 +1,7 @@
 MODULE brushsvg
   ! title: two strokes
   LOCAL PERS tooldata brush := [TRUE, [[0.000, 0.000, 150.000], [1.0000000, 0.0000000, 0.0000000, 0.0000000]], [0.5, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]];
-  LOCAL PERS wobjdata paper := [FALSE, TRUE, "", [[-150.000, -450.000, 20.000], [1.0000000, 0.0000000, 0.0000000, 0.0000000]], [[0, 0, 0], [1, 0, 0, 0]]];
+  LOCAL PERS wobjdata paper := [FALSE, TRUE, "", [[-160.000, -460.000, 20.000], [1.0000000, 0.0000000, 0.0000000, 0.0000000]], [[0, 0, 0], [1, 0, 0, 0]]];
   LOCAL VAR robtarget here;
 
   FUNC robtarget on_paper(num x, num y, num z)
