@@ -2,15 +2,19 @@
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from diagnostics import refused
 from programs import LANGUAGES, RUNNABLE, call
+from scipy.interpolate import RegularGridInterpolator
+from scipy.spatial import cKDTree
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.machine import preflight, writer
+from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell import Machine, Reload, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.pipeline import preparation
@@ -22,6 +26,12 @@ DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm"
 <path id="hook" d="M20 60 h30 v-20 h-12"/></g></svg>"""
 LEANS = Machine((0.3, -0.2), (1.01, 0.99), 0.012)
 TILTED = Machine((0.3, 0.0), (1.0, 1.0), 0.0, 0.4, (0.004, -0.003))
+GRID = [
+    (x, y, h)
+    for y, row in ((0, (0.0, 0.8, -0.3)), (40, (0.5, -0.6, 0.9)), (90, (0.2, 0.7, 0.0)))
+    for x, h in zip((0, 50, 130), row, strict=True)
+]
+BUMPY = Machine((0.2, 0.1), (1.01, 0.99), 0.005, 0.3, (0.002, 0.001), tuple(GRID))
 
 
 @pytest.fixture
@@ -69,8 +79,58 @@ def test_the_machine_goes_where_the_plan_asks_it_to(desk, machine):
     assert np.isclose(z, 10.0, atol=2e-3).sum() >= 4, "travel is at the safe height over the paper"
 
 
+def paper_mm(told, machine):
+    """(n,) how much higher the paper lies at places that are told than it was taught: the map by scipy."""
+    xs, ys = (np.unique([row[k] for row in GRID]) for k in range(2))
+    map_mm = RegularGridInterpolator((ys, xs), np.array([row[2] for row in GRID]).reshape(3, 3))
+    at = np.clip(told[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1]))
+    return machine.height_mm + told[:, :2] @ np.array(machine.tilt_mm_per_mm) + map_mm(at[:, ::-1])
+
+
+def test_the_height_over_a_map_of_the_paper_holds_all_along(desk):
+    work = preparation.prepare("two.svg")
+    cell = cell_with(BUMPY)
+    told = told_places(text_of(work, cell))
+    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(told)])
+    goes = between[:, 2] - paper_mm(between, BUMPY)
+    depth = np.maximum(0.0, -goes)
+    x = BUMPY.scale[0] * between[:, 0] + BUMPY.skew * between[:, 1] + BUMPY.lean_mm_per_mm[0] * depth
+    y = BUMPY.scale[1] * between[:, 1] + BUMPY.lean_mm_per_mm[1] * depth
+    painted = np.column_stack([x, y, goes])[goes < -0.2]
+    plan = np.vstack(
+        [
+            a + np.linspace(0, 1, 2000)[:, None] * (b - a)
+            for a_pass in work.plan.passes
+            for a, b in pairwise(np.asarray(with_chords(a_pass).poses_mm))
+        ]
+    )
+    away = cKDTree(plan).query(painted)[0]
+    assert len(painted) > 300 and away.max() < 0.015
+    assert np.ptp(paper_mm(told, BUMPY)) > 0.8, "and the map is used"
+    sideways = np.hypot(*np.diff(told[:, :2], axis=0).T) > 5.0
+    over = told[:, 2] - paper_mm(told, BUMPY)
+    travels = [k for k in np.flatnonzero(sideways) if min(over[k], over[k + 1]) > 0.5]
+    assert travels and over[travels].min() > 10.0 - 2e-3, "travel is over the highest place"
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (GRID[:-1], "cell-machine 130 90 3 3"),
+        ([*GRID, GRID[0]], "cell-machine 0 0"),
+        (GRID[:3], "cell-machine 3 1 2 2"),
+        ([(0, 0, 0), (3, 0, 0), (0, 9, 0), (3, 9, 0)], "cell-machine 0 3 5"),
+        ([(*row[:2], 9.0) for row in GRID], "cell-machine 9 0 0 -5 5"),
+    ],
+)
+def test_a_map_that_is_no_grid_is_refused(rows, said):
+    text = write_cell(find_cell("linuxcnc-3axis"))
+    with refused(said, "machine.map_mm"):
+        parse_cell(f"{text}\n[machine]\nmap_mm = {[list(map(float, row)) for row in rows]}\n")
+
+
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
-@pytest.mark.parametrize("machine", [LEANS, TILTED])
+@pytest.mark.parametrize("machine", [LEANS, TILTED, BUMPY])
 def test_what_was_planned_comes_back(desk, name, machine):
     work, cell = preparation.prepare("two.svg"), cell_with(machine, name)
     read = read_program(text_of(work, cell), LANGUAGES[name], cell)
@@ -101,7 +161,8 @@ def test_check_allows_it_and_refuses_the_same_program_on_another_machine(desk, c
 
 
 @pytest.mark.parametrize(
-    ("machine", "are_told"), [(Machine((0.3, 0.1), (1.01, 1.01)), True), (LEANS, False), (TILTED, False)]
+    ("machine", "are_told"),
+    [(Machine((0.3, 0.1), (1.01, 1.01)), True), (LEANS, False), (TILTED, False), (BUMPY, False)],
 )
 def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, are_told):
     angle = np.linspace(0.0, 2.0, 30)
@@ -184,10 +245,12 @@ def with_paint(machine, name="linuxcnc-3axis", safe_mm=5.0):
 
 
 def over_the_paper(told, machine):
+    if machine.map_mm:
+        return told[:, 2] - paper_mm(told, machine)
     return told[:, 2] - machine.height_mm - told[:, :2] @ np.array(machine.tilt_mm_per_mm)
 
 
-@pytest.mark.parametrize("machine", [HIGH, LOW])
+@pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
 def test_between_strokes_and_paint_nothing_goes_below_the_safe_height(desk, machine):
     """Over paper that is 4 mm higher than it was taught, the tool came from the paint 1 mm above it."""
     work, cell = preparation.prepare("two.svg"), with_paint(machine)
@@ -215,7 +278,7 @@ def test_check_allows_visits_on_a_machine_whose_paper_lies_higher(desk, capsys, 
     assert status == 0 and RUNNABLE in out, err
 
 
-@pytest.mark.parametrize("machine", [HIGH, LOW])
+@pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
 def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk, capsys, machine):
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
     assert call(capsys, "border", "two.svg", "border.ngc", "--cell", "mine.toml")[0] == 0
@@ -228,7 +291,7 @@ def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk,
     assert call(capsys, "check", "border.ngc", "two.svg", "--cell", "mine.toml")[0] == 0
 
 
-@pytest.mark.parametrize("machine", [HIGH, LOW, LEANS])
+@pytest.mark.parametrize("machine", [HIGH, LOW, LEANS, BUMPY])
 def test_heights_tell_how_much_higher_the_paper_lies_than_is_known(desk, capsys, machine):
     """What the first stroke to paint says is what `convert --z-offset` takes, which adds it to height_mm."""
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))

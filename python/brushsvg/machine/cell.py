@@ -154,6 +154,14 @@ class Machine:
         "how much higher the paper lies at its corner than it was taught", -5, 5, default=0.0
     )
     tilt_mm_per_mm: tuple = _key("by how much it rises along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
+    map_mm: tuple = _key(
+        "x, y and how much higher still it lies there, at all places of a grid: straight in between, and beyond the "
+        "grid as at its edge",
+        (None, 3),
+        -2e3,
+        2e3,
+        (),
+    )
 
 
 @dataclass(frozen=True)

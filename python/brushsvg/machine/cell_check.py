@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from .frames import moved, normal_tilt_deg
 from .move_extents import from_origin, ways
 from .workspace_limits import astray
 
+LEAST_GRID_MM, MOST_MAP_MM = 5.0, 5.0  # how far apart a map's lines are at least, and how high or low it is
 JOINTS = 6  # of an arm: with more of them, angles for a place are no longer few
 COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
 
@@ -55,6 +57,8 @@ def check(cell: Cell) -> None:
     _check_own_keys(cell)
     _check_paper(cell)
     _check_workspace(cell)
+    if cell.machine and cell.machine.map_mm:
+        _check_map(cell.machine.map_mm)
     if cell.servo:
         _check_servo(cell)
         _check_machine_of_servo(cell)
@@ -288,11 +292,47 @@ def _check_servo(cell: Cell) -> None:
         )
 
 
+def _check_map(map_mm: tuple) -> None:
+    where = "machine.map_mm"
+    places = [row[:2] for row in map_mm]
+    xs, ys = (sorted({place[k] for place in places}) for k in range(2))
+    for x, y in places:
+        if places.count((x, y)) > 1:
+            raise Error(f"the place x {x:g}, y {y:g} mm is given twice", where=where, code="cell-machine")
+    missing = [(x, y) for y in ys for x in xs if (x, y) not in set(places)]
+    if missing:
+        x, y = missing[0]
+        raise Error(
+            f"no height is given at x {x:g}, y {y:g} mm, one of {len(xs)} x {len(ys)} places of a grid",
+            where=where,
+            code="cell-machine",
+        )
+    if min(len(xs), len(ys)) < 2:
+        raise Error(
+            f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine"
+        )
+    for axis, lines in (("x", xs), ("y", ys)):
+        for one, other in pairwise(lines):
+            if other - one < LEAST_GRID_MM:
+                raise Error(
+                    f"{axis} {one:g} and {other:g} mm are less than {LEAST_GRID_MM:g} mm apart",
+                    where=where,
+                    code="cell-machine",
+                )
+    for x, y, height in map_mm:
+        if abs(height) > MOST_MAP_MM:
+            raise Error(
+                f"{height:g} mm at x {x:g}, y {y:g} mm is outside the range [{-MOST_MAP_MM:g}, {MOST_MAP_MM:g}] mm",
+                where=where,
+                code="cell-machine",
+            )
+
+
 def _check_machine_of_servo(cell: Cell) -> None:
     """Its height goes in steps, at which a way would have to jump aside."""
-    for key in ("lean_mm_per_mm", "tilt_mm_per_mm"):
+    for key in ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"):
         values = getattr(cell.machine, key, ())
-        if any(values):
+        if np.any(values):
             raise Error(
                 f"{key} {list(values)} is outside the range [0, 0] of a servo, whose depth goes in steps",
                 where=f"machine.{key}",

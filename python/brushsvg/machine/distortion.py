@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from itertools import pairwise
+
 import numpy as np
 
 from .. import _core
 from .cell import Cell, Machine
 from .pass_way import on_way
 
+MAP_OFF_MM = 0.003  # how far a line that is told may lie from the paper's map between its ends
+
 
 def is_similar(machine: Machine | None) -> bool:
     """Whether a circle at one depth stays a circle."""
     return machine is None or (
-        not machine.skew and machine.scale[0] == machine.scale[1] and not any(machine.tilt_mm_per_mm)
+        not machine.skew
+        and machine.scale[0] == machine.scale[1]
+        and not any(machine.tilt_mm_per_mm)
+        and not machine.map_mm
     )
 
 
@@ -25,7 +33,7 @@ def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     if machine is None:
         return points_mm
     told = np.asarray(points_mm, dtype=float)
-    z = told[:, 2] - machine.height_mm - told[:, :2] @ machine.tilt_mm_per_mm
+    z = told[:, 2] - _paper_mm(told[:, :2], machine)
     depth = np.maximum(-z, 0.0)
     return np.column_stack([told[:, :2] @ _axes(machine).T + np.outer(depth, machine.lean_mm_per_mm), z])
 
@@ -37,8 +45,7 @@ def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     wanted = np.asarray(points_mm, dtype=float)
     depth = np.maximum(-wanted[:, 2], 0.0)
     place = (wanted[:, :2] - np.outer(depth, machine.lean_mm_per_mm)) @ np.linalg.inv(_axes(machine)).T
-    z = wanted[:, 2] + machine.height_mm + place @ machine.tilt_mm_per_mm
-    return np.column_stack([place, z])
+    return np.column_stack([place, wanted[:, 2] + _paper_mm(place, machine)])
 
 
 def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
@@ -46,8 +53,79 @@ def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None)
     paper, and over what stands as it was taught, such as vessels."""
     rises_mm = np.zeros(len(told_mm))
     if machine is not None:
-        rises_mm = np.maximum(machine.height_mm + told_mm @ machine.tilt_mm_per_mm, 0.0)
+        plane_mm = machine.height_mm + told_mm @ machine.tilt_mm_per_mm
+        highest_mm = max((row[2] for row in machine.map_mm), default=0.0)  # between places, too
+        rises_mm = np.maximum(plane_mm + highest_mm, 0.0)
     return height_mm + rises_mm
+
+
+def on_map_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
+    """(m, 3): places (n, 3) where the tool shall go, with more of them between, so that straight lines between what is
+    told keep the tool's height over the paper's map."""
+    if machine is None or not machine.map_mm:
+        return points_mm
+    wanted = np.asarray(points_mm, dtype=float)
+    told = told_mm(wanted, machine)[:, :2]
+    rows = [wanted[:1]]
+    for k in range(len(wanted) - 1):
+        at = _cuts(told[k], told[k + 1], machine)[:, None]
+        rows.append(wanted[k] + at * (wanted[k + 1] - wanted[k]))
+    return np.vstack(rows)
+
+
+def _cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
+    """Shares of the way from a place (2,) to another, above 0 and up to 1: where it crosses the map's lines, and
+    between two of them, where the map is hollow or domed along it, so many that chords do."""
+    xs, ys, heights = _grid(machine.map_mm)
+    crossed = [
+        (lines - start) / (end - start)
+        for lines, start, end in zip((xs, ys), a, b, strict=True)
+        if start != end
+    ]
+    inside = np.concatenate([[0.0, 1.0], *crossed])
+    ends = np.unique(inside[(inside >= 0.0) & (inside <= 1.0)])
+    cuts = []
+    for first, last in pairwise(ends):
+        middle, (dx, dy) = a + (first + last) / 2 * (b - a), (last - first) * (b - a)
+        i, j = (_cell(grid, place) for grid, place in zip((xs, ys), middle, strict=True))
+        (low, high), (low_on, high_on) = heights[j : j + 2, i : i + 2]
+        is_beyond = not (xs[0] <= middle[0] <= xs[-1] and ys[0] <= middle[1] <= ys[-1])
+        twist = 0.0 if is_beyond else (high_on - low_on - high + low) / np.diff(xs)[i] / np.diff(ys)[j]
+        count = max(1, int(np.ceil(np.sqrt(abs(twist * dx * dy) / (4 * MAP_OFF_MM)))))
+        cuts.append(first + (last - first) * np.arange(1, count + 1) / count)
+    return np.concatenate(cuts)
+
+
+def _paper_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
+    """(n,) how much higher the paper lies at places (n, 2) that are told than it was taught."""
+    plane_mm = machine.height_mm + places_mm @ machine.tilt_mm_per_mm
+    if not machine.map_mm:
+        return plane_mm
+    xs, ys, heights = _grid(machine.map_mm)
+    (i, u), (j, v) = (
+        _cell_and_share(grid, places) for grid, places in zip((xs, ys), places_mm.T, strict=True)
+    )
+    below = heights[j, i] * (1 - u) + heights[j, i + 1] * u
+    above = heights[j + 1, i] * (1 - u) + heights[j + 1, i + 1] * u
+    return plane_mm + below * (1 - v) + above * v
+
+
+@lru_cache
+def _grid(map_mm: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x (k,), y (m,) of a map's places, upwards, and its heights (m, k)."""
+    rows = np.array(sorted(map_mm, key=lambda row: (row[1], row[0])))
+    xs, ys = np.unique(rows[:, 0]), np.unique(rows[:, 1])
+    return xs, ys, rows[:, 2].reshape(len(ys), len(xs))
+
+
+def _cell(grid: np.ndarray, places):
+    """Between which of the grid's lines and the next one places lie, or nearest to it beyond its ends."""
+    return np.clip(np.searchsorted(grid, places, side="right") - 1, 0, len(grid) - 2)
+
+
+def _cell_and_share(grid: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    number = _cell(grid, places)
+    return number, np.clip((places - grid[number]) / (grid[number + 1] - grid[number]), 0.0, 1.0)
 
 
 def _axes(machine: Machine) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import Error
 from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
-from .distortion import told_mm
+from .distortion import on_map_mm, told_mm
 from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
@@ -212,13 +212,14 @@ def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -
     """A stroke from one place (x, y) to another at a height."""
     speed_mm_s = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
-    first, last = (told_mm(over(end, height_mm), cell.machine) for end in ends)
+    way = on_map_mm(np.vstack([over(end, height_mm) for end in ends]), cell.machine)
+    told = told_mm(way, cell.machine)
     down, up = (told_mm(over(end, clearance_mm), cell.machine) for end in ends)
     return (
         Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
-        Move("land", first, press_mm_s),
-        Move("paint", last, speed_mm_s),
+        Move("land", told[:1], press_mm_s),
+        Move("paint", told[1:], speed_mm_s),
         Move("lift", up, press_mm_s),
         Move("retract", safely_over(up[0], cell), cell.speeds.travel_mm_s),
     )

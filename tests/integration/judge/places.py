@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 
 def turned_deg(x_deg: float, y_deg: float, z_deg: float) -> np.ndarray:
@@ -72,10 +73,26 @@ def true_of(told: np.ndarray, machine: dict | None) -> np.ndarray:
     along, across = machine.get("scale", (1.0, 1.0))
     tilts, lean = machine.get("tilt_mm_per_mm", (0.0, 0.0)), machine.get("lean_mm_per_mm", (0.0, 0.0))
     x, y, z = told.T
-    z = z - machine.get("height_mm", 0.0) - tilts[0] * x - tilts[1] * y
+    z = (
+        z
+        - machine.get("height_mm", 0.0)
+        - tilts[0] * x
+        - tilts[1] * y
+        - on_map(told, machine.get("map_mm", ()))
+    )
     pressed = np.maximum(-z, 0.0)
     x, y = along * x + machine.get("skew", 0.0) * y + lean[0] * pressed, across * y + lean[1] * pressed
     return np.column_stack([x, y, z])
+
+
+def on_map(told: np.ndarray, rows) -> np.ndarray:
+    """(n,) the height of a map of the paper at places."""
+    if not len(rows):
+        return np.zeros(len(told))
+    xs, ys = (sorted({row[k] for row in rows}) for k in range(2))
+    heights = {(row[0], row[1]): row[2] for row in rows}
+    known = RegularGridInterpolator((xs, ys), np.array([[heights[x, y] for y in ys] for x in xs]))
+    return known(np.clip(told[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1])))
 
 
 def told_in_air(place, height: float, machine: dict | None) -> np.ndarray:

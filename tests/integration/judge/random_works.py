@@ -121,7 +121,17 @@ def _machine(random, dialect: str) -> Machine:
     if random.random() < 0.5:
         found = replace(found, height_mm=pair(0.4, 2.0)[0])
         found = found if is_servo else replace(found, tilt_mm_per_mm=pair(0.005, 0.03))
+    if random.random() < 0.4 and not is_servo:
+        found = replace(found, map_mm=_map(random, 3.0 if much else 0.6))
     return found
+
+
+def _map(random, most_mm: float) -> tuple:
+    """Heights of a grid that need not cover the sheet."""
+    xs, ys = (np.cumsum(random.uniform(5.5, 60.0, random.integers(2, 5))) - 40.0 for _ in range(2))
+    rows = [(x, y, random.uniform(-most_mm, most_mm)) for x in xs.tolist() for y in ys.tolist()]
+    random.shuffle(rows)
+    return tuple(rows)
 
 
 ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper that lies about the robot
