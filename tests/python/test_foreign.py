@@ -1,11 +1,15 @@
 """G-code that others wrote for pens: its ways, when the pen is down, what a brush paints with it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnostics import in_json, is_told, refused
 from programs import RUNNABLE, call
 
 from brushsvg.drawing.gcode.toolpaths import pen_is_down, ways
+from brushsvg.machine.cell import Workspace
+from brushsvg.machine.cell_file import find_cell, write_cell
 
 INCHES = """%
 N10 G20 G90 (a plate)
@@ -136,3 +140,21 @@ def test_check_refuses_flags_that_would_change_nothing(desk, capsys, flags):
     (desk / "f.ngc").write_text(INCHES)
     status, _, told = in_json(capsys, "check", "f.ngc", *flags.split())
     assert status == 1 and is_told(told, f"flag-without-effect {flags.split()[0]}")
+
+
+def test_a_way_that_leaves_the_workspace_is_told_with_its_line(desk, capsys):
+    cell = write_cell(
+        replace(
+            find_cell("linuxcnc-3axis"),
+            name="mine",
+            workspace=Workspace(
+                box_mm=((-20.0, -20.0, -20.0), (70.0, 70.0, 20.0)), margin_mm=50.0, tilt_limit_deg=2.0
+            ),
+        )
+    )
+    (desk / "mine.toml").write_text(cell)
+    (desk / "far.gcode").write_text(INCHES.replace("G0 X1 Y2\n", "G0 X1 Y3\nG0 X1 Y2\n"))
+    assert call(capsys, "check", "inches.gcode", "--cell", "mine.toml")[0] == 0
+    status, _, told = in_json(capsys, "check", "far.gcode", "--cell", "mine.toml")
+    assert status == 1
+    assert is_told(told, "out-of-box 76.2 -20 70", "line 11"), told

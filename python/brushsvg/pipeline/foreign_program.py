@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import _core
-from ..drawing.gcode.toolpaths import ways
+from ..drawing.gcode.toolpaths import CHORD_MM, ways
 from ..errors import Error, Notice
-from ..machine.cell import Cell
+from ..machine.cell import Cell, robot_from_paper
+from ..machine.move_extents import ways as straight
 from ..machine.posts.gcode_servo import height_at
 from ..machine.preflight import off_sheet
-from ..machine.workspace_limits import broken_limits
+from ..machine.workspace_limits import ROUNDING_MM, astray, broken_limits
 
 MARGIN_MM = 20.0
 
@@ -34,6 +35,7 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
     Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
     """
     passes, careless = _touches(text, cell)
+    outside = _outside(text, cell, sheet_mm)
     if not passes:
         raise Error("the brush never touches the paper: nothing is below z 0", code="nothing-painted")
     if sheet_mm is None:
@@ -41,8 +43,33 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
         sheet_mm = tuple(np.maximum(highest + MARGIN_MM, MARGIN_MM).tolist())
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), passes)
     marks = _core.simulate(plan, brush)
-    problems = [*careless, *broken_limits(passes, sheet_mm, brush, cell), *off_sheet(marks, brush, sheet_mm)]
+    problems = [
+        *careless,
+        *outside,
+        *broken_limits(passes, sheet_mm, brush, cell),
+        *off_sheet(marks, brush, sheet_mm),
+    ]
     return Foreign(plan, marks, tuple(dict.fromkeys(problems)))
+
+
+def _outside(text: str, cell: Cell, sheet_mm) -> list[Notice]:
+    """A notice for each limit of place that a line leaves, in the air as well; sheet_mm: with the margin round it,
+    where it is known."""
+    lines, paths = [], []
+    for way in ways(text):
+        points = _at_heights(way, cell)
+        points = points[~np.isnan(points).any(axis=1)]
+        if len(points):
+            lines.append(way.line)
+            paths.append(points)
+    frame, slack_mm = robot_from_paper(cell), ROUNDING_MM + CHORD_MM
+    if not paths or not astray(straight(paths), frame, cell, sheet_mm, slack_mm):
+        return []
+    return [
+        replace(notice, where=f"line {line}")
+        for line, path in zip(lines, paths, strict=True)
+        for notice in astray(straight([path]), frame, cell, sheet_mm, slack_mm)
+    ]
 
 
 def _touches(text: str, cell: Cell) -> tuple[list, list[Notice]]:

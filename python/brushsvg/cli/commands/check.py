@@ -143,7 +143,7 @@ def _check_foreign(args, text: str) -> None:
     if not args.json:
         tell(
             f"{args.program}: brushsvg did not write it; with brush {brush.name} it keeps the limits asked of it: "
-            "depth, speed, rapid moves while the brush touches, the sheet\n"
+            "depth, speed, rapid moves while the brush touches, the sheet, the workspace\n"
         )
 
 
