@@ -1,6 +1,8 @@
 #include "outline.hpp"
 
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -14,6 +16,17 @@ using Eigen::Vector2i;
 
 bool is_behind(const Foot& from, const Foot& to) {
     return to.edge < from.edge || (to.edge == from.edge && to.at < from.at);
+}
+
+/// How far corners at one place are moved apart: beyond what counts as nothing, and far below what is seen.
+constexpr double kApart = 40.0;  // units
+
+/// Where a corner that touches another one goes: into the smaller of its two angles, which nothing else reaches into.
+Vector2i apart(const Vector2d& before, const Vector2d& at, const Vector2d& after) {
+    const Vector2d in = (before - at).normalized(), out = (after - at).normalized();
+    Vector2d into = in + out;
+    if (into.norm() < 1e-6) into = Vector2d(-out.y(), out.x());
+    return (at + kApart * into.normalized()).array().round().matrix().cast<int>();
 }
 
 }  // namespace
@@ -34,8 +47,26 @@ Outline::Outline(const Rings& rings) {
         ring_of_.resize(starts_.size(), rings_.size());
         rings_.push_back({first, starts_.size()});
     }
+    move_apart();
     twice_area_.push_back(0.0);
     for (std::size_t k = 0; k < edges(); ++k) twice_area_.push_back(twice_area_.back() + cross(start(k), end(k)));
+}
+
+void Outline::move_apart() {
+    std::vector<std::size_t> order(edges());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto is_before = [this](std::size_t a, std::size_t b) {
+        return std::make_pair(starts_[a].x(), starts_[a].y()) < std::make_pair(starts_[b].x(), starts_[b].y());
+    };
+    std::sort(order.begin(), order.end(), is_before);
+    const std::vector<Vector2i> as_given = starts_;
+    const auto place = [&](std::size_t k) -> Vector2d { return as_given[k].cast<double>(); };
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::size_t k = order[i];
+        const bool touches = (i > 0 && as_given[order[i - 1]] == as_given[k]) ||
+                             (i + 1 < order.size() && as_given[order[i + 1]] == as_given[k]);
+        if (touches) starts_[k] = apart(place(before(k)), place(k), place(after(k)));
+    }
 }
 
 double Outline::twice_area(const Foot& from, const Foot& to) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/region.hpp"
@@ -115,6 +116,26 @@ TEST_CASE("the parts of all branches are the shape, with crossings, holes and a 
         for (const AxisBranch& branch : axis.branches)
             parts.insert(parts.end(), branch.part.begin(), branch.part.end());
         CHECK(area(unite(parts)) == doctest::Approx(area(shape)));
+    }
+}
+
+TEST_CASE("squares that touch in corners, as of markers and pixel letters, have parts that are the shape") {
+    std::mt19937 random(1);
+    for (int trial = 0; trial < 60; ++trial) {
+        Rings squares;
+        for (int k = 0; k < 36; ++k)
+            if (random() % 2 == 0) squares.push_back(box(k % 6, k / 6, 1, 1));
+        const Rings shape = unite(squares);
+        std::vector<Rings> areas;
+        for (const Ring& ring : shape) {
+            if (signed_area(ring) > 0.0) areas.emplace_back();
+            areas.back().push_back(ring);
+        }
+        for (const Rings& each : areas) {
+            const MedialAxis axis = medial_axis(each, kNoCorners);
+            for (const AxisBranch& branch : axis.branches) CHECK(area(branch.part) >= -1e-3);
+            if (!axis.branches.empty()) CHECK(area_of_parts(axis) == doctest::Approx(area(each)).epsilon(1e-3));
+        }
     }
 }
 
