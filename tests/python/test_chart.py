@@ -23,6 +23,7 @@ from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.machine.cell_file import cell_names, find_cell
 from brushsvg.machine.posts import POSTS
+from brushsvg.strokes.contour_fill import region
 
 A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)
 PX_PER_MM = 8
@@ -186,6 +187,46 @@ def detected(svg, sheet_mm, dictionary):
     dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
     corners, ids, _ = cv2.aruco.ArucoDetector(dictionary).detectMarkers(image)
     return {int(i): (c[0] + 0.5) / PX_PER_MM for i, c in zip(ids.ravel(), corners, strict=True)}
+
+
+@pytest.mark.slow
+def test_a_pen_plots_the_markers_where_they_would_be_printed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = "--brush pen.json --wide passes --select [data-marker]"
+    assert main("brush new pen.json --lag 0 --width-at 1=0.7".split()) == 0
+    assert main("chart plan.json --sheet a5 --page page.svg --chart chart.json".split()) == 0
+    assert main(f"convert page.svg markers.ngc {words}".split()) == 0
+    assert main(f"predict page.svg marks.json {words}".split()) == 0
+    made = read_chart((tmp_path / "chart.json").read_bytes())
+    passes = json.loads((tmp_path / "marks.json").read_text())["passes"]
+    inked = region(_core.unite([np.array(ring) for each in passes for ring in each["outline_mm"]]))
+    printed = svg_shapes((tmp_path / "page.svg").read_text(), A5[1])
+    assert inked.difference(printed.buffer(0.03)).area < 0.02
+    assert printed.difference(inked).area / printed.area < 0.03
+    assert len(shapely.get_parts(inked.buffer(0.05))) >= len(made.markers) == 6
+    for (
+        marker
+    ) in made.markers:  # between its corners, which are as round as the nib, each edge is where it should be
+        corners = np.array(marker.corners_mm)
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            for share in np.linspace(0.1, 0.9, 17):
+                assert inked.boundary.distance(shapely.Point(a + share * (b - a))) < 0.015
+
+
+def svg_shapes(svg, height_mm):
+    """The page's markers as polygons on the sheet."""
+    found = []
+    for data in re.findall(r'<path data-marker[^>]* d="([^"]*)"', svg):
+        rings = [
+            np.array([point.split(",") for point in re.findall(r"[-\d.]+,[-\d.]+", ring)], float)
+            for ring in data.split("Z")[:-1]
+        ]
+        whole = shapely.Polygon()
+        for ring in rings:
+            polygon = shapely.Polygon(np.column_stack([ring[:, 0], height_mm - ring[:, 1]]))
+            whole = whole.symmetric_difference(shapely.make_valid(polygon))
+        found.append(whole)
+    return shapely.union_all(found)
 
 
 @pytest.mark.parametrize("sheet", [A5, LETTER, (420.0, 594.0)])

@@ -7,6 +7,7 @@ from diagnostics import agrees
 from svg_text import read
 
 from brushsvg import _core, find_brush
+from brushsvg.calibration.from_widths import new_brush
 from brushsvg.strokes.contour_fill import contour_passes, painted, region
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.offset_passes import Line
@@ -190,3 +191,19 @@ def test_shapes_that_touch_are_filled_each_in_its_own_colour(brush, names):
         assert [each.origin.lane for each in own] == list(range(1, len(own) + 1))
         assert share_left(shapely.box(x, 10, x + 40, 40), own) < 0.02
     assert [each.id for each in wanted] == [each.id for each in passes]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["square", "triangle", "star", "plate with a hole", "comb"])
+def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
+    """Where it is as narrow as the pen, and in corners, it stays out: its nib is never narrower."""
+    pen = new_brush("pen", 0.0, [(1.0, 2.4)])
+    made = of(SHAPES[name])
+    shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
+    passes, _, _ = within_reach(made, pen, "passes")
+    marks = _core.simulate(_core.compensate(passes, pen, (100.0, 100.0)).plan, pen)
+    _core.trace_outlines(marks, pen)
+    inked = region(_core.unite([ring for each in marks.passes for ring in each.outline_mm]))
+    assert inked.difference(shape.buffer(0.03 * 1.2 + 0.02)).area < 0.05
+    assert shape.difference(inked).area / shape.area < 0.03
+    assert within_reach(made, pen, "auto") == (made, made, []), "unless it is asked to, it draws middle lines"

@@ -36,6 +36,7 @@ _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smal
 # tip runs back out of the corner.
 _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
+_AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 _QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
@@ -79,6 +80,7 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     shape: a polygon of shapely; wide, narrow: strokes found for it, those that the brush cannot
     paint and those that are painted anyway; least, half: the brush's half widths [mm].
     """
+    least = min(least, _AS_WIDE * half)  # of a pen, whose least width is its greatest
     shape = shape.simplify(_SIMPLER_MM)
     if _close_pairs(shape, half) > _MOST_PAIRS:
         return []
@@ -260,7 +262,8 @@ def _fill(
             stretch = rows[first : last + 1]
             if _slope(stretch) < _BLUNT:
                 behind, ahead = rows[last + 1 : last + 1 + more], rows[max(first - more, 0) : first][::-1]
-                stretch = np.vstack([_wide(ahead, half)[::-1], stretch, _wide(behind, half)])
+                room = max(_WIDE_END * half, least)
+                stretch = np.vstack([_wide(ahead, room)[::-1], stretch, _wide(behind, room)])
             stretches.append(stretch)
     made = []
     for rows in sorted(stretches, key=lambda rows: -_shown(rows, left).sum()):
@@ -276,9 +279,9 @@ def _slope(rows: np.ndarray) -> float:
     return abs(float(rows[-1, 2] - rows[0, 2])) / max(length(rows[:, :2]), 1e-9)
 
 
-def _wide(rows: np.ndarray, half: float) -> np.ndarray:
-    """Places up to the first that is narrow: farther on a line leads into a corner, where its tip would stick out."""
-    narrow = np.flatnonzero(rows[:, 2] < _WIDE_END * half)
+def _wide(rows: np.ndarray, room: float) -> np.ndarray:
+    """Places up to the first that is narrower: farther on a line leads into a corner, where its tip would stick out."""
+    narrow = np.flatnonzero(rows[:, 2] < room)
     return rows[: narrow[0]] if len(narrow) else rows
 
 

@@ -35,7 +35,7 @@ def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, 
     need_one_of(wide, ("auto", "clamp", "passes", "refuse"), "what becomes of wide shapes")
     for stroke in strokes:
         need(stroke, _core.Stroke, "a stroke")
-    if not brush.width_follows_depth():
+    if not brush.width_follows_depth() and wide != "passes":
         return strokes, strokes, []
     least, greatest = brush.half_width_range_mm()
     reach = f"[{2 * least:.3g}, {2 * greatest:.3g}] mm of brush {brush.name}"
