@@ -1,5 +1,6 @@
 """G-code that others wrote for pens: its ways, when the pen is down, what a brush paints with it."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 from diagnostics import in_json, is_told, refused
 from programs import RUNNABLE, call
 
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.gcode import read_gcode
 from brushsvg.drawing.gcode.toolpaths import pen_is_down, ways
 from brushsvg.machine.cell import Workspace
 from brushsvg.machine.cell_file import find_cell, write_cell
@@ -86,6 +89,12 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("X2.5", "G5 X2.5", "line-unread 13"),
         ("X2.5", "G55 X2.5", "line-unread 13"),
         ("X2.5", "X99999999", "line-unread 13"),
+        ("X2.5", "X2.5 X3", "line-unread 13"),
+        ("X2.5", "X2e5", "line-unread 13"),
+        ("X2.5", "A2 X2.5", "line-unread 13"),
+        ("G91", "G90 G91", "line-unread 7"),
+        ("J0.5", "J0.5 R0.5", "line-unread 8"),
+        ("J0.5", "J0.5 P2", "line-unread 8"),
     ],
 )
 def test_what_is_not_known_is_refused(old, new, told):
@@ -158,3 +167,59 @@ def test_a_way_that_leaves_the_workspace_is_told_with_its_line(desk, capsys):
     status, _, told = in_json(capsys, "check", "far.gcode", "--cell", "mine.toml")
     assert status == 1
     assert is_told(told, "out-of-box 76.2 -20 70", "line 11"), told
+
+
+FULL = "G90\nG0 Z5\nG0 X60 Y60\nG1 Z-1 F300\n{}\nG0 Z5\nM2\n"
+
+
+@pytest.mark.parametrize("line", ["G2 X60 Y60 I10 J0", "G3 I10", "G2 X60.0001 Y60 I10 J0"])
+def test_a_full_circle_is_drawn(desk, capsys, line):
+    (desk / "circle.gcode").write_text(FULL.format(line))
+    (circle,) = [way for way in ways(FULL.format(line)) if way.turn]
+    assert np.ptp(circle.points_mm[:, :2], axis=0) == pytest.approx([20, 20], abs=0.02)
+    assert call(capsys, "convert", "circle.gcode", "marks.json", "--width", "3")[0] == 0
+    status, out, _ = call(capsys, "check", "circle.gcode")
+    assert status == 0 and re.search(r"circle|line 4", out)
+
+
+DOTS = {
+    "z": "G0 Z5\nG0 X60 Y60\nG1 Z-2 F300\nG0 Z5\nG0 X70\nG1 Z-1\nG4 P0.2\nG0 Z5\n",
+    "servo": "M5\nG0 X60 Y60\nM3 S500\nG4 P0.2\nM5\nG0 X70\nM3 S500\nM5\n",
+}
+
+
+@pytest.mark.parametrize("pen", DOTS)
+def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
+    (desk / "dots.gcode").write_text(DOTS[pen])
+    design = read_gcode(DOTS[pen].encode(), ReadOptions(sheet_mm=(100.0, 100.0)))
+    places = [each.subpaths[0].cubics.reshape(-1, 2) for each in design.elements]
+    assert [np.unique(place, axis=0).tolist() for place in places] == [[[60.0, 60.0]], [[70.0, 60.0]]]
+    cell = ("--cell", "grbl-servo") if pen == "servo" else ()
+    status, out, _ = call(capsys, "check", "dots.gcode", *cell)
+    assert status == 0 and "2 strokes" in out
+
+
+@pytest.mark.parametrize(
+    ("program", "told"),
+    [
+        ("G0 Z5\nG0 X50 Y50\nG1 Z-1\nG1 X60\nG0 Z5\n", "speed-out-of-range 4 0"),
+        ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG1 X60 F0\nG0 Z5\n", "speed-out-of-range 4 0"),
+        ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG0 X60\nG0 Z5\n", "rapid-too-low 4"),
+        ("G1 Z-1 F300\nG0 X50\nG0 Z5\n", "line-incomplete 1"),
+        ("G0 Z5\nG1 Z-1 F300\nG1 X50 Y50\nG0 Z5\n", "line-incomplete 2"),
+    ],
+)
+def test_check_says_what_is_missing(desk, capsys, program, told):
+    (desk / "bad.gcode").write_text(program)
+    status, _, said = in_json(capsys, "check", "bad.gcode")
+    assert status == 1 and is_told(said, told), said
+
+
+def test_a_program_of_ours_without_its_header_is_known_by_its_strokes(desk, capsys):
+    assert call(capsys, "convert", "inches.gcode", "out.ngc", "--width", "3")[0] == 0
+    lines = (desk / "out.ngc").read_text().splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("(stroke 1 of "))
+    (desk / "headless.ngc").write_text("\n".join(["G21 G90", "G0 Z10", *lines[first:]]))
+    status, _, said = in_json(capsys, "convert", "headless.ngc", "again.ngc")
+    assert status == 1 and is_told(said, "program-ours")
+    assert call(capsys, "check", "headless.ngc")[0] == 1

@@ -80,15 +80,21 @@ def _touches(text: str, cell: Cell) -> tuple[list, list[Notice]]:
     name = ""
 
     def lifted() -> None:
-        if len(poses) > 1 and min(pose[2] for pose in poses) < 0:
-            speed = max(speeds, default=0.0)
-            passes.append(_core.Pass(name, np.array(poses), speed))
+        if poses and min(pose[2] for pose in poses) < 0:
+            over = [np.array([*pose[:2], 0.0]) for pose in (poses[0], poses[-1])]
+            way = poses if len(poses) > 1 else [over[0], *poses, over[1]]  # a servo's dot
+            passes.append(_core.Pass(name, np.array(way), max(speeds, default=cell.speeds.press_mm_s)))
         poses.clear()
         speeds.clear()
 
     for way in ways(text):
         points = _at_heights(way, cell)
         if np.isnan(points[-1]).any():
+            if points[-1, 2] < 0:
+                raise Error(
+                    f"line {way.line}: the brush is down where no line has named both X and Y",
+                    code="line-incomplete",
+                )
             lifted()
             continue
         points = points[~np.isnan(points).any(axis=1)]
@@ -103,9 +109,15 @@ def _touches(text: str, cell: Cell) -> tuple[list, list[Notice]]:
                 name = f"line {way.line}"
             poses += [pose for pose in ends if not poses or not np.array_equal(pose, poses[-1])]
             if way.rapid and min(start[2], end[2]) < 0 and (end[2] <= start[2]):
-                sentence = f"line {way.line}: a rapid move while the brush touches"
-                careless.append(Notice(name, sentence, code="rapid-too-low"))
+                sentence = "a rapid move while the brush touches"
+                careless.append(Notice(f"line {way.line}", sentence, code="rapid-too-low"))
             elif not way.rapid and not np.array_equal(start[:2], end[:2]):
+                if way.speed_mm_s <= 0:
+                    told = f"a feed of {60 * way.speed_mm_s:g} mm/min while the brush touches"
+                    raise Error(
+                        f"line {way.line}: {told}: an F above 0 must stand before it",
+                        code="speed-out-of-range",
+                    )
                 speeds.append(way.speed_mm_s)
             if end[2] > 0:
                 lifted()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ...errors import Error
@@ -40,7 +42,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         raise nothing_to_paint([])
     ends = np.concatenate([sub.cubics[:, ::3].reshape(-1, 2) for each in elements for sub in each.subpaths])
     sentence = (
-        f"a program has no widths: its lines count as {WIDTH_MM:g} mm wide where --width says nothing else"
+        f"a program has no widths: its lines count as {WIDTH_MM:g} mm wide unless --width says otherwise"
     )
     notices = [Notice("", sentence, code="gcode-no-width")]
     down = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
@@ -55,9 +57,11 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
 
 
 def is_ours(text: str) -> bool:
-    """Whether its header says that brushsvg wrote it."""
+    """Whether its header, or the remark above a stroke, says that brushsvg wrote it."""
     head = text[:4000]
-    return any(f"({word}: " in head or f"; {word}: " in head for word in ("brush", "cell", "sheet"))
+    return any(f"({word}: " in head or f"; {word}: " in head for word in ("brush", "cell", "sheet")) or bool(
+        re.search(r"(?m)^(?:\(|; ?)stroke \d+ of \d+: ", text)
+    )
 
 
 def _element(chain: list) -> Element:

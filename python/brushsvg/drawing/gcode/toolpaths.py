@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,6 +18,8 @@ _PASSED_OVER = {  # of which no pen's way hangs
     "G": {4, 17, 21.1, 40, 49, 54, 61, 64, 80, 94},
     "M": {0, 1, 2, 6, 7, 8, 9, 17, 18, 30, 82, 83, 84, 105, 106, 107, 114, 117, 201, 203, 204, 205, 400},
 }
+_ONE_OF = ({0, 1, 2, 3}, {20, 21}, {90, 91}, {90.1, 91.1})  # G: a line may have one of each
+_LETTERS = set("GMNTXYZIJRFSPE")
 CHORD_MM = 0.005
 LARGEST_MM = 1e6
 
@@ -35,11 +39,25 @@ class Way:
 
 
 def ways(text: str) -> list[Way]:
-    """All moves to the side or up and down, in order. Error with the line for what is not read."""
+    """All moves to the side or up and down, in order; a way that leads nowhere is a dot: there the pen goes down and up
+    again. Error with the line for what is not read."""
     reader = _Reader()
     for number, line in enumerate(text.splitlines(), 1):
         reader.line(number, line)
-    return reader.ways
+    return list(_with_dots(reader.ways))
+
+
+def _with_dots(some: list[Way]) -> Iterator[Way]:
+    for way, following in pairwise([*some, None]):
+        yield way
+        if following is not None and _sinks(way) and _sinks(following, -1):
+            yield replace(way, points_mm=way.points_mm[[-1, -1]], rapid=False)
+
+
+def _sinks(way: Way, turn: int = 1) -> bool:
+    """Straight down, or, turned, up."""
+    (x, y, high), *_, (u, v, low) = way.points_mm
+    return x == u and y == v and not way.turn and turn * (high - low) > 0
 
 
 def pen_is_down(some: list[Way]) -> list[bool]:
@@ -53,6 +71,7 @@ def pen_is_down(some: list[Way]) -> list[bool]:
         up = {way.power for way in across if way.rapid} | {None, 0.0}
         return [not way.rapid and way.power not in up for way in some]
     heights = [float(way.points_mm[:, 2].max()) for way in across]
+    heights += [float(way.points_mm[-1, 2]) for way in some if not np.ptp(way.points_mm, axis=0).any()]
     known = [height for height in heights if math.isfinite(height)]
     if not known or len({round(height, 6) for height in known}) < 2:
         raise Error(
@@ -73,12 +92,19 @@ class _Reader:
         self.mm, self.absolute, self.absolute_centres = 1.0, True, False
         self.motion, self.feed_mm_s = None, 0.0
         self.power, self.on, self.ended = 0.0, False, False
+        self.percents, self.ways_before = 0, 0
 
     def line(self, number: int, line: str) -> None:
         code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
         code = re.sub(r"\*\d+$", "", code.lstrip("/"))  # a checksum
-        if not code or code.startswith("%") or self.ended:
+        if not code or self.ended:
             return
+        if code.startswith("%"):  # the second ends the program
+            self.percents += 1
+            self.ended = self.percents > 1
+            return
+        if re.search(r"\dE[-+]?\d", code):
+            raise _unread(number, line)
         words, at = [], 0
         while at < len(code):
             if not (found := _WORD.match(code, at)):
@@ -87,7 +113,16 @@ class _Reader:
                 raise _unread(number, line)
             words.append((found[1], float(found[2])))
             at = found.end()
+        named = [letter for letter, _ in words if letter not in "GM"]
+        codes = {value for letter, value in words if letter == "G"}
+        if (
+            set(named) - _LETTERS
+            or len(set(named)) < len(named)
+            or any(len(codes & group) > 1 for group in _ONE_OF)
+        ):
+            raise _unread(number, line)
         values = {letter: value for letter, value in words if letter not in "GMNT"}
+        power = self._pen()
         for letter, code_number in words:
             if letter in "GM":
                 self._mode(number, line, letter, code_number, values)
@@ -95,8 +130,21 @@ class _Reader:
             self.feed_mm_s = values["F"] * self.mm / 60
         if "S" in values and not any(word in (("G", 4.0), ("M", 280.0)) for word in words):
             self.power = values["S"]
-        if set("XYZ") & set(values) and ("G", 92.0) not in words:
+        if self._pen() != power:
+            self._dot(number, power)
+        if codes & {4, 92}:
+            return
+        if set("XYZ") & set(values) or (self.motion in (2, 3) and set("IJ") & set(values)):
             self._move(number, line, values)
+
+    def _pen(self) -> float | None:
+        return self.power if self.on else None
+
+    def _dot(self, number: int, power: float | None) -> None:
+        """Where a pen goes down and up again without a move."""
+        if power is not None and len(self.ways) == self.ways_before and np.isfinite(self.at[:2]).all():
+            self.ways.append(Way(number, np.array([self.at, self.at]), False, self.feed_mm_s, power))
+        self.ways_before = len(self.ways)
 
     def _mode(self, number: int, line: str, letter: str, code: float, values: dict) -> None:
         if letter == "G" and code in (0, 1, 2, 3):
@@ -137,11 +185,10 @@ class _Reader:
                 end[k] = told + self.shift[k] if self.absolute else self.at[k] + told
         if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
             raise Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
-        power = self.power if self.on else None
-        way = Way(number, np.array([start, end]), self.motion == 0, self.feed_mm_s, power)
+        way = Way(number, np.array([start, end]), self.motion == 0, self.feed_mm_s, self._pen())
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
-        if not np.array_equal(start, end, equal_nan=True):
+        if way.turn or not np.array_equal(start, end, equal_nan=True):
             self.ways.append(way)
         self.at = end
 
@@ -150,6 +197,8 @@ class _Reader:
         turn = 1 if self.motion == 3 else -1
         if not np.isfinite([*start[:2], *end[:2]]).all():
             raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
+        if ("R" in values and {"I", "J"} & set(values)) or values.get("P", 1.0) != 1.0:
+            raise _unread(number, line)
         if "R" in values:
             radius = values["R"] * self.mm
             half, chord = (end - start)[:2] / 2, math.dist(start[:2], end[:2])
