@@ -394,3 +394,19 @@ def test_the_advice_for_illustrator_is_of_the_drawing_whatever_the_sheet():
     for sheet_mm in (None, (200.0, 150.0)):
         (notice,) = read_svg(text.encode(), ReadOptions(sheet_mm=sheet_mm)).notices
         assert 'width="283.5pt" height="198.4pt"' in notice.sentence
+
+
+@pytest.mark.parametrize(
+    ("attributes", "sheet_mm", "told"),
+    [
+        ('style="width:50mm;height:4cm"', (50.0, 40.0), []),
+        ('width="100mm" height="100mm" style="width:50mm;height:100mm"', (100.0, 100.0), ["100 50"]),
+        ('width="100mm" height="100mm" style="width:100%;height:auto"', (100.0, 100.0), []),
+        ('width="80mm" style="height:40mm"', (80.0, 40.0), []),
+    ],
+)
+def test_a_page_whose_size_stands_in_its_style(attributes, sheet_mm, told):
+    text = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100" {attributes}>{LINE}</svg>'
+    design = read_svg(text.encode())
+    assert design.sheet_mm == pytest.approx(sheet_mm)
+    assert are_told(design.notices, *(f"size-assumed {each}" for each in told)), design.notices

@@ -10,6 +10,7 @@ from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Notice
 from ..empty_drawing import nothing_to_paint
 from .context import local, one_line
+from .css_cascade import INITIAL, cascade
 from .selection import selected
 from .settings import PREFIX, document_settings
 from .tree_walk import SVG, Walk
@@ -53,7 +54,7 @@ def _root_of(document: Document) -> ET.Element:
 
 def _read(document: Document, options: ReadOptions) -> Design:
     root = _root_of(document)
-    page = read_page(root.attrib, options.sheet_mm)
+    page = read_page(root.attrib, options.sheet_mm, cascade(INITIAL, root.attrib, [], 0.0)[0].geometry)
     chosen = selected(root, options.select) if options.select else None
     walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
     walk.run()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from ...errors import Error
 from ...units import FONT_PX, MM_PER, length_mm, length_px
@@ -61,8 +63,15 @@ def nested_viewport(
     return matrix, (width, height) if box is None else box[2:], (x, y, width, height), notices
 
 
-def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None = None) -> Page:
+def read_page(
+    attributes: dict[str, str],
+    sheet_mm: tuple[float, float] | None = None,
+    style: Mapping[str, str] = MappingProxyType({}),
+) -> Page:
     """The page of a root element. A given sheet replaces the drawing's; the upper left corners stay together.
+
+    style: what its CSS says of width and height. Browsers go by it and Inkscape by the attributes: so it counts where
+    these are missing, and where they say something else that is told.
 
     Error if neither the drawing nor the caller says how large it is.
     """
@@ -72,6 +81,20 @@ def read_page(attributes: dict[str, str], sheet_mm: tuple[float, float] | None =
         attributes.get(name, "").strip("0123456789.+- ") in ("", "px", "%") for name in ("width", "height")
     )
     width, height = (_extent(attributes.get(name), name) for name in ("width", "height"))
+    styled = [
+        _extent(style.get(name), name) if _is_length(style.get(name)) else None
+        for name in ("width", "height")
+    ]
+    for name, own, other in zip(("width", "height"), (width, height), styled, strict=True):
+        if own and other and abs(own - other) > 1e-3 * own and sheet_mm is None:
+            sentence = (
+                f"its {name} is {own:.6g} mm, as Inkscape shows it, and {other:.6g} mm by its style, as browsers do: "
+                f"it is read as {own:.6g} mm"
+            )
+            notices.append(Notice("svg", sentence, code="size-assumed"))
+    width, height = (
+        own if own is not None else other for own, other in zip((width, height), styled, strict=True)
+    )
     if box is None and sheet_mm is not None:
         width, height = width or sheet_mm[0], height or sheet_mm[1]
     if width is None or height is None:
@@ -121,6 +144,13 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
     if values[2] <= 0 or values[3] <= 0:
         raise Error(f"viewBox {snippet(text, 0, 40)} has no area", where="svg", code="viewbox-invalid")
     return tuple(values)
+
+
+def _is_length(text: str | None) -> bool:
+    """Whether CSS says a length, and not auto, a percentage or what hangs on a window."""
+    return (
+        text is not None and re.fullmatch(r"\s*\d*\.?\d+(?:px|mm|cm|in|pt|pc|q)\s*", text, re.I) is not None
+    )
 
 
 def _extent(text: str | None, name: str) -> float | None:
