@@ -6,6 +6,7 @@ import os
 import re
 import stat
 import tempfile
+import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -17,6 +18,7 @@ try:
 except ImportError:  # Windows: there what a killed run left stays
     fcntl = None
 
+MOST_PARTS = 20  # of a TOML key, a.b.c; many of them take minutes to read
 LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
 
 
@@ -40,6 +42,19 @@ def read_bytes(path: str | os.PathLike) -> bytes:
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         sentence = f"the file cannot be read: {reason(problem)}"
     raise Error(sentence, file=os.fspath(path), code="file-unreadable")
+
+
+def toml_document(text: str, kind: str) -> dict:
+    """What the text of a TOML file says. Error for what is none, kind: as a sentence calls the file."""
+    if found := re.search(rf"(?:[\w-]+\s*\.\s*){{{MOST_PARTS}}}", text):
+        sentence = f"a key of more than {MOST_PARTS} parts: {found[0][:20]!r} ..."
+        raise Error(f"the {kind} file is not TOML of ours: {sentence}", code="not-toml")
+    try:
+        return tomllib.loads(text)
+    except ValueError as problem:  # also a whole number of thousands of digits
+        raise Error(f"the {kind} file is not TOML: {str(problem)[:200]}", code="not-toml") from None
+    except RecursionError:
+        raise Error(f"the {kind} file is not TOML: its lists nest too deep", code="not-toml") from None
 
 
 def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike) -> Path:

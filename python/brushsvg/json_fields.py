@@ -16,8 +16,10 @@ def document(data: str | bytes, format_: str, version: int = 1) -> dict:
         content = json.loads(text, object_pairs_hook=_once)
     except Error:
         raise
-    except (ValueError, RecursionError) as problem:
+    except ValueError as problem:
         raise Error(f"this is not valid JSON: {problem}", code="not-json") from None
+    except RecursionError:
+        raise Error("this is not valid JSON: its lists nest too deep", code="not-json") from None
     if not isinstance(content, dict) or content.get("format") != format_:
         says = content.get("format") if isinstance(content, dict) else None
         other = f", but {says!r:.40}" if isinstance(says, str) else ""

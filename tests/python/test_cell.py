@@ -41,6 +41,8 @@ def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
         ),
         ("decimals = 4", f"decimals = -1{'0' * 400}", "decimals", "out-of-range 3 6"),
         ("decimals = 4", f"decimals = 1{'0' * 5000}", "", "not-toml"),
+        ("decimals = 4", "decimals = 4\n" + "a." * 40 + "a = 1", "", "not-toml 20"),
+        ("decimals = 4", "decimals = " + "[" * 5000 + "]" * 5000, "", "not-toml deep"),
         ("decimals = 4", "decimals = 4.0", "decimals", "wrong-type"),
         ("decimals = 4", "decimals = 9", "decimals", "out-of-range 9 3 6"),
         ("safe_mm = 10.0", "safe_mm = 0.5", "heights.clearance_mm", "cell-heights safe_mm 0.5"),

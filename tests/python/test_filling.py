@@ -206,4 +206,4 @@ def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
     inked = region(_core.unite([ring for each in marks.passes for ring in each.outline_mm]))
     assert inked.difference(shape.buffer(0.03 * 1.2 + 0.02)).area < 0.05
     assert shape.difference(inked).area / shape.area < 0.03
-    assert within_reach(made, pen, "auto") == (made, made, []), "unless it is asked to, it draws middle lines"
+    assert within_reach(made, pen, "auto") == (made, made, [])  # unless asked it draws middle lines

@@ -123,8 +123,10 @@ def _table_rows(
             _refuse_surplus(line, where, table.reader.dialect.delimiter)
             if any((line[name] or "").strip() for name in table.fieldnames):
                 rows.append((where, {name: (line[name] or "").strip() for name in columns}))
-    except csv.Error as problem:
-        raise Error(f"this is not a table: {problem}", code="not-a-table") from None
+    except csv.Error:
+        raise Error(
+            "this is not a table: a line end stands amid a value, or a value has no end", code="not-a-table"
+        ) from None
     told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
     for where, cell in told:
         if not _NUMBER.fullmatch(cell):

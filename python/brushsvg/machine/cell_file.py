@@ -6,12 +6,11 @@ import json
 import math
 import os
 import textwrap
-import tomllib
 from dataclasses import fields
 from pathlib import Path
 
 from ..errors import Error, need
-from ..files import find_file, names_in, read_bytes
+from ..files import find_file, names_in, read_bytes, toml_document
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
 from .cell_check import check
 
@@ -50,10 +49,7 @@ def read_cell(path: str | os.PathLike) -> Cell:
 
 def parse_cell(text: str) -> Cell:
     """The cell that a TOML text describes. Error naming the key that is missing, unknown or out of range."""
-    try:
-        document = tomllib.loads(text)
-    except (ValueError, RecursionError) as problem:  # ValueError: also a whole number of thousands of digits
-        raise Error(f"the cell file is not TOML: {str(problem)[:200]}", code="not-toml") from None
+    document = toml_document(text, "cell")
     if document.pop("format", None) != FORMAT:
         raise Error(
             f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import asdict, dataclass, field, fields
 
 import numpy as np
 
 from ..errors import Error
+from ..files import toml_document
 
 FORMAT, VERSION = "brushsvg/studio", 1
 
@@ -119,9 +119,10 @@ def random_studio(seed: int, sheet_mm: tuple[float, float]) -> Studio:
 def read_studio(data: bytes) -> Studio:
     """What a TOML file says; what it leaves out is as it should be. Error naming the key."""
     try:
-        document = tomllib.loads(data.decode("utf-8"))
-    except (ValueError, RecursionError) as problem:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as problem:
         raise Error(f"the studio file is not TOML: {str(problem)[:200]}", code="not-toml") from None
+    document = toml_document(text, "studio")
     if document.pop("format", None) != FORMAT:
         raise Error(
             f'the file is not a studio: format = "{FORMAT}" is missing', "format", code="format-unknown"
