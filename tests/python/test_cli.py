@@ -190,6 +190,7 @@ def test_flags_reach_the_plan(desk, capsys):
     assert default == plan("--brush", "round-6", "--compensation", "closed", "--tolerance", "0.05")
     assert plan("--brush", str(SHIPPED / "round-6.json")) == default
     assert plan("--sheet", "200x100mm")["sheet_mm"] == [200, 100]
+    assert plan("--sheet", "a4")["sheet_mm"] == [210, 297]
     none, constant = plan("--compensation", "none"), plan("--compensation", "constant", "--lag", "5")
     assert none["passes"][0]["poses_mm"][0][:2] == pytest.approx([20, 20])
     assert constant != plan("--compensation", "constant", "--lag", "6") != default

@@ -236,7 +236,7 @@ def add_text(commands) -> None:
         "--width", metavar="MM", type=values.width, help="of the lines of an SVG font; default: 1"
     )
     text.add_argument(
-        "--sheet", metavar="WxH", type=values.size, help="the sheet; default: the text and 20 mm around it"
+        "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )
     add_quiet(text)
     text.set_defaults(run="text_file", parser=text, check=_check_text)

@@ -156,8 +156,8 @@ def add_layout(command: argparse.ArgumentParser) -> None:
     add(
         "--sheet",
         metavar="WxH",
-        type=values.size,
-        help="the sheet in mm or with units; default: the drawing's",
+        type=values.sheet,
+        help="the sheet in mm, with units, or a2 to a5, letter; default: the drawing's",
     )
     add("--units", choices=("mm", "in"), help="of a drawing that does not say them (DXF)")
     add(

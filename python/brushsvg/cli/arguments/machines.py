@@ -26,7 +26,7 @@ def add_first_run(commands) -> None:
     first.add_argument("-o", "--output", metavar="OUT", required=True, help=programs())
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     first.add_argument(
-        "--sheet", metavar="WxH", type=values.size, default=(200.0, 100.0), help="default: 200x100"
+        "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
     )
     add_quiet(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
@@ -57,7 +57,7 @@ def add_height(commands) -> None:
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     height.add_argument(
-        "--sheet", metavar="WxH", type=values.size, default=(200.0, 100.0), help="default: 200x100"
+        "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
     )
     height.add_argument(
         "--from",
