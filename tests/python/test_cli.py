@@ -378,7 +378,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg out.ngc --tolerance inf",
         "convert a.svg out.ngc --tolerance 1e-300",
         "convert a.svg out.ngc --tolerance thick",
-        "convert a.svg out.ngc --sheet A4",
+        "convert a.svg out.ngc --sheet A9",
         "convert a.svg out.ngc --sheet 0x10",
         "convert a.svg out.ngc --width 0",
         "convert a.svg out.ngc --fit 5x5 --scale 2",
