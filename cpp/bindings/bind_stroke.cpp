@@ -4,20 +4,21 @@
 
 void bind_stroke(py::module_& m) {
     using namespace brushsvg;
-    py::class_<StrokeId>(m, "StrokeId", R"(Where in a drawing a stroke comes from.
+    py::class_<StrokeId> id(m, "StrokeId", R"(Where in a drawing a stroke comes from.
 
 element: its id; part: which of its sub-paths, 0 for the only one; repeat: which of the times that it is painted; lane:
 which of the passes that fill a shape wider than the brush; load: which of the loads of paint. name: element/part#repeat
-~lane+load, each where it says something; nobody takes it apart again.)")
-        .def(py::init<std::string, int, int, int, int>(), py::arg("element"), py::arg("part") = 0,
-             py::arg("repeat") = 1, py::arg("lane") = 1, py::arg("load") = 1)
+~lane+load, each where it says something; nobody takes it apart again.)");
+    id.def(py::init<std::string, int, int, int, int>(), py::arg("element"), py::arg("part") = 0, py::arg("repeat") = 1,
+           py::arg("lane") = 1, py::arg("load") = 1)
         .def_readonly("element", &StrokeId::element)
         .def_readonly("part", &StrokeId::part)
         .def_readonly("repeat", &StrokeId::repeat)
         .def_readonly("lane", &StrokeId::lane)
         .def_readonly("load", &StrokeId::load)
         .def_property_readonly("name", &StrokeId::name)
-        .def("__repr__", [](const StrokeId& id) { return "StrokeId(" + id.name() + ")"; });
+        .def("__repr__", [](const StrokeId& id) { return "<StrokeId " + quoted(id.name()) + ">"; });
+    as_fixed_value(id);
     py::implicitly_convertible<std::string, StrokeId>();
     using Knots = std::vector<std::pair<double, double>>;
     const auto knots_of = [](const Stroke& s) {
@@ -29,12 +30,12 @@ which of the passes that fill a shape wider than the brush; load: which of the l
         s.half_width.clear();
         for (const auto& [at, h] : knots) s.half_width.push_back({at, h});
     };
-    py::class_<Stroke>(m, "Stroke",
-                       R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
+    py::class_<Stroke> type(m, "Stroke",
+                            R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
 id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-set as a whole.)")
-        .def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
+set as a whole.)");
+    type.def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, Settings settings) {
                  Stroke s;
                  s.id = std::move(id);
@@ -71,7 +72,23 @@ set as a whole.)")
                 for (const auto& [name, value] : fields) py::setattr(made, name, value);
                 return made;
             },
-            "A copy in which the fields that are given are these.");
+            "A copy in which the fields that are given are these.")
+        .def("__repr__", [](const Stroke& s) {
+            double length = 0.0;
+            for (Eigen::Index i = 0; i < s.middle_mm.rows(); ++i) length += arc_length(s.middle_mm, i, 0.0, 1.0);
+            std::string width = "no width";
+            if (!s.half_width.empty()) {
+                const auto [least, most] = std::minmax_element(
+                    s.half_width.begin(), s.half_width.end(),
+                    [](const WidthKnot& a, const WidthKnot& b) { return a.half_width_mm < b.half_width_mm; });
+                width = told(2.0 * least->half_width_mm);
+                if (least->half_width_mm != most->half_width_mm) width += " to " + told(2.0 * most->half_width_mm);
+                width += " mm wide";
+            }
+            return "<Stroke " + quoted(s.id.name()) + ": " + counted(std::size_t(s.middle_mm.rows()), "cubic") + ", " +
+                   told(length) + " mm long, " + width + (s.closed ? ", closed>" : ">");
+        });
+    as_value(type);
     m.def(
         "flatten",
         [](const Stroke& stroke, double tolerance_mm) {

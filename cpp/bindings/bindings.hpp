@@ -10,6 +10,7 @@
 #include "brushsvg/error.hpp"
 #include "converters.hpp"
 #include "parallel.hpp"
+#include "value_type.hpp"
 
 void bind_profile(py::module_& m);
 void bind_student_t(py::module_& m);

@@ -181,6 +181,8 @@ def __getattr__(name: str):
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value
+    if "IPython" in sys.modules:
+        importlib.import_module(".notebook", __name__)
     return value
 
 
