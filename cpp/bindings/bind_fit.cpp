@@ -26,8 +26,8 @@ void bind_fit(py::module_& m) {
              }),
              py::arg("range_mm"), py::arg("degree"), py::kw_only(), py::arg("through_zero") = false,
              py::arg("positive") = false, py::arg("rising") = false,
-             py::arg("floor") = -std::numeric_limits<double>::infinity(), py::arg("norm") = Norm::squares,
-             py::arg("smoothing") = 0.0)
+             py::arg("floor") = -std::numeric_limits<double>::infinity(),
+             py::arg_v("norm", Norm::squares, "Norm.squares"), py::arg("smoothing") = 0.0)
         .def("__repr__", [](const LawShape& v) {
             return "<LawShape of degree " + std::to_string(v.degree) + " at " + told(v.range_mm[0]) + " to " +
                    told(v.range_mm[1]) + " mm>";
@@ -61,6 +61,6 @@ void bind_fit(py::module_& m) {
             return d;
         },
         py::arg("alpha0"), py::arg("s_mm"), py::arg("alpha"), py::arg("beta") = std::vector<double>{},
-        py::arg("lines") = Lines::plain,
+        py::arg_v("lines", Lines::plain, "Lines.plain"),
         "Lag and tip gap [mm] from angles [rad] after distances s [mm] of a straight drag (article (19) to (23)).");
 }

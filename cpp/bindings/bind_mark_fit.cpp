@@ -112,7 +112,7 @@ heading_rad: at the first pose, the brush being dragged already; nan: it is set 
         },
         py::arg("tracks"), py::arg("start"), py::arg("range_mm"), py::kw_only(),
         py::arg("lever_mm") = std::vector<double>{}, py::arg("free_heading") = false,
-        py::arg("displaced") = Displaced::no, py::arg("most_iterations") = 50, unlocked,
+        py::arg_v("displaced", Displaced::no, "Displaced.no"), py::arg("most_iterations") = 50, unlocked,
         R"(Lag r(d) from strokes with a known way of the TCP and places where the patch was seen, by least squares.
 
 start: coefficients to begin from, as many as the law shall have. lever_mm: coefficients of e(d) where the middle of the
@@ -264,7 +264,7 @@ tilt x and y, backlash x and y.)");
         });
     as_fixed_value(mark_fit);
     m.def("fit_marks", &fit_marks, py::arg("marks"), py::arg("start") = std::optional<MarkLaws>(),
-          py::arg("options") = MarkOptions(), unlocked,
+          py::arg_v("options", MarkOptions(), "MarkOptions()"), unlocked,
           R"(Laws from painted marks and the TCP's way that painted each, by robust least squares through the simulator.
 
 start: MarkLaws to begin from; without them lags of many lengths are tried. Error: no mark, numbers that are not finite,

@@ -9,7 +9,7 @@ template <class T>
 auto column(std::vector<T> brushsvg::PassMarks::* member) {
     return [member](const brushsvg::PassMarks& marks) {
         const auto& values = marks.*member;
-        return frozen(py::array_t<T>(py::ssize_t(values.size()), values.data()));
+        return as_typed<py::array_t<T>>(frozen(py::array_t<T>(py::ssize_t(values.size()), values.data())));
     };
 }
 
@@ -30,7 +30,7 @@ void bind_marks(py::module_& m) {
                                [](const PassMarks& p) {
                                    py::array_t<bool> out(py::ssize_t(p.taut.size()));
                                    std::copy(p.taut.begin(), p.taut.end(), out.mutable_data());
-                                   return frozen(out);
+                                   return as_typed<py::array_t<bool>>(frozen(out));
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),

@@ -51,7 +51,7 @@ chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be chang
             [](const Settings& self, const py::kwargs& fields) {
                 py::dict all = said(self);
                 all.attr("update")(fields);
-                return py::type::of<Settings>()(**all);
+                return py::type::of<Settings>()(**all).cast<Settings>();
             },
             "A copy in which the fields that are given are these.")
         .def("__repr__", [](const Settings& self) {

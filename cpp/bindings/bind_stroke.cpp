@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "brushsvg/curve_fit.hpp"
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/target_mark.hpp"
 
@@ -57,7 +58,12 @@ set as a whole.)");
             "middle_mm", [](const Stroke& s) -> const Cubics& { return s.middle_mm; }, replace(&Stroke::middle_mm))
         .def_readwrite("closed", &Stroke::closed)
         .def_property(
-            "half_width", [knots_of](const Stroke& s) { return frozen(py::cast(knots_of(s))); }, set_knots)
+            "half_width",
+            [knots_of](const Stroke& s) {
+                using Knot = py::typing::Tuple<py::float_, py::float_>;
+                return as_typed<py::typing::Tuple<Knot, py::ellipsis>>(frozen(py::cast(knots_of(s))));
+            },
+            set_knots)
         .def_property("wanted_mm", frozen_copy(&Stroke::wanted_mm),
                       [](Stroke& s, Rings rings) { s.wanted_mm = std::move(rings); })
         .def_readwrite("layer", &Stroke::layer)
@@ -65,12 +71,40 @@ set as a whole.)");
         .def_property(
             "settings", [](const Stroke& s) { return s.settings; },
             [](Stroke& s, Settings settings) { s.settings = std::move(settings); })
+        .def_static(
+            "from_points",
+            [](const Ring& points_mm, const Numbers& width_mm, const std::string& name,
+               std::optional<double> tolerance_mm) {
+                const auto& widths = width_mm.values;
+                const py::ssize_t n = points_mm.rows();
+                if (widths.ndim() > 1 || (widths.ndim() == 1 && widths.size() != n))
+                    throw Error("sizes-differ",
+                                "a width in mm is needed, or one for each of " + std::to_string(n) + " points, not " +
+                                    std::to_string(widths.size()),
+                                name);
+                const auto given = py::array_t < double, py::array::c_style | py::array::forcecast > (widths);
+                WideLine line(n, 3);
+                for (py::ssize_t i = 0; i < n; ++i)
+                    line.row(i) << points_mm.row(i), 0.5 * given.data()[given.ndim() == 0 ? 0 : i];
+                const Unlocked unlocked;
+                return stroke_along(name, line, tolerance_mm);
+            },
+            py::arg("points_mm"), py::arg("width_mm"), py::arg("name") = "stroke1", py::kw_only(),
+            py::arg("tolerance_mm") = py::none(),
+            R"(A stroke through points (n, 2) [mm], y up, in painting direction; closed where the last is the first again.
+
+width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
+point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
+where the points lie too far apart for it.
+
+Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
+is not positive.)")
         .def(
             "replaced",
             [](const Stroke& s, const py::kwargs& fields) {
                 py::object made = py::cast(Stroke(s));
                 for (const auto& [name, value] : fields) py::setattr(made, name, value);
-                return made;
+                return made.cast<Stroke>();
             },
             "A copy in which the fields that are given are these.")
         .def("__repr__", [](const Stroke& s) {

@@ -80,3 +80,24 @@ TEST_CASE("a point, repeated points and a reversal end") {
     CHECK(there_and_back.middle_mm.allFinite());
     CHECK(there_and_back.middle_mm.rows() <= 20);
 }
+
+TEST_CASE("a stroke along points passes all of them, corners too") {
+    WideLine points(60, 3);  // half of a circle, a corner, and straight on
+    for (int i = 0; i < 50; ++i)
+        points.row(i) << 20.0 * std::cos(kPi * i / 49.0), 20.0 * std::sin(kPi * i / 49.0), 1.0 + 0.02 * i;
+    for (int i = 50; i < 60; ++i) points.row(i) << -20.0 + 3.0 * (i - 49), 0.0, 2.0;
+    for (const double tolerance : {0.2, 0.02, 0.002}) {
+        const Stroke stroke = stroke_along("s", points, tolerance);
+        CHECK_NOTHROW(check(stroke));
+        CHECK(stroke.middle_mm.rows() < 30);
+        const MiddlePolyline line = flatten(stroke, 1e-5);
+        for (Eigen::Index i = 0; i < points.rows(); ++i)
+            CHECK((line.leftCols<2>().rowwise() - points.row(i).head<2>()).rowwise().norm().minCoeff() <
+                  tolerance + 0.01);  // the rows of the line lie apart
+    }
+    const Stroke lines = stroke_along("s", points);
+    CHECK(lines.middle_mm.rows() == 59);
+    CHECK(lines.half_width.front().half_width_mm == 1.0);
+    CHECK(lines.half_width.back().half_width_mm == 2.0);
+    CHECK_FALSE(lines.closed);
+}
