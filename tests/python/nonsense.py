@@ -246,6 +246,7 @@ ARGUMENTS = {
     "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
+    "brush_like": [["mine", *TEXTS], brushes],
     "brush_names": [],
     "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
     "cell_names": [],
@@ -446,8 +447,22 @@ def all_tracks():
         yield [_core.Track(poses, [1, 1.5, 2], np.where(seen == 15, value, seen), value)]
 
 
-# the same of the fits, which calibration calls
+# the same of what is no name of its own: the fits, which calibration calls, and what makes a value
 FITS = {
+    "Stroke.from_points": [
+        [
+            [(5, 5), (9, 9)],
+            [(5, 5)],
+            [(5, 5)] * 3,
+            [(5, 5), (9, NAN)],
+            [(5, 5), (1e300, 9)],
+            [(0, 0, 0), (9, 9, 9)],
+            [5, 9],
+            np.arange(2000.0).reshape(-1, 2) % 7 * 99,
+        ],
+        [3.0, [3, 4], [3, 4, 5], [3, -4], [3, NAN], np.ones((2, 1)), np.ones((2, 2)), *NUMBERS],
+        ["a", *TEXTS],
+    ],
     "fit_law": [readings, readings, laws_asked],
     "from_angles": [
         [1.5, *NUMBERS],
