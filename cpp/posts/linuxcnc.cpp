@@ -15,11 +15,11 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kUnit = 1e4;               // of the last decimal, in a mm
-constexpr double kLeastMoveMm = 2.00125e-3;  // no move is shorter: rounded, it would go anywhere or nowhere
-constexpr double kCircleMm = 1e-3;          // ends nearer to each other: rounded, they might be one
-constexpr double kMostTurnRad = 5.0;        // of one circle: rounded, a longer one might be none, or all round
-constexpr double kOnTheSpotMm = 1e-6;       // sideways; less, and the move goes straight up or down
+constexpr double kUnit = 1e4;                     // of the last decimal, in a mm
+constexpr double kLeastMoveMm = 2.00125e-3;       // no move is shorter: rounded, it would go anywhere or nowhere
+constexpr double kCircleMm = 1e-3;                // ends nearer to each other: rounded, they might be one
+constexpr double kPartRad = 3.5, kMostRad = 5.0;  // of one circle: rounded, a longer one might be none, or all round
+constexpr double kOnTheSpotMm = 1e-6;             // sideways; less, and the move goes straight up or down
 constexpr double kSlowestMmS = 1e-6;
 constexpr std::size_t kCommentLetters = 118;
 
@@ -94,7 +94,7 @@ void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
                                       {cell.paint_mm_s, "paint_mm_s"}})
         require(speed, {kSlowestMmS, 1e5}, "the speed", "mm/s", name);
     if (plan.brush != brush.name)
-        throw Error("brush-differs", "the plan was made for brush " + plan.brush + ", not for " + brush.name);
+        throw Error("options-contradict", "the plan was made for brush " + plan.brush + ", not for " + brush.name);
     if (plan.passes.empty()) throw Error("nothing-to-paint", "there is nothing to paint");
     for (const Pass& pass : plan.passes) {
         const std::string where = pass.stroke.name();
@@ -145,23 +145,62 @@ class Text {
     std::string feed_;
 };
 
-void write_pass(const Pass& pass, const Brush& brush, const FlatCell& cell, Text& text) {
+/// The pass as it is run: one that begins or ends below the paper is set down and lifted there.
+Pass on_the_paper(Pass pass) {
+    const Poses& poses = pass.poses_mm;
+    const Index n = poses.rows(), before = poses(0, 2) < 0.0 ? 1 : 0, after = poses(n - 1, 2) < 0.0 ? 1 : 0;
+    Poses all(before + n + after, 3);
+    all << poses.topRows(before), poses, poses.bottomRows(after);
+    all(0, 2) = all(all.rows() - 1, 2) = 0.0;
+    for (Arc& arc : pass.arcs) {
+        arc.first += before;
+        arc.last += before;
+    }
+    pass.poses_mm = all;
+    return pass;
+}
+
+/// An arc that comes back to where it began or goes on beyond, in parts: rounded, it might be no circle, or lose a
+/// turn.
+std::vector<Arc> in_parts(const Arc& arc, const Poses& written) {
+    std::vector<double> turned{0.0};
+    for (Index i = arc.first; i < arc.last; ++i)
+        turned.push_back(turned.back() + arc.direction * turn_between(arc, written.row(i).head<2>().transpose(),
+                                                                      written.row(i + 1).head<2>().transpose()));
+    const double all = turned.back();
+    std::vector<Arc> parts;
+    Arc part = arc;
+    if (all >= 2.0 * std::acos(-1.0) || (written.row(arc.last) - written.row(arc.first)).head<2>().norm() < kCircleMm) {
+        const double share = all / std::max(2.0, std::ceil(all / kPartRad)) - 1e-6;
+        std::size_t first = 0;
+        for (std::size_t k = 1; k + 1 < turned.size(); ++k) {
+            if (turned[k] - turned[first] < share && turned[k + 1] - turned[first] <= kMostRad) continue;
+            part.last = arc.first + std::int64_t(k);
+            parts.push_back(part);
+            part.first = part.last;
+            first = k;
+        }
+    }
+    part.last = arc.last;
+    parts.push_back(part);
+    return parts;
+}
+
+void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, Text& text) {
+    const Pass pass = on_the_paper(planned);
     const Index last = pass.poses_mm.rows() - 1;
     const Poses written = pass.poses_mm.unaryExpr([](double value) { return rounded(value); });
     const auto apart = [&](Index a, Index b) { return (written.row(a) - written.row(b)).norm(); };
+    std::vector<Arc> parts;
+    for (const Arc& arc : pass.arcs)
+        for (const Arc& part : in_parts(arc, written)) parts.push_back(part);
     std::vector<const Arc*> circle_at(std::size_t(last + 1), nullptr);  // by its first pose
     std::vector<bool> stays(std::size_t(last + 1), false);
     stays.front() = stays.back() = true;
     Index done = 0;
-    for (const Arc& arc : pass.arcs) {
-        double turn = 0.0;
-        for (Index i = arc.first; i < arc.last; ++i)
-            turn += std::abs(turn_between(arc, pass.poses_mm.row(i).head<2>().transpose(),
-                                          pass.poses_mm.row(i + 1).head<2>().transpose()));
+    for (const Arc& arc : parts) {
         const auto is_tiny = [&](Index a, Index b) { return a != b && apart(a, b) < kLeastMoveMm; };
-        if (turn > kMostTurnRad || apart(arc.first, arc.last) < kCircleMm || is_tiny(done, arc.first) ||
-            is_tiny(arc.last, last))
-            continue;
+        if (apart(arc.first, arc.last) < kCircleMm || is_tiny(done, arc.first) || is_tiny(arc.last, last)) continue;
         circle_at[std::size_t(arc.first)] = &arc;
         stays[std::size_t(arc.first)] = stays[std::size_t(arc.last)] = true;
         done = arc.last;

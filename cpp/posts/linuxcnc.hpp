@@ -20,8 +20,8 @@ struct FlatCell {
     double blending_mm = 0.01;  ///< how far from the joint of two moves the machine may pass; 0: exactly through it
 };
 
-/// A plan as G-code for LinuxCNC (RS274/NGC): lines of four decimals, a plan's arcs as G2 and G3 where they are no
-/// longer than most of a turn, else through their poses.
+/// A plan as G-code for LinuxCNC (RS274/NGC): lines of four decimals, a plan's arcs as G2 and G3, tiny ones through
+/// their poses. A pass that begins or ends below the paper is set down and lifted there.
 ///
 /// What is looked at is each stroke's own way: its poses, heights, speeds and the sheet with its margin. Whether the
 /// paint stays on the sheet and how corners are cut is looked at by the program brushsvg alone, which also fetches
