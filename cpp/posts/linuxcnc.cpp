@@ -40,7 +40,7 @@ std::string comment(const std::string& text) {
         if ((byte & 0xC0) == 0x80) continue;  // what follows the first byte of a letter
         out += byte > '~' ? '?' : byte < ' ' ? ' ' : letter == '(' ? '[' : letter == ')' ? ']' : letter;
     }
-    if (out.size() > kCommentLetters) out = out.substr(0, kCommentLetters - 3) + "...";
+    if (out.size() > kCommentLetters) out.replace(kCommentLetters - 3, std::string::npos, "...");
     return "(" + out + ")\n";
 }
 

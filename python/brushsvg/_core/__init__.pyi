@@ -346,8 +346,8 @@ class Stroke:
         A stroke through points (n, 2) [mm], y up, in painting direction; closed where the last is the first again.
 
         width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
-        point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; where points lie too far apart for it,
-        lines.
+        point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
+        where the points lie too far apart for it.
 
         Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
         is not positive.
