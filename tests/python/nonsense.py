@@ -4,9 +4,11 @@ One line per call that ended in anything but a result, brushsvg.Error or, for a 
 TypeError.
 """
 
+import copy
 import inspect
 import itertools
 import operator
+import pickle
 import sys
 import tempfile
 from dataclasses import replace
@@ -493,8 +495,8 @@ def calls(name):
             yield [value] * count
 
 
-def methods(name):
-    """(words for it, callable) of the methods of a class, on values of its own."""
+def values_of(name):
+    """Values of a class, sound and not."""
     made = {
         "Brush": brushes,
         "Stroke": some_strokes,
@@ -502,11 +504,24 @@ def methods(name):
         "Marks": marks,
         "Pass": lambda: (each for one in plans() for each in one.passes),
     }.get(name, tuple)
-    for value in made():
+    return made()
+
+
+def methods(name):
+    """(words for it, callable) of the methods of a class, on values of its own."""
+    for value in values_of(name):
         for attribute in dir(value):
             if attribute.startswith("_"):
                 continue
             yield f"{name}.{attribute}", value, attribute
+
+
+def shown_and_copied(value):
+    """What every value can do, whatever it holds."""
+    repr(value)
+    for made in (copy.copy(value), pickle.loads(pickle.dumps(value))):
+        if made != value:
+            raise AssertionError("a copy differs")
 
 
 def outcome(call, words) -> str | None:
@@ -534,6 +549,9 @@ def main(names):
                 print(wrong, flush=True)
         if not inspect.isclass(public):
             continue
+        for value in values_of(name):
+            if wrong := outcome(lambda v=value: shown_and_copied(v), name):
+                print(wrong, flush=True)
         for words, value, attribute in methods(name):
             print(words, file=sys.stderr, flush=True)
             found = None
