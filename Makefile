@@ -84,12 +84,12 @@ lint: $(VENV)/.dev test-system
 	@$(BIN)/ruff check .
 	$(BIN)/ruff format --check -q .
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
-	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io cpp examples benchmarks
+	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
 
 # Read by clang, which refuses what g++ lets pass (clang 14: captured structured bindings); nothing is compiled or run.
 clang-check: $(VENV)/.dev
 	@$(call install,clang)
-	includes="$$(printf -- '-Icpp/%s ' include io fit/laws fit/marks fit/tracks refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
+	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
 	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
 	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
 

@@ -48,6 +48,9 @@ def _of(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
 def _python() -> Iterator[str]:
     yield "# Python\n"
     yield "`import brushsvg`: all public names. Lengths are in mm, angles in rad, times in s, y up.\n"
+    yield "What is handed out is a value: it shows itself in a line, two with the same fields are equal, it can be"
+    yield "pickled, and `copy.copy` shares nothing with what it was made from. Arrays of a value are read-only: set the"
+    yield "field to another array instead. A notebook draws a Brush, a Plan, Marks and a Design.\n"
     for name in sorted(brushsvg.__all__, key=str.lower):
         if name.startswith("__"):
             continue

@@ -1,6 +1,8 @@
 """All that brushsvg makes of one drawing: python demo.py DRAWING.svg DIRECTORY"""
 
+import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -51,19 +53,24 @@ def main(drawing: Path, directory: Path) -> None:
         ".png": three_panels(works, marks, totals),
     }
     directory.mkdir(parents=True, exist_ok=True)
-    paths = {directory / (drawing.stem + ending): data for ending, data in files.items()}
+    paths: dict[str | os.PathLike[str], str | bytes | Iterator[str]] = {
+        directory / (drawing.stem + ending): data for ending, data in files.items()
+    }
     write_files(paths)
     print(table, *paths, sep="\n")
 
 
-def three_panels(works, marks, totals) -> bytes:
+def three_panels(
+    works: dict[str, preparation.Work], marks: dict[str, brushsvg.Marks], totals: dict[str, report.Figures]
+) -> bytes:
     """Three panels: what was drawn, what is painted without and with compensation."""
     work = works["closed"]
-    wanted = report.wanted_rings(work.strokes)
-    middle = [brushsvg.flatten(stroke, 0.01)[:, :2] for stroke in work.strokes]
+    strokes = work.strokes or []
+    wanted = report.wanted_rings(strokes)
+    middle = [brushsvg.flatten(stroke, 0.01)[:, :2] for stroke in strokes]
     width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
     drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")
-    count = (str(len(work.strokes)), "strokes")
+    count = (str(len(strokes)), "strokes")
     panels = [Panel("What was drawn", count, drawn, wanted, [], middle, MIDDLE_LINE)]
     for how, title in (("none", "Tool follows the drawing"), ("closed", "With compensation")):
         total = totals[how]

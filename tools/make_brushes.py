@@ -11,6 +11,7 @@ from pathlib import Path
 
 from brushsvg import _core
 from brushsvg.brush.footprint_shapes import disc, drop
+from brushsvg.calibration.from_widths import GAP_PER_HALF, WIDEST_PER_HALF
 from brushsvg.files import write_files
 
 SHIPPED = Path(__file__).parents[1] / "python" / "brushsvg" / "data" / "brushes"
@@ -25,6 +26,12 @@ ROUND_FLOOR_PER_DEPTH = 0.126
 ROUND_DIP_MM = 7.0
 
 PEN_HALF_WIDTH_MM = 0.5
+
+# Of liner-1: nobody measured it. Long bristles of little width trail far; a quarter of their length is as deep as one
+# presses such a brush.
+LINER_DEEPEST_MM = 5
+LINER_HALF_WIDTH_MM = (0.5, 1.0)
+LINER_LAG_MM = [10.0, 1.0]
 
 
 def round_outline(depth: float) -> list[list[float]]:
@@ -91,6 +98,79 @@ def round_6() -> dict:
     }
 
 
+def round_6_angles() -> dict:
+    """The same brush by the laws that the article reads from angles of its bristles, section 3.3."""
+    brush = round_6()
+    brush["name"] = "round-6-angles"
+    brush["about"] = "round-6 by the article's laws from angles, whose scatter is larger: to compare with."
+    brush["lag"] = {
+        "coefficients": [3.4, 1.39, 0.047, -0.00456, -0.000456],
+        "calibrated_mm": [1, 10],
+        "source": f"{ARTICLE}, section 3.3, from angles of the bristles by (20) and (23), least absolute residuals.",
+        "assumed": False,
+        "half_interval_95": [10.0, 16.13, 6.457, 0.8754, 0.0396],
+        "rmse_mm": 1.98,
+    }
+    brush["tip_gap"] = {
+        "coefficients": [0, 0.21],
+        "calibrated_mm": [1, 10],
+        "source": f"{ARTICLE}, equation (27), from angles; its interval and the video's, 0.52 +- 0.09 of (26), do not "
+        "touch.",
+        "assumed": False,
+        "half_interval_95": [0, 0.14],
+        "rmse_mm": 1.21,
+    }
+    return brush
+
+
+def liner_1() -> dict:
+    """A liner like the one of the article's section 3.5, of which only the size is printed: all laws are assumed."""
+    depths = [0.5 * k for k in range(1, 2 * LINER_DEEPEST_MM + 1)]
+    printed = f"{ARTICLE}, section 3.5, prints marks 1 to 2 mm wide and bristles of 20 mm, and no law."
+    half = [LINER_HALF_WIDTH_MM[0], (LINER_HALF_WIDTH_MM[1] - LINER_HALF_WIDTH_MM[0]) / LINER_DEEPEST_MM]
+    shares = {"tip_gap": GAP_PER_HALF, "tip_to_widest": WIDEST_PER_HALF}
+    return {
+        "format": "brushsvg/brush",
+        "version": 1,
+        "name": "liner-1",
+        "kind": "liner",
+        "about": "Liner of 1 mm with bristles of 20 mm; only its size was measured, all laws are assumed.",
+        "depth_range_mm": [0, LINER_DEEPEST_MM],
+        "max_speed_mm_s": 25,
+        "paint_depth_mm": LINER_DEEPEST_MM / 2,
+        "lag": {
+            "coefficients": LINER_LAG_MM,
+            "source": f"{printed} Assumed: 10 mm at touch-down, half of the bristles, and 1 mm more for each mm of "
+            "depth.",
+            "assumed": True,
+        },
+        **{
+            name: {
+                "coefficients": [round(share * c, 6) for c in half],
+                "source": f"Assumed: {share:g} half widths, as of round brushes.",
+                "assumed": True,
+            }
+            for name, share in shares.items()
+        },
+        "half_width": {
+            "coefficients": half,
+            "source": f"{printed} Assumed: that they are 1 mm wide where it just touches and 2 mm at the greatest "
+            "depth, evenly in between.",
+            "assumed": True,
+        },
+        "footprints": {
+            "dragged": [
+                {"depth_mm": d, "outline_mm": drop(h, WIDEST_PER_HALF * h, h)}
+                for d in (0.01, *depths)  # below the least depth outlines shrink
+                for h in [half[0] + half[1] * d]
+            ],
+            "pressed": [],
+            "source": "Assumed: drops, as of round brushes; the same when pressed straight down.",
+            "assumed": True,
+        },
+    }
+
+
 def rigid() -> dict:
     """A felt pen of 1 mm: no lag, the contact is the disc under the TCP."""
     to_centre = {"coefficients": [PEN_HALF_WIDTH_MM], "source": "Radius of the nib.", "assumed": False}
@@ -119,7 +199,7 @@ def rigid() -> dict:
 
 def brush_files() -> dict[str, str]:
     """File name -> text of every shipped brush."""
-    brushes = [round_6(), rigid()]
+    brushes = [round_6(), round_6_angles(), liner_1(), rigid()]
     return {f"{b['name']}.json": _core.write_brush(_core.read_brush(json.dumps(b))) for b in brushes}
 
 

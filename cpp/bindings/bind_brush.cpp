@@ -3,10 +3,10 @@
 
 void bind_brush(py::module_& m) {
     using brushsvg::Brush;
-    py::class_<Brush>(m, "Brush", R"(Four laws against depth and the footprints; all lengths in mm.
+    py::class_<Brush> type(m, "Brush", R"(Four laws against depth and the footprints; all lengths in mm.
 
-Set a law, the footprints, the range of depths or the covariance as a whole: each is a value that cannot be changed.)")
-        .def(py::init<>())
+Set a law, the footprints, the range of depths or the covariance as a whole: each is a value that cannot be changed.)");
+    type.def(py::init<>())
         .def_readwrite("name", &Brush::name)
         .def_readwrite("kind", &Brush::kind)
         .def_property("depth_range_mm", frozen_copy(&Brush::depth_range_mm),
@@ -37,7 +37,17 @@ Set a law, the footprints, the range of depths or the covariance as a whole: eac
         .def("half_width_range_mm", &Brush::half_width_range_mm)
         .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
              "Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.")
-        .def("lever_to_widest", &Brush::lever_to_widest, py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.");
+        .def("lever_to_widest", &Brush::lever_to_widest, py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.")
+        .def("__repr__", [](const Brush& b) {
+            const auto& [least, greatest] = b.depth_range_mm;
+            const auto span = [](double from, double to) {
+                return from == to ? told(from) : told(from) + " to " + told(to);
+            };
+            return "<Brush " + quoted(b.name) + ": " + (b.kind.empty() ? "" : b.kind + ", ") + "depth " +
+                   span(least, greatest) + " mm, lag " + span(b.lag(least), b.lag(greatest)) + " mm, lines " +
+                   span(2.0 * b.half_width(least), 2.0 * b.half_width(greatest)) + " mm wide>";
+        });
+    as_value(type);
     m.def(
         "check", [](const Brush& brush) { brushsvg::check(brush); }, py::arg("brush"),
         "Error when the brush would lead a robot astray (negative lag, laws and outlines that disagree, ...).");

@@ -49,28 +49,46 @@ struct Compensated {
 
 }  // namespace
 
+template <>
+inline constexpr auto members<Compensated> =
+    std::tuple(&Compensated::plan, &Compensated::misses, &Compensated::warnings);
+
 void bind_compensate(py::module_& m) {
     using namespace brushsvg;
-    py::class_<TrackingError>(
+    py::class_<TrackingError> miss(
         m, "Miss",
         R"(Distance of the widest point from the middle line [mm], from the first taut row to the last.
 
 largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
-too sharp for the lever.)")
-        .def_readonly("largest_mm", &TrackingError::largest_mm)
+too sharp for the lever.)");
+    miss.def_readonly("largest_mm", &TrackingError::largest_mm)
         .def_property_readonly("at_mm", frozen_copy(&TrackingError::at_mm))
         .def_readonly("mean_mm", &TrackingError::mean_mm)
         .def_readonly("within_tolerance", &TrackingError::within_tolerance)
-        .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place);
-    py::class_<Compensated>(m, "Compensated",
-                            "A plan, what each pass still misses, and warnings, notices about strokes.")
-        .def_readonly("plan", &Compensated::plan)
-        .def_property_readonly("misses", parts(&Compensated::misses))
-        .def_property_readonly("warnings", [](const Compensated& done) {
-            py::tuple out(done.warnings.size());
-            for (std::size_t i = 0; i < out.size(); ++i) out[i] = notice(done.warnings[i]);
-            return out;
+        .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place)
+        .def("__repr__", [](const TrackingError& e) {
+            return "<Miss of " + told(e.largest_mm) + " mm at (" + told(e.at_mm[0]) + ", " + told(e.at_mm[1]) +
+                   ") mm, " + told(e.mean_mm) + " mm on average" +
+                   (e.within_tolerance ? ", within the tolerance>" : ">");
         });
+    as_fixed_value(miss);
+    py::class_<Compensated> type(m, "Compensated",
+                                 "A plan, what each pass still misses, and warnings, notices about strokes.");
+    type.def_readonly("plan", &Compensated::plan)
+        .def_property_readonly("misses", parts(&Compensated::misses))
+        .def_property_readonly("warnings",
+                               [](const Compensated& done) {
+                                   py::tuple out(done.warnings.size());
+                                   for (std::size_t i = 0; i < out.size(); ++i) out[i] = notice(done.warnings[i]);
+                                   return out;
+                               })
+        .def("__repr__", [](const Compensated& done) {
+            double largest = 0.0;
+            for (const TrackingError& each : done.misses) largest = std::max(largest, each.largest_mm);
+            return "<Compensated: " + counted(done.plan.passes.size(), "pass") + ", at most " + told(largest) +
+                   " mm off the middle line, " + counted(done.warnings.size(), "warning") + ">";
+        });
+    as_value(type);
     m.def(
         "compensate",
         [](const std::vector<Stroke>& strokes, const Brush& brush, std::optional<std::array<double, 2>> sheet,

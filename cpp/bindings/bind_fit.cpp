@@ -2,26 +2,49 @@
 #include "bindings.hpp"
 #include "law_fit.hpp"
 
+template <>
+inline constexpr auto members<brushsvg::fit::LawShape> = std::tuple(
+    &brushsvg::fit::LawShape::range_mm, &brushsvg::fit::LawShape::degree, &brushsvg::fit::LawShape::through_zero,
+    &brushsvg::fit::LawShape::positive, &brushsvg::fit::LawShape::rising, &brushsvg::fit::LawShape::floor,
+    &brushsvg::fit::LawShape::norm, &brushsvg::fit::LawShape::smoothing);
+
+template <>
+inline constexpr auto members<brushsvg::fit::LawFit> = std::tuple(
+    &brushsvg::fit::LawFit::law, &brushsvg::fit::LawFit::covariance, &brushsvg::fit::LawFit::residual_mm,
+    &brushsvg::fit::LawFit::r_squared, &brushsvg::fit::LawFit::degrees_of_freedom, &brushsvg::fit::LawFit::held);
+
 void bind_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<Unlocked>();
     py::enum_<Norm>(m, "Norm").value("squares", Norm::squares).value("absolute", Norm::absolute);
-    py::class_<LawShape>(m, "LawShape", "What is asked of a fitted law; positive and rising hold on range_mm.")
+    py::class_<LawShape> law_shape(m, "LawShape",
+                                   "What is asked of a fitted law; positive and rising hold on range_mm.");
+    law_shape
         .def(py::init([](std::array<double, 2> range_mm, int degree, bool through_zero, bool positive, bool rising,
                          double floor, Norm norm, double smoothing) {
                  return LawShape{range_mm, degree, through_zero, positive, rising, floor, norm, smoothing};
              }),
              py::arg("range_mm"), py::arg("degree"), py::kw_only(), py::arg("through_zero") = false,
              py::arg("positive") = false, py::arg("rising") = false,
-             py::arg("floor") = -std::numeric_limits<double>::infinity(), py::arg("norm") = Norm::squares,
-             py::arg("smoothing") = 0.0);
-    py::class_<LawFit>(m, "LawFit", "A fitted law, how sure it is, and what it leaves.")
-        .def_property_readonly("law", [](const LawFit& f) { return f.law; })
+             py::arg("floor") = -std::numeric_limits<double>::infinity(),
+             py::arg_v("norm", Norm::squares, "Norm.squares"), py::arg("smoothing") = 0.0)
+        .def("__repr__", [](const LawShape& v) {
+            return "<LawShape of degree " + std::to_string(v.degree) + " at " + told(v.range_mm[0]) + " to " +
+                   told(v.range_mm[1]) + " mm>";
+        });
+    as_fixed_value(law_shape);
+    py::class_<LawFit> law_fit(m, "LawFit", "A fitted law, how sure it is, and what it leaves.");
+    law_fit.def_property_readonly("law", [](const LawFit& f) { return f.law; })
         .def_property_readonly("covariance", frozen_copy(&LawFit::covariance))
         .def_property_readonly("residual_mm", frozen_copy(&LawFit::residual_mm))
         .def_readonly("r_squared", &LawFit::r_squared)
         .def_readonly("degrees_of_freedom", &LawFit::degrees_of_freedom)
-        .def_readonly("held", &LawFit::held);
+        .def_readonly("held", &LawFit::held)
+        .def("__repr__", [](const LawFit& v) {
+            return "<LawFit: " + repr_of(v.law) + ", R^2 " + told(v.r_squared) + ", " +
+                   std::to_string(v.degrees_of_freedom) + " degrees of freedom>";
+        });
+    as_fixed_value(law_fit);
     m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"), unlocked,
           "Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals.");
     py::enum_<Lines>(m, "Lines").value("plain", Lines::plain).value("total", Lines::total);
@@ -38,6 +61,6 @@ void bind_fit(py::module_& m) {
             return d;
         },
         py::arg("alpha0"), py::arg("s_mm"), py::arg("alpha"), py::arg("beta") = std::vector<double>{},
-        py::arg("lines") = Lines::plain,
+        py::arg_v("lines", Lines::plain, "Lines.plain"),
         "Lag and tip gap [mm] from angles [rad] after distances s [mm] of a straight drag (article (19) to (23)).");
 }

@@ -3,19 +3,40 @@
 
 void bind_footprint(py::module_& m) {
     using namespace brushsvg;
-    py::class_<Footprint>(m, "Footprint",
-                          "Contact patch outline (n, 2) [mm] at one depth [mm]; first vertex the tip at (0, 0).")
-        .def(py::init([](double depth_mm, const Ring& outline_mm) { return Footprint{depth_mm, outline_mm}; }),
-             py::arg("depth_mm"), py::arg("outline_mm"))
+    py::class_<Footprint> one(m, "Footprint",
+                              "Contact patch outline (n, 2) [mm] at one depth [mm]; first vertex the tip at (0, 0).");
+    one.def(py::init([](double depth_mm, const Ring& outline_mm) { return Footprint{depth_mm, outline_mm}; }),
+            py::arg("depth_mm"), py::arg("outline_mm"))
         .def_readonly("depth_mm", &Footprint::depth_mm)
-        .def_readonly("outline_mm", &Footprint::outline_mm);
-    py::class_<FootprintTable>(m, "FootprintTable", "Footprints in tuples, depths ascending; pressed may be empty.")
+        .def_readonly("outline_mm", &Footprint::outline_mm)
+        .def("__repr__", [](const Footprint& f) {
+            std::string size;
+            if (f.outline_mm.rows() > 0) {
+                const Eigen::RowVector2d span = f.outline_mm.colwise().maxCoeff() - f.outline_mm.colwise().minCoeff();
+                size = ", " + told(span.x()) + " mm long and " + told(span.y()) + " mm wide";
+            }
+            return "<Footprint at depth " + told(f.depth_mm) +
+                   " mm: " + counted(std::size_t(f.outline_mm.rows()), "point") + size + ">";
+        });
+    as_fixed_value(one);
+    py::class_<FootprintTable> table(m, "FootprintTable",
+                                     "Footprints in tuples, depths ascending; pressed may be empty.");
+    table
         .def(py::init([](std::vector<Footprint> dragged, std::vector<Footprint> pressed) {
                  return FootprintTable{std::move(dragged), std::move(pressed)};
              }),
              py::arg("dragged") = std::vector<Footprint>{}, py::arg("pressed") = std::vector<Footprint>{})
         .def_property_readonly("dragged", parts(&FootprintTable::dragged))
-        .def_property_readonly("pressed", parts(&FootprintTable::pressed));
+        .def_property_readonly("pressed", parts(&FootprintTable::pressed))
+        .def("__repr__", [](const FootprintTable& t) {
+            std::string depths;
+            if (!t.dragged.empty())
+                depths =
+                    " at depths " + told(t.dragged.front().depth_mm) + " to " + told(t.dragged.back().depth_mm) + " mm";
+            return "<FootprintTable: " + std::to_string(t.dragged.size()) + " dragged" + depths + ", " +
+                   std::to_string(t.pressed.size()) + " pressed>";
+        });
+    as_fixed_value(table);
     m.def("footprint_at", &footprint_at, py::arg("table"), py::arg("depth_mm"), py::arg("pull") = 1.0,
           "Outline (n, 2) [mm] at a depth [mm], tip at the origin; pull = r'/r blends pressed (0) and dragged (1).");
 }

@@ -2,33 +2,108 @@
 #include "mark_fit.hpp"
 #include "track_fit.hpp"
 
+template <>
+inline constexpr auto members<brushsvg::fit::Track> =
+    std::tuple(&brushsvg::fit::Track::poses_mm, &brushsvg::fit::Track::pose, &brushsvg::fit::Track::seen_mm,
+               &brushsvg::fit::Track::heading_rad);
+
+template <>
+inline constexpr auto members<brushsvg::fit::TrackFit> =
+    std::tuple(&brushsvg::fit::TrackFit::lag, &brushsvg::fit::TrackFit::covariance,
+               &brushsvg::fit::TrackFit::heading_rad, &brushsvg::fit::TrackFit::displacement_mm,
+               &brushsvg::fit::TrackFit::residual_mm, &brushsvg::fit::TrackFit::degrees_of_freedom,
+               &brushsvg::fit::TrackFit::iterations, &brushsvg::fit::TrackFit::converged);
+
+template <>
+inline constexpr auto members<brushsvg::fit::PaintedMark> =
+    std::tuple(&brushsvg::fit::PaintedMark::stroke, &brushsvg::fit::PaintedMark::poses_mm,
+               &brushsvg::fit::PaintedMark::outline_mm, &brushsvg::fit::PaintedMark::arcs);
+
+template <>
+inline constexpr auto members<brushsvg::fit::Prior> =
+    std::tuple(&brushsvg::fit::Prior::value, &brushsvg::fit::Prior::sigma);
+
+template <>
+inline constexpr auto members<brushsvg::fit::MarkLaws> =
+    std::tuple(&brushsvg::fit::MarkLaws::lag, &brushsvg::fit::MarkLaws::tip_gap, &brushsvg::fit::MarkLaws::half_width,
+               &brushsvg::fit::MarkLaws::widest_per_half, &brushsvg::fit::MarkLaws::front_per_half,
+               &brushsvg::fit::MarkLaws::round_tail);
+
+template <>
+inline constexpr auto members<brushsvg::fit::LawPrior> =
+    std::tuple(&brushsvg::fit::LawPrior::laws, &brushsvg::fit::LawPrior::rows);
+
+template <>
+inline constexpr auto members<brushsvg::fit::Machine> =
+    std::tuple(&brushsvg::fit::Machine::lean_mm_per_mm, &brushsvg::fit::Machine::scale, &brushsvg::fit::Machine::skew,
+               &brushsvg::fit::Machine::tilt_mm_per_mm, &brushsvg::fit::Machine::backlash_mm);
+
+template <>
+inline constexpr auto members<brushsvg::fit::MarkOptions> =
+    std::tuple(&brushsvg::fit::MarkOptions::deepest_mm, &brushsvg::fit::MarkOptions::lag_terms,
+               &brushsvg::fit::MarkOptions::tip_gap_terms, &brushsvg::fit::MarkOptions::half_width_terms,
+               &brushsvg::fit::MarkOptions::widest_per_half, &brushsvg::fit::MarkOptions::front_per_half,
+               &brushsvg::fit::MarkOptions::laws, &brushsvg::fit::MarkOptions::round_tail,
+               &brushsvg::fit::MarkOptions::height_mm, &brushsvg::fit::MarkOptions::placement_mm,
+               &brushsvg::fit::MarkOptions::turn_rad, &brushsvg::fit::MarkOptions::displacement_mm,
+               &brushsvg::fit::MarkOptions::lean_mm_per_mm, &brushsvg::fit::MarkOptions::axes,
+               &brushsvg::fit::MarkOptions::tilt_mm_per_mm, &brushsvg::fit::MarkOptions::backlash_mm,
+               &brushsvg::fit::MarkOptions::spacing_mm, &brushsvg::fit::MarkOptions::noise_mm,
+               &brushsvg::fit::MarkOptions::noise_length_mm, &brushsvg::fit::MarkOptions::most_iterations);
+
+template <>
+inline constexpr auto members<brushsvg::fit::MarkMiss> =
+    std::tuple(&brushsvg::fit::MarkMiss::point_mm, &brushsvg::fit::MarkMiss::distance_mm,
+               &brushsvg::fit::MarkMiss::displacement_mm, &brushsvg::fit::MarkMiss::way_mm,
+               &brushsvg::fit::MarkMiss::rms_mm, &brushsvg::fit::MarkMiss::outlier);
+
+template <>
+inline constexpr auto members<brushsvg::fit::MarkFit> =
+    std::tuple(&brushsvg::fit::MarkFit::laws, &brushsvg::fit::MarkFit::covariance, &brushsvg::fit::MarkFit::height_mm,
+               &brushsvg::fit::MarkFit::turn_rad, &brushsvg::fit::MarkFit::shift_mm, &brushsvg::fit::MarkFit::centre_mm,
+               &brushsvg::fit::MarkFit::machine, &brushsvg::fit::MarkFit::marks, &brushsvg::fit::MarkFit::noise_mm,
+               &brushsvg::fit::MarkFit::samples, &brushsvg::fit::MarkFit::effective_samples,
+               &brushsvg::fit::MarkFit::left_aside, &brushsvg::fit::MarkFit::slim, &brushsvg::fit::MarkFit::remarks,
+               &brushsvg::fit::MarkFit::iterations, &brushsvg::fit::MarkFit::converged);
+
 void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<Unlocked>();
-    py::class_<Track>(m, "Track",
-                      R"(A stroke along which the patch was seen: lag from it by fit_tracks.
+    py::class_<Track> track(m, "Track",
+                            R"(A stroke along which the patch was seen: lag from it by fit_tracks.
 
 poses_mm (n, 3): the TCP's way; pose (m,): where on it, fractional between poses; seen_mm (m, 2): where the patch was.
-heading_rad: at the first pose, the brush being dragged already; nan: it is set down there.)")
+heading_rad: at the first pose, the brush being dragged already; nan: it is set down there.)");
+    track
         .def(py::init(
                  [](brushsvg::Poses poses_mm, std::vector<double> pose, brushsvg::Ring seen_mm, double heading_rad) {
                      return Track{std::move(poses_mm), std::move(pose), std::move(seen_mm), heading_rad};
                  }),
              py::arg("poses_mm"), py::arg("pose"), py::arg("seen_mm"),
-             py::arg("heading_rad") = std::numeric_limits<double>::quiet_NaN());
+             py::arg("heading_rad") = std::numeric_limits<double>::quiet_NaN())
+        .def("__repr__", [](const Track& v) {
+            return "<Track: " + counted(std::size_t(v.poses_mm.rows()), "pose") + ", seen at " +
+                   counted(v.pose.size(), "place") + ">";
+        });
+    as_fixed_value(track);
     py::enum_<Displaced>(m, "Displaced")
         .value("no", Displaced::no)
         .value("along", Displaced::along)
         .value("both", Displaced::both);
-    py::class_<TrackFit>(m, "TrackFit", "A lag fitted to tracks, how sure it is, and what it leaves.")
-        .def_property_readonly("lag", [](const TrackFit& f) { return f.lag; })
+    py::class_<TrackFit> track_fit(m, "TrackFit", "A lag fitted to tracks, how sure it is, and what it leaves.");
+    track_fit.def_property_readonly("lag", [](const TrackFit& f) { return f.lag; })
         .def_property_readonly("covariance", frozen_copy(&TrackFit::covariance))
         .def_property_readonly("heading_rad", frozen_copy(&TrackFit::heading_rad))
         .def_readonly("displacement_mm", &TrackFit::displacement_mm)
         .def_property_readonly("residual_mm", frozen_copy(&TrackFit::residual_mm))
         .def_readonly("degrees_of_freedom", &TrackFit::degrees_of_freedom)
         .def_readonly("iterations", &TrackFit::iterations)
-        .def_readonly("converged", &TrackFit::converged);
+        .def_readonly("converged", &TrackFit::converged)
+        .def("__repr__", [](const TrackFit& v) {
+            return "<TrackFit: " + repr_of(v.lag) + ", " + std::to_string(v.degrees_of_freedom) +
+                   " degrees of freedom>";
+        });
+    as_fixed_value(track_fit);
     m.def(
         "fit_tracks",
         [](const std::vector<Track>& tracks, const std::vector<double>& start, std::array<double, 2> range_mm,
@@ -37,16 +112,17 @@ heading_rad: at the first pose, the brush being dragged already; nan: it is set 
         },
         py::arg("tracks"), py::arg("start"), py::arg("range_mm"), py::kw_only(),
         py::arg("lever_mm") = std::vector<double>{}, py::arg("free_heading") = false,
-        py::arg("displaced") = Displaced::no, py::arg("most_iterations") = 50, unlocked,
+        py::arg_v("displaced", Displaced::no, "Displaced.no"), py::arg("most_iterations") = 50, unlocked,
         R"(Lag r(d) from strokes with a known way of the TCP and places where the patch was seen, by least squares.
 
 start: coefficients to begin from, as many as the law shall have. lever_mm: coefficients of e(d) where the middle of the
 mark was seen instead of the centre of friction. free_heading, displaced: each stroke's own unknowns.)");
 
-    py::class_<PaintedMark>(m, "PaintedMark", R"(What one pass painted.
+    py::class_<PaintedMark> painted_mark(m, "PaintedMark", R"(What one pass painted.
 
 stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them; arcs: of
-the pass, followed on their circles.)")
+the pass, followed on their circles.)");
+    painted_mark
         .def(py::init([](std::string stroke, brushsvg::Poses poses_mm, brushsvg::Rings outline_mm,
                          std::vector<brushsvg::Arc> arcs) {
                  return PaintedMark{std::move(stroke), std::move(poses_mm), std::move(outline_mm), std::move(arcs)};
@@ -56,13 +132,24 @@ the pass, followed on their circles.)")
         .def_readonly("stroke", &PaintedMark::stroke)
         .def_readonly("poses_mm", &PaintedMark::poses_mm)
         .def_property_readonly("outline_mm", frozen_copy(&PaintedMark::outline_mm))
-        .def_property_readonly("arcs", frozen_copy(&PaintedMark::arcs));
-    py::class_<Prior>(m, "Prior", "What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.")
+        .def_property_readonly("arcs", frozen_copy(&PaintedMark::arcs))
+        .def("__repr__", [](const PaintedMark& v) {
+            return "<PaintedMark " + quoted(v.stroke) + ": " + counted(v.outline_mm.size(), "ring") +
+                   ", painted along " + counted(std::size_t(v.poses_mm.rows()), "pose") + ">";
+        });
+    as_fixed_value(painted_mark);
+    py::class_<Prior> prior(m, "Prior",
+                            "What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.");
+    prior
         .def(py::init([](double value, double sigma) { return Prior{value, sigma}; }), py::arg("value"),
              py::arg("sigma"))
         .def_readwrite("value", &Prior::value)
-        .def_readwrite("sigma", &Prior::sigma);
-    py::class_<MarkLaws>(m, "MarkLaws", "Laws as coefficients (ascending powers of depth), and a drop's shape.")
+        .def_readwrite("sigma", &Prior::sigma)
+        .def("__repr__", [](const Prior& v) { return "Prior(" + told(v.value) + ", " + told(v.sigma) + ")"; });
+    as_value(prior);
+    py::class_<MarkLaws> mark_laws(m, "MarkLaws",
+                                   "Laws as coefficients (ascending powers of depth), and a drop's shape.");
+    mark_laws
         .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
                          double widest_per_half, double front_per_half, bool round_tail) {
                  return MarkLaws{std::move(lag),  std::move(tip_gap), std::move(half_width),
@@ -75,31 +162,44 @@ the pass, followed on their circles.)")
         .def_property_readonly("half_width", frozen_copy(&MarkLaws::half_width))
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
         .def_readonly("front_per_half", &MarkLaws::front_per_half)
-        .def_readonly("round_tail", &MarkLaws::round_tail);
-    py::class_<LawPrior>(m, "LawPrior", R"(Laws that are known beforehand: laws is the mean.
+        .def_readonly("round_tail", &MarkLaws::round_tail)
+        .def("__repr__", [](const MarkLaws& v) {
+            return "<MarkLaws: lag of " + counted(v.lag.size(), "term") + ", tip gap of " +
+                   std::to_string(v.tip_gap.size()) + ", half width of " + std::to_string(v.half_width.size()) + ">";
+        });
+    as_fixed_value(mark_laws);
+    py::class_<LawPrior> law_prior(m, "LawPrior", R"(Laws that are known beforehand: laws is the mean.
 
 rows (k, n): each, over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and
-widest_per_half, gives a standard normal number of what they differ from it.)")
+widest_per_half, gives a standard normal number of what they differ from it.)");
+    law_prior
         .def(py::init([](MarkLaws laws, std::vector<std::vector<double>> rows) {
                  return LawPrior{std::move(laws), std::move(rows)};
              }),
-             py::arg("laws"), py::arg("rows"));
-    py::class_<Machine>(m, "Machine", R"(How a machine takes the tool elsewhere than it was told.
+             py::arg("laws"), py::arg("rows"))
+        .def("__repr__", [](const LawPrior& v) { return "<LawPrior: " + counted(v.rows.size(), "row") + ">"; });
+    as_fixed_value(law_prior);
+    py::class_<Machine> machine(m, "Machine", R"(How a machine takes the tool elsewhere than it was told.
 
 Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
-is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash.)")
-        .def_property_readonly("lean_mm_per_mm", frozen_copy(&Machine::lean_mm_per_mm))
+is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash.)");
+    machine.def_property_readonly("lean_mm_per_mm", frozen_copy(&Machine::lean_mm_per_mm))
         .def_property_readonly("scale", frozen_copy(&Machine::scale))
         .def_readonly("skew", &Machine::skew)
         .def_property_readonly("tilt_mm_per_mm", frozen_copy(&Machine::tilt_mm_per_mm))
-        .def_property_readonly("backlash_mm", frozen_copy(&Machine::backlash_mm));
-    py::class_<MarkOptions>(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
+        .def_property_readonly("backlash_mm", frozen_copy(&Machine::backlash_mm))
+        .def("__repr__", [](const Machine& v) {
+            return "<Machine: scale " + told(v.scale[0]) + " and " + told(v.scale[1]) + ", skew " + told(v.skew) +
+                   ", backlash " + told(v.backlash_mm[0]) + " and " + told(v.backlash_mm[1]) + " mm>";
+        });
+    as_fixed_value(machine);
+    py::class_<MarkOptions> mark_options(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
 
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
 widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
 and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
-machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.)")
-        .def(py::init<>())
+machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.)");
+    mark_options.def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
         .def_readwrite("lag_terms", &MarkOptions::lag_terms)
         .def_readwrite("tip_gap_terms", &MarkOptions::tip_gap_terms)
@@ -107,7 +207,9 @@ machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to 
         .def_readwrite("widest_per_half", &MarkOptions::widest_per_half)
         .def_readwrite("front_per_half", &MarkOptions::front_per_half)
         .def_readwrite("round_tail", &MarkOptions::round_tail)
-        .def_readwrite("laws", &MarkOptions::laws)
+        .def_property(
+            "laws", [](const MarkOptions& o) { return o.laws; },
+            [](MarkOptions& o, std::optional<LawPrior> laws) { o.laws = std::move(laws); })
         .def_readwrite("height_mm", &MarkOptions::height_mm)
         .def_readwrite("placement_mm", &MarkOptions::placement_mm)
         .def_readwrite("turn_rad", &MarkOptions::turn_rad)
@@ -119,20 +221,28 @@ machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to 
         .def_readwrite("spacing_mm", &MarkOptions::spacing_mm)
         .def_readwrite("noise_mm", &MarkOptions::noise_mm)
         .def_readwrite("noise_length_mm", &MarkOptions::noise_length_mm)
-        .def_readwrite("most_iterations", &MarkOptions::most_iterations);
-    py::class_<MarkMiss>(m, "MarkMiss", "One painted mark against its prediction.")
-        .def_readonly("point_mm", &MarkMiss::point_mm)
+        .def_readwrite("most_iterations", &MarkOptions::most_iterations)
+        .def("__repr__", [](const MarkOptions& v) {
+            return "<MarkOptions: to depth " + told(v.deepest_mm) + " mm, a point every " + told(v.spacing_mm) + " mm>";
+        });
+    as_value(mark_options);
+    py::class_<MarkMiss> mark_miss(m, "MarkMiss", "One painted mark against its prediction.");
+    mark_miss.def_readonly("point_mm", &MarkMiss::point_mm)
         .def_property_readonly("distance_mm", frozen_copy(&MarkMiss::distance_mm))
         .def_property_readonly("displacement_mm", frozen_copy(&MarkMiss::displacement_mm))
         .def_readonly("way_mm", &MarkMiss::way_mm)
         .def_readonly("rms_mm", &MarkMiss::rms_mm)
-        .def_readonly("outlier", &MarkMiss::outlier);
-    py::class_<MarkFit>(m, "MarkFit", R"(A brush fitted to marks.
+        .def_readonly("outlier", &MarkMiss::outlier)
+        .def("__repr__", [](const MarkMiss& v) {
+            return "<MarkMiss: rms " + told(v.rms_mm) + " mm over " + counted(v.distance_mm.size(), "point") + ">";
+        });
+    as_fixed_value(mark_miss);
+    py::class_<MarkFit> mark_fit(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
 front_per_half, height, shift x and y, turn; where any of the machine was asked for lean x and y, scale x and y, skew,
-tilt x and y, backlash x and y.)")
-        .def_readonly("laws", &MarkFit::laws)
+tilt x and y, backlash x and y.)");
+    mark_fit.def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)
         .def_readonly("turn_rad", &MarkFit::turn_rad)
@@ -147,9 +257,14 @@ tilt x and y, backlash x and y.)")
         .def_readonly("slim", &MarkFit::slim)
         .def_property_readonly("remarks", frozen_copy(&MarkFit::remarks))
         .def_readonly("iterations", &MarkFit::iterations)
-        .def_readonly("converged", &MarkFit::converged);
+        .def_readonly("converged", &MarkFit::converged)
+        .def("__repr__", [](const MarkFit& v) {
+            return "<MarkFit to " + counted(v.marks.size(), "mark") + ": edges within " + told(v.noise_mm) +
+                   " mm (1 sigma)" + (v.converged ? ">" : ", not converged>");
+        });
+    as_fixed_value(mark_fit);
     m.def("fit_marks", &fit_marks, py::arg("marks"), py::arg("start") = std::optional<MarkLaws>(),
-          py::arg("options") = MarkOptions(), unlocked,
+          py::arg_v("options", MarkOptions(), "MarkOptions()"), unlocked,
           R"(Laws from painted marks and the TCP's way that painted each, by robust least squares through the simulator.
 
 start: MarkLaws to begin from; without them lags of many lengths are tried. Error: no mark, numbers that are not finite,

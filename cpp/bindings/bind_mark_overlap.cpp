@@ -3,12 +3,16 @@
 
 void bind_mark_overlap(py::module_& m) {
     using namespace brushsvg;
-    py::class_<CommonArea>(m, "CommonArea", "Areas [mm^2] of paint and wanted mark.")
-        .def(py::init([](double common_mm2, double together_mm2) { return CommonArea{common_mm2, together_mm2}; }),
+    py::class_<CommonArea> type(m, "CommonArea", "Areas [mm^2] of paint and wanted mark.");
+    type.def(py::init([](double common_mm2, double together_mm2) { return CommonArea{common_mm2, together_mm2}; }),
              py::arg("common_mm2"), py::arg("together_mm2"))
         .def_readonly("common_mm2", &CommonArea::common_mm2)
         .def_readonly("together_mm2", &CommonArea::together_mm2)
-        .def_property_readonly("overlap", &CommonArea::overlap);
+        .def_property_readonly("overlap", &CommonArea::overlap)
+        .def("__repr__", [](const CommonArea& a) {
+            return "<CommonArea: " + told(a.common_mm2) + " of " + told(a.together_mm2) + " mm^2>";
+        });
+    as_fixed_value(type);
     m.def(
         "common_area",
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {

@@ -9,7 +9,7 @@ template <class T>
 auto column(std::vector<T> brushsvg::PassMarks::* member) {
     return [member](const brushsvg::PassMarks& marks) {
         const auto& values = marks.*member;
-        return frozen(py::array_t<T>(py::ssize_t(values.size()), values.data()));
+        return as_typed<py::array_t<T>>(frozen(py::array_t<T>(py::ssize_t(values.size()), values.data())));
     };
 }
 
@@ -17,8 +17,9 @@ auto column(std::vector<T> brushsvg::PassMarks::* member) {
 
 void bind_marks(py::module_& m) {
     using namespace brushsvg;
-    py::class_<PassMarks>(m, "PassMarks", "What the patch does during one pass; parallel rows (mm, rad), read only.")
-        .def(py::init<>())
+    py::class_<PassMarks> one(m, "PassMarks",
+                              "What the patch does during one pass; parallel rows (mm, rad), read only.");
+    one.def(py::init<>())
         .def_readwrite("stroke", &PassMarks::stroke)
         .def_property_readonly("pose", column(&PassMarks::pose))
         .def_property_readonly("tcp_mm", [](const PassMarks& p) -> const Ring& { return p.tcp_mm; })
@@ -29,18 +30,34 @@ void bind_marks(py::module_& m) {
                                [](const PassMarks& p) {
                                    py::array_t<bool> out(py::ssize_t(p.taut.size()));
                                    std::copy(p.taut.begin(), p.taut.end(), out.mutable_data());
-                                   return frozen(out);
+                                   return as_typed<py::array_t<bool>>(frozen(out));
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
-                      [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); });
-    py::class_<Marks>(m, "Marks",
-                      R"(What is painted: marks.json as a value.
+                      [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); })
+        .def("__repr__", [](const PassMarks& p) {
+            double deepest = 0.0;
+            for (const double depth : p.depth_mm) deepest = std::max(deepest, depth);
+            return "<PassMarks " + quoted(p.stroke) + ": " + counted(p.pose.size(), "row") + ", at most " +
+                   told(deepest) + " mm deep, " + counted(p.outline_mm.size(), "ring") + ">";
+        });
+    as_value(one);
+    py::class_<Marks> marks(m, "Marks",
+                            R"(What is painted: marks.json as a value.
 
 passes: a tuple with a PassMarks per stroke; outline_mm: a tuple of rings [(n, 2) mm] of all paint together, filled by trace_outlines, outer
-ones counter-clockwise, holes clockwise, unclosed.)")
-        .def(py::init<>())
+ones counter-clockwise, holes clockwise, unclosed.)");
+    marks.def(py::init<>())
         .def_property("passes", parts(&Marks::passes), replace(&Marks::passes))
         .def_property("outline_mm", frozen_copy(&Marks::outline_mm),
-                      [](Marks& marks, Rings rings) { marks.outline_mm = std::move(rings); });
+                      [](Marks& marks, Rings rings) { marks.outline_mm = std::move(rings); })
+        .def("__repr__", [](const Marks& m) {
+            double area_mm2 = 0.0;
+            for (const Ring& ring : m.outline_mm) area_mm2 += signed_area(ring);
+            return "<Marks of " + counted(m.passes.size(), "pass") + ": " +
+                   (m.outline_mm.empty()
+                        ? "no outline>"
+                        : counted(m.outline_mm.size(), "ring") + ", " + told(area_mm2) + " mm^2 painted>");
+        });
+    as_value(marks);
 }

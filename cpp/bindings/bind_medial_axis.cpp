@@ -5,11 +5,16 @@
 
 void bind_medial_axis(py::module_& m) {
     using namespace brushsvg;
-    py::class_<AxisBranch>(m, "AxisBranch", "A stretch of the medial axis between two nodes.")
-        .def_readonly("start", &AxisBranch::from)
+    py::class_<AxisBranch> type(m, "AxisBranch", "A stretch of the medial axis between two nodes.");
+    type.def_readonly("start", &AxisBranch::from)
         .def_readonly("end", &AxisBranch::to)
         .def_property_readonly("line", frozen_copy(&AxisBranch::line))
-        .def_property_readonly("part", frozen_copy(&AxisBranch::part));
+        .def_property_readonly("part", frozen_copy(&AxisBranch::part))
+        .def("__repr__", [](const AxisBranch& b) {
+            return "<AxisBranch from node " + std::to_string(b.from) + " to " + std::to_string(b.to) + ": " +
+                   counted(std::size_t(b.line.rows()), "point") + ">";
+        });
+    as_fixed_value(type);
     m.def(
         "medial_axis",
         [](const Rings& rings, double least_share, std::optional<double> least_limb) {

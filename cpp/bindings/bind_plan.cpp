@@ -3,14 +3,14 @@
 
 void bind_plan(py::module_& m) {
     using namespace brushsvg;
-    py::class_<Arc>(m, "Arc",
-                    R"(Poses first to last lie on a circle about centre_mm (x, y), at constant depth.
+    py::class_<Arc> arc(m, "Arc",
+                        R"(Poses first to last lie on a circle about centre_mm (x, y), at constant depth.
 
-direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 180 degrees apart on it.)")
-        .def(py::init([](std::int64_t first, std::int64_t last, const Eigen::Vector2d& centre_mm, int direction) {
-                 return Arc{first, last, centre_mm, direction};
-             }),
-             py::arg("first"), py::arg("last"), py::arg("centre_mm"), py::arg("direction"))
+direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 180 degrees apart on it.)");
+    arc.def(py::init([](std::int64_t first, std::int64_t last, const Eigen::Vector2d& centre_mm, int direction) {
+                return Arc{first, last, centre_mm, direction};
+            }),
+            py::arg("first"), py::arg("last"), py::arg("centre_mm"), py::arg("direction"))
         .def_readonly("first", &Arc::first)
         .def_readonly("last", &Arc::last)
         .def_property_readonly("centre_mm", [](const Arc& a) { return std::pair(a.centre_mm.x(), a.centre_mm.y()); })
@@ -20,23 +20,24 @@ direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 1
                    std::to_string(a.centre_mm.x()) + ", " + std::to_string(a.centre_mm.y()) + "), " +
                    std::to_string(a.direction) + ")";
         });
-    py::class_<Pass>(m, "Pass", R"(One stroke's motion.
+    as_fixed_value(arc);
+    py::class_<Pass> one(m, "Pass", R"(One stroke's motion.
 
 stroke: the name of what it paints, made of origin, a StrokeId, and set by a name or one.
 poses_mm: (n, 3) x, y, z [mm], straight moves in between, depth linear along each; read-only and not copied when read,
 to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
 the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
 load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
-file, as JSON.)")
-        .def(py::init([](StrokeId stroke, Poses poses_mm, double speed_mm_s, std::string layer, std::string colour,
-                         Settings settings, std::string extra, std::vector<Arc> arcs, int load) {
-                 return Pass{std::move(stroke), std::move(poses_mm), std::move(arcs),     speed_mm_s,
-                             std::move(layer),  std::move(colour),   std::move(settings), load,
-                             std::move(extra)};
-             }),
-             py::arg("stroke") = "", py::arg("poses_mm") = Poses(0, 3), py::arg("speed_mm_s") = 20.0,
-             py::arg("layer") = "", py::arg("colour") = "", py::arg("settings") = Settings{}, py::arg("extra") = "{}",
-             py::arg("arcs") = std::vector<Arc>{}, py::arg("load") = 0)
+file, as JSON.)");
+    one.def(py::init([](StrokeId stroke, Poses poses_mm, double speed_mm_s, std::string layer, std::string colour,
+                        Settings settings, std::string extra, std::vector<Arc> arcs, int load) {
+                return Pass{std::move(stroke), std::move(poses_mm), std::move(arcs),     speed_mm_s,
+                            std::move(layer),  std::move(colour),   std::move(settings), load,
+                            std::move(extra)};
+            }),
+            py::arg("stroke") = "", py::arg("poses_mm") = Poses(0, 3), py::arg("speed_mm_s") = 20.0,
+            py::arg("layer") = "", py::arg("colour") = "", py::arg("settings") = Settings{}, py::arg("extra") = "{}",
+            py::arg("arcs") = std::vector<Arc>{}, py::arg("load") = 0)
         .def_property(
             "stroke", [](const Pass& p) { return p.stroke.name(); },
             [](Pass& p, StrokeId stroke) { p.stroke = std::move(stroke); })
@@ -52,13 +53,25 @@ file, as JSON.)")
             "settings", [](const Pass& p) { return p.settings; },
             [](Pass& p, Settings settings) { p.settings = std::move(settings); })
         .def_readwrite("load", &Pass::load)
-        .def_readwrite("extra", &Pass::extra);
-    py::class_<Plan>(m, "Plan",
-                     R"(TCP poses for every stroke, in the frame of the paper: plan.json as a value.
+        .def_readwrite("extra", &Pass::extra)
+        .def("__repr__", [](const Pass& p) {
+            const Eigen::Index n = p.poses_mm.rows();
+            double length = 0.0, deepest = 0.0;
+            for (Eigen::Index i = 0; i < n; ++i) {
+                if (i > 0) length += (p.poses_mm.row(i) - p.poses_mm.row(i - 1)).head<2>().norm();
+                deepest = std::max(deepest, -p.poses_mm(i, 2));
+            }
+            return "<Pass " + quoted(p.stroke.name()) + ": " + counted(std::size_t(n), "pose") +
+                   (p.arcs.empty() ? "" : ", " + counted(p.arcs.size(), "arc")) + ", " + told(length) +
+                   " mm long, at most " + told(deepest) + " mm deep, " + told(p.speed_mm_s) + " mm/s>";
+        });
+    as_value(one);
+    py::class_<Plan> plan(m, "Plan",
+                          R"(TCP poses for every stroke, in the frame of the paper: plan.json as a value.
 
 brush, brush_sha256: what it was made for; sheet_mm: (w, h); passes: a tuple with one Pass per stroke, in painting
-order, to be set as a whole; extra: unknown keys of the file, as JSON.)")
-        .def(py::init([](std::string brush, std::string brush_sha256, std::array<double, 2> sheet_mm,
+order, to be set as a whole; extra: unknown keys of the file, as JSON.)");
+    plan.def(py::init([](std::string brush, std::string brush_sha256, std::array<double, 2> sheet_mm,
                          std::vector<Pass> passes, std::string extra) {
                  return Plan{std::move(brush), std::move(brush_sha256), sheet_mm, std::move(passes), std::move(extra)};
              }),
@@ -69,5 +82,12 @@ order, to be set as a whole; extra: unknown keys of the file, as JSON.)")
         .def_property("sheet_mm", frozen_copy(&Plan::sheet_mm),
                       [](Plan& p, std::array<double, 2> sheet_mm) { p.sheet_mm = sheet_mm; })
         .def_property("passes", parts(&Plan::passes), replace(&Plan::passes))
-        .def_readwrite("extra", &Plan::extra);
+        .def_readwrite("extra", &Plan::extra)
+        .def("__repr__", [](const Plan& p) {
+            std::size_t poses = 0;
+            for (const Pass& each : p.passes) poses += std::size_t(each.poses_mm.rows());
+            return "<Plan for brush " + quoted(p.brush) + ": " + counted(p.passes.size(), "pass") + ", " +
+                   counted(poses, "pose") + ", sheet " + told(p.sheet_mm[0]) + " x " + told(p.sheet_mm[1]) + " mm>";
+        });
+    as_value(plan);
 }

@@ -5,12 +5,12 @@
 
 void bind_profile(py::module_& m) {
     using brushsvg::Profile;
-    py::class_<Profile>(
+    py::class_<Profile> type(
         m, "Profile", R"(One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).
 
 A value: it is not changed, but another one made. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values
-to spare.)")
-        .def(py::init([](std::vector<double> coefficients, double floor, double floor_slope,
+to spare.)");
+    type.def(py::init([](std::vector<double> coefficients, double floor, double floor_slope,
                          std::optional<std::array<double, 2>> calibrated_mm, std::string source, bool assumed,
                          std::vector<double> half_interval_95, std::optional<double> rmse_mm,
                          std::optional<double> degrees_of_freedom, std::string extra) {
@@ -47,5 +47,21 @@ to spare.)")
         .def_property_readonly("half_interval_95", frozen_copy(&Profile::half_interval_95))
         .def_readonly("rmse_mm", &Profile::rmse_mm)
         .def_readonly("degrees_of_freedom", &Profile::degrees_of_freedom)
-        .def_readonly("extra", &Profile::extra);
+        .def_readonly("extra", &Profile::extra)
+        .def("__repr__", [](const Profile& p) {
+            std::string out;
+            for (std::size_t i = 0; i < p.coefficients.size(); ++i) {
+                const double c = p.coefficients[i];
+                if (c == 0.0) continue;
+                out += out.empty() ? (c < 0.0 ? "-" : "") : c < 0.0 ? " - " : " + ";
+                out += told(std::abs(c)) + (i == 0 ? "" : i == 1 ? " d" : " d^" + std::to_string(i));
+            }
+            if (out.empty()) out = "0";
+            if (std::isfinite(p.floor)) out = "max(" + told(p.floor) + " + " + told(p.floor_slope) + " d, " + out + ")";
+            out = "<Profile " + out + " mm at depth d mm";
+            if (p.calibrated_mm)
+                out += ", measured at " + told((*p.calibrated_mm)[0]) + " to " + told((*p.calibrated_mm)[1]) + " mm";
+            return out + (p.assumed ? ", assumed>" : ">");
+        });
+    as_fixed_value(type);
 }

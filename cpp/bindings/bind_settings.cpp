@@ -18,12 +18,12 @@ py::dict said(const brushsvg::Settings& settings) {
 
 void bind_settings(py::module_& m) {
     using brushsvg::Settings;
-    py::class_<Settings>(m, "Settings",
-                         R"(What a drawing says of an element to brushsvg itself; None where it says nothing.
+    py::class_<Settings> type(m, "Settings",
+                              R"(What a drawing says of an element to brushsvg itself; None where it says nothing.
 
 brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/drawings.md; kind: of a stroke of the calibration
-chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.)")
-        .def(py::init([](std::optional<std::string> brush, std::optional<std::string> end,
+chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.)");
+    type.def(py::init([](std::optional<std::string> brush, std::optional<std::string> end,
                          std::optional<std::string> kind, std::optional<int> order, std::optional<int> passes,
                          std::optional<bool> reload, std::optional<bool> skip, std::optional<double> speed_mm_s,
                          std::optional<std::string> start, std::optional<double> width_mm, std::string extra) {
@@ -46,17 +46,12 @@ chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be chang
         .def_readonly("start", &Settings::start)
         .def_readonly("width_mm", &Settings::width_mm)
         .def_readonly("extra", &Settings::extra)
-        .def("__eq__",
-             [](const Settings& self, const py::object& other) {
-                 return py::isinstance<Settings>(other) && said(self).equal(said(other.cast<const Settings&>()));
-             })
-        .def("__hash__", [](const Settings& self) { return py::hash(py::tuple(said(self).attr("items")())); })
         .def(
             "replaced",
             [](const Settings& self, const py::kwargs& fields) {
                 py::dict all = said(self);
                 all.attr("update")(fields);
-                return py::type::of<Settings>()(**all);
+                return py::type::of<Settings>()(**all).cast<Settings>();
             },
             "A copy in which the fields that are given are these.")
         .def("__repr__", [](const Settings& self) {
@@ -64,4 +59,5 @@ chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be chang
             for (const auto& [name, value] : said(self)) parts.append(py::str("{}={!r}").format(name, value));
             return py::str("Settings({})").format(py::str(", ").attr("join")(parts));
         });
+    as_fixed_value(type);
 }

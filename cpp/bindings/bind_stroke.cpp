@@ -1,23 +1,25 @@
 #include "bindings.hpp"
+#include "brushsvg/curve_fit.hpp"
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/target_mark.hpp"
 
 void bind_stroke(py::module_& m) {
     using namespace brushsvg;
-    py::class_<StrokeId>(m, "StrokeId", R"(Where in a drawing a stroke comes from.
+    py::class_<StrokeId> id(m, "StrokeId", R"(Where in a drawing a stroke comes from.
 
 element: its id; part: which of its sub-paths, 0 for the only one; repeat: which of the times that it is painted; lane:
 which of the passes that fill a shape wider than the brush; load: which of the loads of paint. name: element/part#repeat
-~lane+load, each where it says something; nobody takes it apart again.)")
-        .def(py::init<std::string, int, int, int, int>(), py::arg("element"), py::arg("part") = 0,
-             py::arg("repeat") = 1, py::arg("lane") = 1, py::arg("load") = 1)
+~lane+load, each where it says something; nobody takes it apart again.)");
+    id.def(py::init<std::string, int, int, int, int>(), py::arg("element"), py::arg("part") = 0, py::arg("repeat") = 1,
+           py::arg("lane") = 1, py::arg("load") = 1)
         .def_readonly("element", &StrokeId::element)
         .def_readonly("part", &StrokeId::part)
         .def_readonly("repeat", &StrokeId::repeat)
         .def_readonly("lane", &StrokeId::lane)
         .def_readonly("load", &StrokeId::load)
         .def_property_readonly("name", &StrokeId::name)
-        .def("__repr__", [](const StrokeId& id) { return "StrokeId(" + id.name() + ")"; });
+        .def("__repr__", [](const StrokeId& id) { return "<StrokeId " + quoted(id.name()) + ">"; });
+    as_fixed_value(id);
     py::implicitly_convertible<std::string, StrokeId>();
     using Knots = std::vector<std::pair<double, double>>;
     const auto knots_of = [](const Stroke& s) {
@@ -29,12 +31,12 @@ which of the passes that fill a shape wider than the brush; load: which of the l
         s.half_width.clear();
         for (const auto& [at, h] : knots) s.half_width.push_back({at, h});
     };
-    py::class_<Stroke>(m, "Stroke",
-                       R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
+    py::class_<Stroke> type(m, "Stroke",
+                            R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
 id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-set as a whole.)")
-        .def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
+set as a whole.)");
+    type.def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, Settings settings) {
                  Stroke s;
                  s.id = std::move(id);
@@ -56,7 +58,12 @@ set as a whole.)")
             "middle_mm", [](const Stroke& s) -> const Cubics& { return s.middle_mm; }, replace(&Stroke::middle_mm))
         .def_readwrite("closed", &Stroke::closed)
         .def_property(
-            "half_width", [knots_of](const Stroke& s) { return frozen(py::cast(knots_of(s))); }, set_knots)
+            "half_width",
+            [knots_of](const Stroke& s) {
+                using Knot = py::typing::Tuple<py::float_, py::float_>;
+                return as_typed<py::typing::Tuple<Knot, py::ellipsis>>(frozen(py::cast(knots_of(s))));
+            },
+            set_knots)
         .def_property("wanted_mm", frozen_copy(&Stroke::wanted_mm),
                       [](Stroke& s, Rings rings) { s.wanted_mm = std::move(rings); })
         .def_readwrite("layer", &Stroke::layer)
@@ -64,14 +71,58 @@ set as a whole.)")
         .def_property(
             "settings", [](const Stroke& s) { return s.settings; },
             [](Stroke& s, Settings settings) { s.settings = std::move(settings); })
+        .def_static(
+            "from_points",
+            [](const Ring& points_mm, const Numbers& width_mm, const std::string& name,
+               std::optional<double> tolerance_mm) {
+                const auto& widths = width_mm.values;
+                const py::ssize_t n = points_mm.rows();
+                if (widths.ndim() > 1 || (widths.ndim() == 1 && widths.size() != n))
+                    throw Error("sizes-differ",
+                                "a width in mm is needed, or one for each of " + std::to_string(n) + " points, not " +
+                                    std::to_string(widths.size()),
+                                name);
+                const auto given = py::array_t < double, py::array::c_style | py::array::forcecast > (widths);
+                WideLine line(n, 3);
+                for (py::ssize_t i = 0; i < n; ++i)
+                    line.row(i) << points_mm.row(i), 0.5 * given.data()[given.ndim() == 0 ? 0 : i];
+                const Unlocked unlocked;
+                return stroke_along(name, line, tolerance_mm);
+            },
+            py::arg("points_mm"), py::arg("width_mm"), py::arg("name") = "stroke1", py::kw_only(),
+            py::arg("tolerance_mm") = py::none(),
+            R"(A stroke through points (n, 2) [mm], y up, in painting direction; closed where the last is the first again.
+
+width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
+point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
+where the points lie too far apart for it.
+
+Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
+is not positive.)")
         .def(
             "replaced",
             [](const Stroke& s, const py::kwargs& fields) {
                 py::object made = py::cast(Stroke(s));
                 for (const auto& [name, value] : fields) py::setattr(made, name, value);
-                return made;
+                return made.cast<Stroke>();
             },
-            "A copy in which the fields that are given are these.");
+            "A copy in which the fields that are given are these.")
+        .def("__repr__", [](const Stroke& s) {
+            double length = 0.0;
+            for (Eigen::Index i = 0; i < s.middle_mm.rows(); ++i) length += arc_length(s.middle_mm, i, 0.0, 1.0);
+            std::string width = "no width";
+            if (!s.half_width.empty()) {
+                const auto [least, most] = std::minmax_element(
+                    s.half_width.begin(), s.half_width.end(),
+                    [](const WidthKnot& a, const WidthKnot& b) { return a.half_width_mm < b.half_width_mm; });
+                width = told(2.0 * least->half_width_mm);
+                if (least->half_width_mm != most->half_width_mm) width += " to " + told(2.0 * most->half_width_mm);
+                width += " mm wide";
+            }
+            return "<Stroke " + quoted(s.id.name()) + ": " + counted(std::size_t(s.middle_mm.rows()), "cubic") + ", " +
+                   told(length) + " mm long, " + width + (s.closed ? ", closed>" : ">");
+        });
+    as_value(type);
     m.def(
         "flatten",
         [](const Stroke& stroke, double tolerance_mm) {

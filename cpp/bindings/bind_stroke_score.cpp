@@ -4,19 +4,29 @@
 
 void bind_stroke_score(py::module_& m) {
     using namespace brushsvg;
-    py::class_<WorstPlace>(m, "WorstPlace", "Where paint and drawing differ most, and by how much.")
-        .def_property_readonly("at_mm", frozen_copy(&WorstPlace::at_mm))
+    py::class_<WorstPlace> place(m, "WorstPlace", "Where paint and drawing differ most, and by how much.");
+    place.def_property_readonly("at_mm", frozen_copy(&WorstPlace::at_mm))
         .def_readonly("is_missing", &WorstPlace::is_missing)
-        .def_readonly("area_mm2", &WorstPlace::area_mm2);
-    py::class_<StrokeScore>(m, "Verdict",
-                            R"(How well a pass paints its stroke.
+        .def_readonly("area_mm2", &WorstPlace::area_mm2)
+        .def("__repr__", [](const WorstPlace& w) {
+            return "<WorstPlace at (" + told(w.at_mm[0]) + ", " + told(w.at_mm[1]) + ") mm: " + told(w.area_mm2) +
+                   " mm^2 too " + (w.is_missing ? "little>" : "much>");
+        });
+    as_fixed_value(place);
+    py::class_<StrokeScore> type(m, "Verdict",
+                                 R"(How well a pass paints its stroke.
 
 overlap: common over joint area; width_error_mm: mean absolute difference of widths across the line, None where none can
-be measured; excess_turning: of the mark's outline, in full turns; worst: a WorstPlace.)")
-        .def_readonly("overlap", &StrokeScore::overlap)
+be measured; excess_turning: of the mark's outline, in full turns; worst: a WorstPlace.)");
+    type.def_readonly("overlap", &StrokeScore::overlap)
         .def_readonly("excess_turning", &StrokeScore::excess_turning)
         .def_readonly("width_error_mm", &StrokeScore::width_error_mm)
-        .def_readonly("worst", &StrokeScore::worst);
+        .def_readonly("worst", &StrokeScore::worst)
+        .def("__repr__", [](const StrokeScore& s) {
+            const std::string width = s.width_error_mm ? told(*s.width_error_mm) + " mm off in width" : "no width";
+            return "<Verdict: overlap " + told(s.overlap) + ", " + width + ">";
+        });
+    as_fixed_value(type);
     m.def(
         "verdicts",
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {

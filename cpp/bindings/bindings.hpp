@@ -10,6 +10,7 @@
 #include "brushsvg/error.hpp"
 #include "converters.hpp"
 #include "parallel.hpp"
+#include "value_type.hpp"
 
 void bind_profile(py::module_& m);
 void bind_student_t(py::module_& m);
@@ -63,17 +64,62 @@ inline py::object frozen(const py::object& copy) {
     return copy;
 }
 
+/// What `frozen` makes of it, as type checkers are told.
+template <class Value>
+struct FrozenType {
+    using type = Value;
+};
+template <>
+struct FrozenType<double> {
+    using type = py::float_;
+};
+template <>
+struct FrozenType<int> {
+    using type = py::int_;
+};
+template <>
+struct FrozenType<std::string> {
+    using type = py::str;
+};
+template <int Rows, int Columns, int Options>
+struct FrozenType<Eigen::Matrix<double, Rows, Columns, Options>> {
+    using type = py::array_t<double>;
+};
+template <class Value>
+struct FrozenType<std::vector<Value>> {
+    using type = py::typing::Tuple<typename FrozenType<Value>::type, py::ellipsis>;
+};
+template <class Value, std::size_t N>
+struct FrozenType<std::array<Value, N>> {
+    using type = py::typing::Tuple<typename FrozenType<Value>::type, py::ellipsis>;
+};
+template <class Value>
+struct FrozenType<std::optional<Value>> {
+    using type = py::typing::Optional<typename FrozenType<Value>::type>;
+};
+
+/// The same object, said to be of a type.
+template <class Type>
+Type as_typed(const py::object& value) {
+    return py::reinterpret_borrow<Type>(value);
+}
+
 /// What a member holds, as a frozen copy.
 template <class Owner, class Member>
 auto frozen_copy(Member Owner::* member) {
-    return [member](const Owner& owner) { return frozen(py::cast(owner.*member, py::return_value_policy::copy)); };
+    return [member](const Owner& owner) {
+        return as_typed<typename FrozenType<Member>::type>(
+            frozen(py::cast(owner.*member, py::return_value_policy::copy)));
+    };
 }
 
 /// A member's values themselves, in a tuple: their own fields may be set, the tuple cannot be added to.
 template <class Owner, class Value>
 auto parts(std::vector<Value> Owner::* member) {
     return [member](const py::object& owner) {
-        return py::tuple(py::cast(owner.cast<Owner&>().*member, py::return_value_policy::reference_internal, owner));
+        using Parts = py::typing::Tuple<Value, py::ellipsis>;
+        return as_typed<Parts>(
+            py::tuple(py::cast(owner.cast<Owner&>().*member, py::return_value_policy::reference_internal, owner)));
     };
 }
 

@@ -7,6 +7,7 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "nearest_on_polyline.hpp"
 #include "tolerance.hpp"
 
 namespace brushsvg {
@@ -211,6 +212,101 @@ FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
     result.half_width.push_back(all.front());
     few(all, 0, all.size() - 1, 0.5 * tolerance_mm, result.half_width);
     return result;
+}
+
+namespace {
+
+constexpr int kMostFits = 2000;  // of one line: what is left then are straight lines
+
+/// The points that differ from the one before. Error for what no stroke is.
+WideLine need_line(const StrokeId& id, const WideLine& points) {
+    WideLine line(points.rows(), 3);
+    Index n = 0;
+    for (Index i = 0; i < points.rows(); ++i) {
+        const std::string which = "point " + std::to_string(i);
+        if (!(points.row(i).head<2>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
+            throw Error("geometry-out-of-range", which + " is not finite, or beyond 1e6 mm", id);
+        const double width = 2.0 * points(i, 2);
+        if (!(width > 0.0 && width <= 1e6))
+            throw Error(
+                "out-of-range",
+                "the width at " + which + ", " + std::to_string(width) + " mm, is outside the range (0, 1e6] mm", id,
+                width, std::array<double, 2>{0.0, 1e6});
+        if (n == 0 || points.row(i).head<2>() != line.row(n - 1).head<2>()) line.row(n++) = points.row(i);
+    }
+    if (n < 2)
+        throw Error("stroke-empty",
+                    "a stroke needs two points that differ, and there are " + std::to_string(points.rows()) + " points",
+                    id);
+    return line.topRows(n);
+}
+
+/// Cubics along rows first to last, appended: split at the point that is passed farthest off.
+void smooth(const WideLine& line, Index first, Index last, double tolerance, bool closed, int& fits,
+            std::vector<Eigen::Matrix<double, 1, 8>>& out) {
+    const auto straight = [&](Index i) {
+        const Eigen::RowVector2d a = line.row(i).head<2>(), b = line.row(i + 1).head<2>(), d = (b - a) / 3.0;
+        out.emplace_back();
+        out.back() << a, a + d, b - d, b;
+    };
+    std::vector<std::array<Index, 2>> ahead{{first, last}};
+    while (!ahead.empty()) {
+        const auto [from, to] = ahead.back();
+        ahead.pop_back();
+        checkpoint();
+        if (to == from + 1 || fits >= kMostFits) {
+            for (Index i = from; i < to; ++i) straight(i);
+            continue;
+        }
+        ++fits;
+        Stroke part;
+        part.middle_mm = fit_curve(line.middleRows(from, to - from + 1), 0.5 * tolerance, closed).middle_mm;
+        part.half_width = {{0.0, 1.0}};
+        const MiddlePolyline way = flatten(part, 0.1 * tolerance);
+        Nearest<MiddlePolyline> nearest(way);
+        double most = 0.9 * tolerance;  // the way is not the curve itself
+        Index worst = -1;
+        for (Index i = from + 1; i < to; ++i) {
+            const double off = nearest.distance(line.row(i).head<2>().transpose());
+            if (off <= most) continue;
+            most = off;
+            worst = i;
+        }
+        if (worst < 0) {
+            if (part.middle_mm.rows() > to - from)  // finer than the points lie: the fit follows their chords
+                for (Index i = from; i < to; ++i) straight(i);
+            else
+                for (Index i = 0; i < part.middle_mm.rows(); ++i) out.emplace_back(part.middle_mm.row(i));
+            continue;
+        }
+        closed = false;
+        ahead.push_back({worst, to});
+        ahead.push_back({from, worst});
+    }
+}
+
+}  // namespace
+
+Stroke stroke_along(const StrokeId& id, const WideLine& points, std::optional<double> tolerance_mm) {
+    if (tolerance_mm) require_tolerance(*tolerance_mm, id);
+    const WideLine line = need_line(id, points);
+    const Index last = line.rows() - 1;
+    Stroke stroke;
+    stroke.id = id;
+    stroke.closed = last > 1 && line.row(0).head<2>() == line.row(last).head<2>();
+    std::vector<Eigen::Matrix<double, 1, 8>> cubics;
+    int fits = tolerance_mm ? 0 : kMostFits;
+    smooth(line, 0, last, tolerance_mm.value_or(1.0), stroke.closed, fits, cubics);
+    stroke.middle_mm.resize(Index(cubics.size()), 8);
+    for (Index i = 0; i < stroke.middle_mm.rows(); ++i) stroke.middle_mm.row(i) = cubics[std::size_t(i)];
+    std::vector<double> at{0.0};
+    for (Index i = 1; i <= last; ++i) at.push_back(at.back() + (line.row(i) - line.row(i - 1)).head<2>().norm());
+    for (Index i = 0; i <= last; ++i) {
+        const double half = line(i, 2);
+        if (i > 0 && i < last && half == line(i - 1, 2) && half == line(i + 1, 2)) continue;
+        stroke.half_width.push_back({i == last ? 1.0 : at[std::size_t(i)] / at.back(), half});
+    }
+    return stroke;
 }
 
 }  // namespace brushsvg

@@ -14,6 +14,7 @@ TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slo
 if TYPE_CHECKING:  # what the table below resolves to
     from . import laws
     from ._core import (
+        Arc,
         Brush,
         Compensated,
         Marks,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
-    from .brush.library import brush_names, find_brush, save_brush
+    from .brush.library import brush_like, brush_names, find_brush, save_brush
     from .calibration.chart.layout import chart
     from .calibration.from_file import calibrate
     from .calibration.from_widths import new_brush
@@ -63,6 +64,7 @@ _HOME = {
     "path_from_stroke": "strokes.path_objects",
     "path_from_pass": "strokes.path_objects",
     "Cell": "machine.cell",
+    "brush_like": "brush.library",
     "brush_names": "brush.library",
     "cell_names": "machine.cell_file",
     "find_cell": "machine.cell_file",
@@ -121,6 +123,7 @@ __all__ = [
     "Stroke",
     "__version__",
     "area",
+    "brush_like",
     "brush_names",
     "calibrate",
     "cell_names",
@@ -181,6 +184,8 @@ def __getattr__(name: str):
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value
+    if "IPython" in sys.modules:
+        importlib.import_module(".notebook", __name__)
     return value
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the build tree into a new folder and builds the example against it alone, then what uses brushsvg::fit if it
-# was built: run.sh BUILD_DIR SOURCE_DIR
+# Installs the build tree into a new folder and builds the examples against it alone, by find_package and pkg-config, and
+# what uses brushsvg::fit if it was built; then the sources as a part of another project: run.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
 build=$1 source=$2
 work=$(mktemp -d)
@@ -8,14 +8,36 @@ trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --component cpp --prefix "$work/prefix" >/dev/null
 if grep -rEl --include="*.hpp" --include="*.cmake" "boost|nlohmann|pybind" "$work/prefix"; then echo "the installed package needs more than Eigen" >&2; exit 1; fi
 if grep -rEil --include="*.hpp" "ceres" "$work/prefix"; then echo "an installed header needs Ceres" >&2; exit 1; fi
-consume() {  # NAME FLAGS: configure, build, run
+consume() {  # NAME FLAGS: configure, build
   cmake -S "$source/tests/consumer" -B "$work/$1" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}" >/dev/null
   cmake --build "$work/$1" >/dev/null
-  "$work/$1/$1"
 }
 consume consumer -DEXAMPLE="$source/examples/01_word_to_program.cpp"
+"$work/consumer/consumer"
+version=$(sed -n 's/^project(brushsvg VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
+consume consumer -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp" -DVERSION="$version"
+brush=$source/python/brushsvg/data/brushes/round-6.json
+"$work/consumer/consumer" "$brush" "$work/one.ngc"
+grep -q "^M2$" "$work/one.ngc"
+if "$work/consumer/consumer" "$source/README.md" "$work/none.ngc" 2>"$work/said"; then echo "a README is read as a brush" >&2; exit 1; fi
+[ "$(wc -l <"$work/said")" = 1 ] && ! [ -e "$work/none.ngc" ]
+if cmake -S "$source/tests/consumer" -B "$work/newer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" -DEXAMPLE="$work" -DVERSION=9.0 2>"$work/said" >/dev/null; then echo "any version will do" >&2; exit 1; fi
+if command -v pkg-config >/dev/null; then
+  export PKG_CONFIG_PATH
+  PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name brushsvg.pc)")
+  pkg-config --exact-version="$version" brushsvg
+  # shellcheck disable=SC2046
+  c++ -std=c++17 -O1 "$source/examples/02_brush_file_to_gcode.cpp" -o "$work/by_pkg_config" $(pkg-config --cflags --libs brushsvg)
+  "$work/by_pkg_config" "$brush" "$work/two.ngc"
+  cmp "$work/one.ngc" "$work/two.ngc"
+fi
+for how in add_subdirectory FetchContent; do
+  cmake -S "$source/tests/consumer/embedded" -B "$work/$how" -G Ninja -DHOW=$how -DBRUSHSVG="$source" >/dev/null
+  cmake --build "$work/$how" --target program >/dev/null
+done
 if grep -q "^BRUSHSVG_FIT:BOOL=ON" "$build/CMakeCache.txt"; then
   consume fit -DFIT=ON
+  "$work/fit/fit"
 else
   if cmake -S "$source/tests/consumer" -B "$work/none" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" -DFIT=ON 2>"$work/said"; then echo "fits are found where none were built" >&2; exit 1; fi
   grep -q "built without fits" "$work/said"

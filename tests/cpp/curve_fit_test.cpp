@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace brushsvg;
@@ -79,4 +80,35 @@ TEST_CASE("a point, repeated points and a reversal end") {
     const FittedLine there_and_back = fit_curve(back, 0.05, false);
     CHECK(there_and_back.middle_mm.allFinite());
     CHECK(there_and_back.middle_mm.rows() <= 20);
+}
+
+TEST_CASE("a stroke along points passes all of them, corners too") {
+    WideLine points(60, 3);  // half of a circle, a corner, and straight on
+    for (int i = 0; i < 50; ++i)
+        points.row(i) << 20.0 * std::cos(kPi * i / 49.0), 20.0 * std::sin(kPi * i / 49.0), 1.0 + 0.02 * i;
+    for (int i = 50; i < 60; ++i) points.row(i) << -20.0 + 3.0 * (i - 49), 0.0, 2.0;
+    for (const double tolerance : {0.2, 0.02, 0.002}) {
+        const Stroke stroke = stroke_along("s", points, tolerance);
+        CHECK_NOTHROW(check(stroke));
+        CHECK(stroke.middle_mm.rows() <= (tolerance > 0.01 ? 30 : 59));  // their chords are 0.01 mm off the circle
+        const MiddlePolyline line = flatten(stroke, 1e-5);
+        double most = 0.0;
+        for (Eigen::Index i = 0; i < points.rows(); ++i) {
+            const Eigen::Vector2d p = points.row(i).head<2>().transpose();
+            double best = 1e9;
+            for (Eigen::Index k = 1; k < line.rows(); ++k) {
+                const Eigen::Vector2d a = line.row(k - 1).head<2>().transpose(),
+                                      d = line.row(k).head<2>().transpose() - a;
+                const double t = std::min(1.0, std::max(0.0, (p - a).dot(d) / d.squaredNorm()));
+                best = std::min(best, (p - a - t * d).norm());
+            }
+            most = std::max(most, best);
+        }
+        CHECK(most <= tolerance);
+    }
+    const Stroke lines = stroke_along("s", points);
+    CHECK(lines.middle_mm.rows() == 59);
+    CHECK(lines.half_width.front().half_width_mm == 1.0);
+    CHECK(lines.half_width.back().half_width_mm == 2.0);
+    CHECK_FALSE(lines.closed);
 }

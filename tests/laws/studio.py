@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import painter
 import photograph
-from brushsvg._core import MarkLaws
 from photograph import BLUE, INK, Camera
 from shapely import affinity
 from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
+from brushsvg._core import MarkLaws
 from brushsvg.calibration.from_marks import brush_of
 from brushsvg.painted.job_page import job_page
 

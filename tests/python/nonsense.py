@@ -4,9 +4,11 @@ One line per call that ended in anything but a result, brushsvg.Error or, for a 
 TypeError.
 """
 
+import copy
 import inspect
 import itertools
 import operator
+import pickle
 import sys
 import tempfile
 from dataclasses import replace
@@ -246,6 +248,7 @@ ARGUMENTS = {
     "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
+    "brush_like": [["mine", *TEXTS], brushes],
     "brush_names": [],
     "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
     "cell_names": [],
@@ -446,8 +449,22 @@ def all_tracks():
         yield [_core.Track(poses, [1, 1.5, 2], np.where(seen == 15, value, seen), value)]
 
 
-# the same of the fits, which calibration calls
+# the same of what is no name of its own: the fits, which calibration calls, and what makes a value
 FITS = {
+    "Stroke.from_points": [
+        [
+            [(5, 5), (9, 9)],
+            [(5, 5)],
+            [(5, 5)] * 3,
+            [(5, 5), (9, NAN)],
+            [(5, 5), (1e300, 9)],
+            [(0, 0, 0), (9, 9, 9)],
+            [5, 9],
+            np.arange(2000.0).reshape(-1, 2) % 7 * 99,
+        ],
+        [3.0, [3, 4], [3, 4, 5], [3, -4], [3, NAN], np.ones((2, 1)), np.ones((2, 2)), *NUMBERS],
+        ["a", *TEXTS],
+    ],
     "fit_law": [readings, readings, laws_asked],
     "from_angles": [
         [1.5, *NUMBERS],
@@ -478,8 +495,8 @@ def calls(name):
             yield [value] * count
 
 
-def methods(name):
-    """(words for it, callable) of the methods of a class, on values of its own."""
+def values_of(name):
+    """Values of a class, sound and not."""
     made = {
         "Brush": brushes,
         "Stroke": some_strokes,
@@ -487,11 +504,24 @@ def methods(name):
         "Marks": marks,
         "Pass": lambda: (each for one in plans() for each in one.passes),
     }.get(name, tuple)
-    for value in made():
+    return made()
+
+
+def methods(name):
+    """(words for it, callable) of the methods of a class, on values of its own."""
+    for value in values_of(name):
         for attribute in dir(value):
             if attribute.startswith("_"):
                 continue
             yield f"{name}.{attribute}", value, attribute
+
+
+def shown_and_copied(value):
+    """What every value can do, whatever it holds."""
+    repr(value)
+    for made in (copy.copy(value), pickle.loads(pickle.dumps(value))):
+        if made != value:
+            raise AssertionError("a copy differs")
 
 
 def outcome(call, words) -> str | None:
@@ -519,6 +549,9 @@ def main(names):
                 print(wrong, flush=True)
         if not inspect.isclass(public):
             continue
+        for value in values_of(name):
+            if wrong := outcome(lambda v=value: shown_and_copied(v), name):
+                print(wrong, flush=True)
         for words, value, attribute in methods(name):
             print(words, file=sys.stderr, flush=True)
             found = None

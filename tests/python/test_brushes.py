@@ -46,7 +46,7 @@ def make_brushes():
 
 
 def test_names():
-    assert brush_names() == ["rigid", "round-6"]
+    assert brush_names() == ["liner-1", "rigid", "round-6", "round-6-angles"]
 
 
 @pytest.mark.parametrize("path", sorted(SHIPPED.glob("*")), ids=lambda path: path.name)

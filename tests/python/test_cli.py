@@ -528,12 +528,12 @@ def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
 def test_brush_commands(desk, capsys):
     status, out, err = run(capsys, "brush", "list")
     assert (status, err) == (0, [])
-    assert [line.split()[0] for line in out.splitlines()] == ["rigid", "round-6"]
+    assert [line.split()[0] for line in out.splitlines()] == ["liner-1", "rigid", "round-6", "round-6-angles"]
     status, out, _ = run(capsys, "brush", "show", "round-6")
     assert status == 0
     for words in ("3.1 + 0.86 d + 0.31 d^2 - 0.05 d^3 + 0.0021 d^4", "max(0.126 d, ", "RMSE 0.58", "assumed"):
         assert words in out
-    for name in ("rigid", "round-6"):
+    for name in ("liner-1", "rigid", "round-6", "round-6-angles"):
         assert run(capsys, "brush", "check", str(SHIPPED / f"{name}.json"))[0] == 0
 
 

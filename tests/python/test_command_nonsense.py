@@ -50,6 +50,7 @@ COMMANDS = [
     "compare PHOTO PLAN",
     "simulate-photo IN OUT.jpg",
     "brush new OUT.json --lag 5 --widths WIDTHS",
+    "brush new OUT.json --like BRUSH",
     "brush show BRUSH",
     "brush check BRUSH",
     "brush plot BRUSH OUT.svg",

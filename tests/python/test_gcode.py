@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from programs import program
 
-from brushsvg import _core
+from brushsvg import _core, find_brush, read_plan, write_program
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
 from brushsvg.machine.rounding import as_written
+from brushsvg.verification.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
@@ -201,3 +202,18 @@ def test_the_first_rise_is_over_every_place_of_paper_that_leans():
     heights = [float(z) for z in re.findall(r"Z(-?[\d.]+)", text)]
     right_edge = 330 * np.sin(np.radians(2)) + 10 * np.cos(np.radians(2))
     assert heights[0] == pytest.approx(right_edge, abs=1e-3) and heights[0] == max(heights)
+
+
+def test_cpp_writes_the_same_program(tmp_path):
+    """flat_machine.ngc is what brushsvg::posts writes of the plan beside it; comments may differ, nothing else."""
+    plan = GOLDEN.with_name("flat_machine.plan.json")
+    text = GOLDEN.with_name("flat_machine.ngc").read_text(encoding="ascii")
+    write_program(tmp_path / "it.ngc", read_plan(plan), find_brush("round-6"))
+    own = (tmp_path / "it.ngc").read_text(encoding="ascii")
+    assert code_lines(own) == code_lines(text)
+    assert {line[:2] for line in code_lines(text)} >= {"G0", "G1", "G2", "G3", "F4", "F6"}
+    cell = find_cell("linuxcnc-3axis")
+    ours, theirs = (read_program(each, ".ngc", cell) for each in (own, text))
+    moves = [[act._replace(line=0) for act in each.acts if act.kind != "text"] for each in (ours, theirs)]
+    assert moves[0] == moves[1] and len(moves[0]) > 40
+    assert [len(each.steps) for each in ours.sections] == [len(each.steps) for each in theirs.sections]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from diagnostics import agrees, in_json, refused
 
-from brushsvg import _core, compensate, find_brush, read_drawing, strokes
+from brushsvg import _core, brush_like, compensate, find_brush, read_drawing, strokes
 from brushsvg.calibration.from_widths import new_brush
 from brushsvg.calibration.measurements import read_measurements, read_widths
 from brushsvg.cli import main
@@ -179,11 +179,31 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     assert done.misses[0].largest_mm < 0.05
 
 
+def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main("brush new mine --like round-6 --speed 12".split()) == 0
+    assert "assumed: all of it" in capsys.readouterr().out
+    mine, round_6 = find_brush("mine.json"), find_brush("round-6")
+    assert (mine.name, mine.max_speed_mm_s, mine.kind) == ("mine", 12, "round")
+    assert mine.footprints == round_6.footprints and mine.depth_range_mm == round_6.depth_range_mm
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        its, others = getattr(mine, law), getattr(round_6, law)
+        assert its(np.linspace(0, 10, 21)).tolist() == others(np.linspace(0, 10, 21)).tolist()
+        assert its.assumed and its.source == f"Taken from brush round-6: {others.source}"
+        assert its.rmse_mm is None and its.half_interval_95 == ()
+    assert json.loads(mine.extra)["footprints"]["assumed"] is True
+    assert "Like round-6" in json.loads(mine.extra)["about"]
+    assert brush_like("mine", round_6).footprints == round_6.footprints and round_6.name == "round-6"
+
+
 @pytest.mark.parametrize(
     ("typed", "said"),
     [
         ("brush new mine --lag 5", "one width"),
         ("brush new mine --lag 5 --width-at 3", "3=2.5"),
+        ("brush new mine --like round-6 --lag 5", "--like"),
+        ("brush new mine --like round-6 --width-at 3=2", "--like"),
+        ("brush new mine --like round-6 --depth-max 9", "--like"),
         ("brush new mine --width-at 3=2", "--lag"),
         ("brush plot round-6 out.pdf", ".png or .svg"),
     ],
@@ -200,6 +220,8 @@ def test_wrong_usage(typed, said, tmp_path, monkeypatch, capsys):
     [
         ("brush new round-6 --lag 5 --width-at 3=2", "round-6.json", "name-taken round-6"),
         ("brush new mine --lag 5 --widths none.csv", "none.csv", "file-unreadable"),
+        ("brush new mine --like round-7", "mine.json", "brush-unknown round-7"),
+        ("brush new rigid --like round-6", "rigid.json", "name-taken rigid"),
         ("brush new mine --lag 5 --width-at 3=7 --width-at 8=2", "mine.json", "width-falls"),
         ("brush new odd --lag 5 --width-at 0.001=900", "odd.json", "not-millimetres"),
     ],

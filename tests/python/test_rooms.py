@@ -100,9 +100,11 @@ def python_target(parts: list[str], folder: str = "") -> str | None:
         return None
     inside = parts[1 + len(above)] if len(parts) > 1 + len(above) else "__init__"
     home = PACKAGE / folder / inside
+    if inside == "_core":  # the built module: its folder holds what type checkers are told of it
+        return inside
     if home.is_dir():
         return f"{inside}/"
-    return inside if inside == "_core" or home.with_suffix(".py").is_file() else "__init__"
+    return inside if home.with_suffix(".py").is_file() else "__init__"
 
 
 @cache

@@ -139,7 +139,7 @@ def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
     status, out, _ = ran(capsys, "report", drawing(), "--all-brushes", "--brush", str(mine))
     assert status == 0
     names = [row.split()[0] for row in out.splitlines()[4:]]
-    assert sorted(names) == ["mine", "rigid", "round-6"]
+    assert sorted(names) == ["liner-1", "mine", "rigid", "round-6", "round-6-angles"]
     assert names[0] == "round-6"
     assert "2 of 2  a: width 3" in next(row for row in out.splitlines() if row.startswith("mine"))
     read = json.loads(ran(capsys, "report", drawing(), "--all-brushes", "--json")[1])

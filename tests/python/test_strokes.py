@@ -1,6 +1,8 @@
 import numpy as np
+import pytest
+from diagnostics import refused
 
-from brushsvg import _core
+from brushsvg import Stroke, _core, flatten
 from brushsvg.drawing.design import Design, Element, SubPath
 from brushsvg.drawing.svg import read_svg
 from brushsvg.strokes.extraction import strokes
@@ -89,3 +91,72 @@ def test_no_stroke_is_called_as_the_parts_of_another_are():
     assert "a part of 'a'" in notices[0].sentence
     assert named(("a~2", 1), ("a", 1))[0] == ["a~2-2", "a"]
     assert named(("p-2~2", 1), ("p", 1), ("p", 1))[0] == ["p-2~2", "p", "p-3"]
+
+
+ARC = 20 * np.column_stack([np.cos(np.linspace(0, np.pi, 60)), np.sin(np.linspace(0, np.pi, 60))]) + 50
+
+
+def off(stroke, points):
+    """How far points [mm] lie from the middle line."""
+    line = flatten(stroke, 1e-4)[:, :2]
+    a, d = line[:-1], np.diff(line, axis=0)
+    t = np.clip(((points[:, None] - a) * d).sum(-1) / (d**2).sum(-1), 0, 1)
+    return np.hypot(*np.moveaxis(a + t[..., None] * d - points[:, None], -1, 0)).min(axis=1)
+
+
+def test_a_stroke_from_points_is_straight_lines_with_the_widths_given():
+    stroke = Stroke.from_points([(0, 0), (3, 4), (3, 4), (3, 9)], [2, 4, 4, 3], "w")
+    assert (stroke.id, len(stroke.middle_mm), stroke.closed) == ("w", 2, False)
+    assert stroke.middle_mm[0, [0, 1, 6, 7]].tolist() == [0, 0, 3, 4]
+    assert stroke.half_width == ((0, 1), (0.5, 2), (1, 1.5))
+    line = flatten(stroke, 0.01)
+    assert line[[0, -1], 3].tolist() == [1, 1.5]
+    assert line[-1, 2] == pytest.approx(10)
+    ring = Stroke.from_points([(0, 0), (3, 4), (3, 9), (0, 0)], 2)
+    assert ring.closed and ring.half_width == ((0, 1), (1, 1)) and ring.id == "stroke1"
+
+
+@pytest.mark.parametrize("tolerance_mm", [1.0, 0.05, 0.001])
+@pytest.mark.parametrize("corner", [False, True])
+def test_a_smooth_stroke_passes_every_point_within_the_tolerance(tolerance_mm, corner):
+    points = np.vstack([ARC, [(45, 50), (60, 50)]]) if corner else ARC
+    stroke = Stroke.from_points(points, 3.0, tolerance_mm=tolerance_mm)
+    assert off(stroke, points).max() <= tolerance_mm
+    lines = len(Stroke.from_points(points, 3.0).middle_mm)
+    assert lines == len(points) - 1
+    few = (
+        12 if tolerance_mm > 0.007 else lines
+    )  # 0.007: what lies between the points and a circle through them
+    assert len(stroke.middle_mm) <= few
+
+
+def test_a_long_zigzag_keeps_its_teeth():
+    """In even steps of a long line its corners were cut off."""
+    points = np.column_stack([np.arange(400.0) * 5, np.arange(400) % 2 * 9.0])
+    stroke = Stroke.from_points(points, 1.0, tolerance_mm=0.1)
+    assert off(stroke, points).max() <= 0.1
+
+
+@pytest.mark.parametrize(
+    ("points", "width", "said"),
+    [
+        ([(5, 5)], 3, "stroke-empty"),
+        ([(5, 5)] * 3, 3, "stroke-empty"),
+        (np.zeros((0, 2)), 3, "stroke-empty"),
+        ([(5, 5), (9, np.nan)], 3, "geometry-out-of-range 1"),
+        ([(5, 5), (9, 2e6)], 3, "geometry-out-of-range 1"),
+        ([(5, 5), (9, 9)], 0, "out-of-range"),
+        ([(5, 5), (9, 9)], [3, -1], "out-of-range 1"),
+        ([(5, 5), (9, 9)], np.inf, "out-of-range"),
+        ([(5, 5), (9, 9)], [3, 3, 3], "sizes-differ 2 3"),
+    ],
+)
+def test_points_that_are_no_stroke_are_refused(points, width, said):
+    with refused(said, "s"):
+        Stroke.from_points(points, width, "s")
+
+
+@pytest.mark.parametrize("points", [[(1, 2, 3)], [1, 2], "ab", None])
+def test_points_of_another_shape_are_of_the_wrong_type(points):
+    with pytest.raises(TypeError):
+        Stroke.from_points(points, 3.0)

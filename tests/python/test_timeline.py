@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from brushsvg._core import Marks, Pass, simulate
 from programs import whole
 
+from brushsvg._core import Marks, Pass, simulate
 from brushsvg.brush import library
 from brushsvg.errors import Error
 from brushsvg.machine.cell import Reload, Station

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
+import json
 import os
 from pathlib import Path
 
@@ -33,6 +35,38 @@ def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
         refusal.file = str(path)
         raise
     brush.sha256 = hashlib.sha256(data).hexdigest()
+    return brush
+
+
+def brush_like(name: str, like: _core.Brush) -> _core.Brush:
+    """A brush of another name with the laws and outlines of one that is known, all of them marked as assumed: nobody
+    measured this one, and how sure the other's numbers are says nothing of it.
+
+    like: a Brush [mm], which stays as it is. Raises Error where it is refused.
+    """
+    need(name, str, "the name of a brush")
+    need(like, _core.Brush, "a brush")
+    _core.check(like)
+    brush = copy.copy(like)
+    brush.name, brush.sha256, brush.covariance = name, "", []
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        its = getattr(like, law)
+        taken = _core.Profile(
+            its.coefficients,
+            floor=its.floor,
+            floor_slope=its.floor_slope,
+            calibrated_mm=its.calibrated_mm,
+            source=f"Taken from brush {like.name}: {its.source}",
+            assumed=True,
+        )
+        setattr(brush, law, taken)
+    said = json.loads(like.extra)
+    outlines = said.get("footprints") if isinstance(said.get("footprints"), dict) else {}
+    outlines = {key: value for key, value in outlines.items() if key != "standard_error_mm"}
+    source = f"Taken from brush {like.name}: {outlines.get('source', '')}".strip()
+    said["footprints"] = outlines | {"source": source, "assumed": True}
+    said["about"] = f"Like {like.name}, until it is measured."
+    brush.extra = json.dumps(said)
     return brush
 
 

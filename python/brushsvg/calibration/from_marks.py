@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from .. import _core
+from ..array_values import ArrayValue
 from ..brush import footprint_shapes
 from ..brush.confidence import half_interval_mm, places
 from ..errors import Error
@@ -29,8 +30,8 @@ TELLS = 4.0  # chi-square by which one tail must fit better than the other for t
 UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
 
 
-@dataclass(frozen=True)
-class MarkCalibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class MarkCalibration(ArrayValue):
     """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
@@ -48,6 +49,9 @@ class MarkCalibration:
     covariance: np.ndarray | None = None
     strays: tuple[Stray, ...] = ()
     strays_left_out: bool = False
+
+    def __repr__(self) -> str:
+        return f"<MarkCalibration of {self.brush!r} from {len(self.painted.marks)} marks>"
 
 
 def calibrate_marks(

@@ -59,13 +59,16 @@ class Fitted:
         ]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Calibration:
     """A brush that can be used, and how each law came about."""
 
     brush: _core.Brush
     laws: tuple[Fitted, ...]
     remarks: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"<Calibration of {self.brush!r}, {len(self.remarks)} remarks>"
 
 
 def calibrate(measured: Measurements, name: str, absolute: bool = False, total: bool = False) -> Calibration:

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..array_values import ArrayValue
 from ..errors import Notice
 
 
-@dataclass(frozen=True)
-class SubPath:
+@dataclass(frozen=True, eq=False, repr=False)
+class SubPath(ArrayValue):
     """One unbroken line: cubics (n, 4, 2) in mm, n >= 1; the end of each is the start of the next.
 
     A sub-path without length is one cubic whose four points coincide. widths: (k, 2), fraction of the arc
@@ -22,7 +23,7 @@ class SubPath:
     widths: np.ndarray | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Element:
     """One painted element: a stroked line, a filled shape, or both.
 
@@ -44,8 +45,14 @@ class Element:
         """Whether it is a line with a width, rather than a shape alone."""
         return self.stroke_width_mm > 0 or any(subpath.widths is not None for subpath in self.subpaths)
 
+    def __repr__(self) -> str:
+        painted = [f"stroked {self.stroke_width_mm:g} mm wide"] * self.is_stroked + ["filled"] * bool(
+            self.fill_rule
+        )
+        return f"<Element {self.id!r}: {len(self.subpaths)} sub-paths, {', '.join(painted) or 'nothing painted'}>"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Design:
     """A drawing: sheet (width, height) in mm, elements in document order, what was noticed while reading.
 
@@ -57,3 +64,8 @@ class Design:
     notices: tuple[Notice, ...] = ()
     title: str = ""
     layers: dict[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        width, height = self.sheet_mm
+        counts = f"{len(self.elements)} elements, {len(self.notices)} notices"
+        return f"<Design {self.title!r}: {counts}, sheet {width:g} x {height:g} mm>"

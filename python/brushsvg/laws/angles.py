@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
+from ..array_values import ArrayValue
 from ..errors import Error
 from .fitted import need_fits
 from .numbers import FARTHEST_MM, frozen, numbers, together
@@ -37,8 +38,8 @@ def tip_direction(alpha0_rad, alpha1_rad, s_mm, lag_mm, tip_gap_mm) -> np.ndarra
     return _core.lag.tip_direction(*given)
 
 
-@dataclass(frozen=True, eq=False)
-class FromAngles:
+@dataclass(frozen=True, eq=False, repr=False)
+class FromAngles(ArrayValue):
     """Lag and tip gap of each series [mm], (...), with the RMSE of the lines they are slopes of; read-only.
 
     tip_gap_mm, tip_gap_rmse_mm: nan without beta. left_out: readings without a logarithm, alpha not in (0, alpha0).

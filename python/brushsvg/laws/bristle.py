@@ -18,7 +18,7 @@ RESOLVED = 1e-12  # of the greatest coefficient: below it a function is drawn to
 SINGULAR = 1e-9  # of the terms of the determinant: there the last condition says nothing
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, repr=False)
 class Bristle:
     """A solved bristle, z = 0 at its root and 1 at its tip, lengths in units of the bristle's.
 
@@ -28,6 +28,9 @@ class Bristle:
 
     _deflection: Chebyshev
     _moment: Chebyshev
+
+    def __repr__(self) -> str:
+        return f"<Bristle bent by {self._deflection(1.0):.4g} of its length at the tip>"
 
     def __call__(self, z) -> np.ndarray:
         """w(z), (...); Error for z outside of [0, 1]."""

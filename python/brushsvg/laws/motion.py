@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
+from ..array_values import ArrayValue
 from ..errors import Error
 from .numbers import DEEPEST_MM, FARTHEST_MM, frozen, numbers, together
 
@@ -97,8 +98,8 @@ def tip_offset(alpha_rad, lag_mm, tip_gap_mm) -> np.ndarray:
     return contact_offset(alpha_rad, lag + gap)
 
 
-@dataclass(frozen=True, eq=False)
-class Followed:
+@dataclass(frozen=True, eq=False, repr=False)
+class Followed(ArrayValue):
     """What the brush did at each place of the handle; the arrays are read-only.
 
     contact_mm: (n, 2), the patch's centre of friction p. heading_rad: (n,), of the vector from p to the handle;

@@ -20,7 +20,7 @@ def chords(poses: np.ndarray, arcs) -> np.ndarray:
     return np.vstack(_rows(poses, arcs))
 
 
-def with_chords(a_pass):
+def with_chords(a_pass: _core.Pass) -> _core.Pass:
     """The same pass, with poses so close on its arcs that their chords do as well."""
     if not len(a_pass.arcs):
         return a_pass

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -32,9 +33,9 @@ class Panel:
     title: str
     score: tuple[str, str]
     notes: tuple[str, ...]
-    wanted: list
-    painted: list
-    lines: list
+    wanted: Sequence[np.ndarray]
+    painted: Sequence[np.ndarray]
+    lines: Sequence[np.ndarray]
     line_colour: str = TCP_LINE
 
 

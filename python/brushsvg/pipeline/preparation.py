@@ -69,9 +69,9 @@ class Work:
     """
 
     title: str
-    brush: object
-    plan: object
-    strokes: list | None
+    brush: _core.Brush
+    plan: _core.Plan
+    strokes: list[_core.Stroke] | None
     tracking_errors: tuple
     options: Options
     notices: tuple[Notice, ...]

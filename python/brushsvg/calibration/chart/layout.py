@@ -90,7 +90,7 @@ class Bar:
     length_mm: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Chart:
     """id, bar: none of charts as they were before there were any. dictionary: of the markers, as OpenCV names it."""
 
@@ -101,6 +101,11 @@ class Chart:
     id: str = ""
     bar: Bar | None = None
     dictionary: str = DICTIONARY
+
+    def __repr__(self) -> str:
+        width, height = self.plan.sheet_mm
+        counts = f"{len(self.strokes)} strokes, {len(self.markers)} markers"
+        return f"<Chart {self.id!r} for brush {self.plan.brush!r}: {counts}, sheet {width:g} x {height:g} mm>"
 
 
 def chart_id(plan) -> str:

@@ -223,7 +223,6 @@ def add_brush(commands) -> None:
         "--lag",
         metavar="MM",
         type=values.lag,
-        required=True,
         help="how far the brush trails the tool; 0 for a pen",
     )
     new.add_argument(
@@ -238,7 +237,12 @@ def add_brush(commands) -> None:
     new.add_argument(
         "--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width"
     )
-    new.add_argument("--speed", metavar="MM/S", type=values.speed, default=25.0, help="at most; default: 25")
+    new.add_argument(
+        "--like", metavar="BRUSH", help="take all laws from this one, a name or a brush.json, as assumed"
+    )
+    new.add_argument(
+        "--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it"
+    )
     add_quiet(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = whats.add_parser("plot", help="draw the laws with confidence bands, and the footprints")
@@ -256,6 +260,14 @@ def add_article(commands) -> None:
 
 
 def _check_brush_new(args) -> None:
+    if args.like is not None:
+        given = [("--lag", args.lag), ("--width-at", args.width_at or None), ("--widths", args.widths)]
+        for flag, value in [*given, ("--depth-max", args.depth_max)]:
+            if value is not None:
+                args.parser.error(f"argument {flag}: --like takes it from the other brush")
+        return
+    if args.lag is None:
+        args.parser.error("the following arguments are required: --lag, or --like BRUSH")
     if not (args.width_at or args.widths):
         args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
 

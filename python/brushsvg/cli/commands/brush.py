@@ -6,7 +6,7 @@ import os
 
 from ..._core import remarks, write_brush
 from ...brush.describe import LAWS, one_line, page, reach
-from ...brush.library import brush_names, find_brush
+from ...brush.library import brush_like, brush_names, find_brush
 from ...errors import Error, Notice
 from ...files import read_bytes
 from ..console import RefusedError, about, tell, warn
@@ -52,10 +52,17 @@ def brush_new(args) -> None:
             raise Error(
                 f"a brush named {name} comes along: give yours another name", "name", code="name-taken"
             )
-        brush = new_brush(name, args.lag, widths, args.depth_max, args.speed)
+        if args.like is not None:
+            brush = brush_like(name, find_brush(args.like))
+            brush.max_speed_mm_s = args.speed or brush.max_speed_mm_s
+        else:
+            brush = new_brush(name, args.lag, widths, args.depth_max, args.speed or 25.0)
         text = write_brush(brush)
     write(args, {path: text})
     tell(f"{path}: {reach(brush)}\n")
+    if args.like is not None:
+        tell(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
+        return
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
     deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
     if deepest > measured and "half_width" not in assumed:

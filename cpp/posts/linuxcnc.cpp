@@ -1,0 +1,259 @@
+#include "linuxcnc.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
+
+namespace brushsvg::posts {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+constexpr double kUnit = 1e4;                     // of the last decimal, in a mm
+constexpr double kLeastMoveMm = 2.00125e-3;       // no move is shorter: rounded, it would go anywhere or nowhere
+constexpr double kCircleMm = 1e-3;                // ends nearer to each other: rounded, they might be one
+constexpr double kPartRad = 3.5, kMostRad = 5.0;  // of one circle: rounded, a longer one might be none, or all round
+constexpr double kOnTheSpotMm = 1e-6;             // sideways; less, and the move goes straight up or down
+constexpr double kSlowestMmS = 1e-6;
+constexpr std::size_t kCommentLetters = 118;
+
+template <class... Numbers>
+std::string text_of(const char* format, Numbers... numbers) {
+    char text[200];
+    std::snprintf(text, sizeof text, format, numbers...);
+    return text;
+}
+
+double rounded(double value) { return std::nearbyint(value * kUnit) / kUnit + 0.0; }  // -0.0 + 0.0 is 0.0
+
+/// One line of comment: 7-bit, no brackets.
+std::string comment(const std::string& text) {
+    std::string out;
+    for (const char letter : text) {
+        const auto byte = static_cast<unsigned char>(letter);
+        if ((byte & 0xC0) == 0x80) continue;  // what follows the first byte of a letter
+        out += byte > '~' ? '?' : byte < ' ' ? ' ' : letter == '(' ? '[' : letter == ')' ? ']' : letter;
+    }
+    if (out.size() > kCommentLetters) out.replace(kCommentLetters - 3, std::string::npos, "...");
+    return "(" + out + ")\n";
+}
+
+void require(double value, std::array<double, 2> range, const std::string& what, const std::string& unit,
+             const std::string& where) {
+    if (value >= range[0] && value <= range[1]) return;
+    throw Error("out-of-range",
+                what + ", " + text_of("%.4g ", value) + unit +
+                    text_of(", is outside the range [%.4g, %.4g] ", range[0], range[1]) + unit,
+                where, value, range);
+}
+
+/// The largest and the least coordinate of the way, circles included.
+void require_inside(const Pass& pass, const FlatCell& cell, const std::array<double, 2>& sheet_mm) {
+    const std::string where = pass.stroke.name();
+    const auto look = [&](const Vector2d& place) {
+        for (int axis = 0; axis < 2; ++axis)
+            require(place[axis], {-cell.margin_mm, sheet_mm[std::size_t(axis)] + cell.margin_mm},
+                    axis == 0 ? "x of the tool" : "y of the tool", "mm", where);
+    };
+    for (Index i = 0; i < pass.poses_mm.rows(); ++i) {
+        if (!pass.poses_mm.row(i).allFinite()) throw Error("not-finite", "a pose is not a finite number", where);
+        require(pass.poses_mm(i, 2), {cell.lowest_mm, 0.0}, "z of the tool while it paints", "mm", where);
+        look(pass.poses_mm.row(i).head<2>().transpose());
+    }
+    for (std::size_t k = 0; k < pass.arcs.size(); ++k) {
+        check_arc(pass, k, where);
+        const Arc& arc = pass.arcs[k];
+        for (Index i = arc.first; i < arc.last; ++i) {
+            const Vector2d from = pass.poses_mm.row(i).head<2>().transpose(),
+                           to = pass.poses_mm.row(i + 1).head<2>().transpose();
+            const double radius = (from - arc.centre_mm).norm(), turn = turn_between(arc, from, to);
+            for (const Vector2d& way :
+                 {Vector2d(radius, 0), Vector2d(0, radius), Vector2d(-radius, 0), Vector2d(0, -radius)}) {
+                const double there = turn_between(arc, from, arc.centre_mm + way);
+                if (turn > 0.0 ? there > 0.0 && there < turn : there < 0.0 && there > turn) look(arc.centre_mm + way);
+            }
+        }
+    }
+}
+
+void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
+    check_sheet(plan.sheet_mm);
+    require(cell.clearance_mm, {0.01, 1e3}, "the clearance", "mm", "clearance_mm");
+    require(cell.safe_mm, {std::max(0.5, cell.clearance_mm), 1e3}, "the safe height", "mm", "safe_mm");
+    require(cell.lowest_mm, {-1e3, 0.0}, "the lowest height", "mm", "lowest_mm");
+    require(cell.margin_mm, {0.0, 1e5}, "the margin", "mm", "margin_mm");
+    require(cell.blending_mm, {0.0, 1e3}, "the blending", "mm", "blending_mm");
+    for (const auto& [speed, name] : {std::pair(cell.approach_mm_s, "approach_mm_s"),
+                                      {cell.press_mm_s, "press_mm_s"},
+                                      {cell.paint_mm_s, "paint_mm_s"}})
+        require(speed, {kSlowestMmS, 1e5}, "the speed", "mm/s", name);
+    if (plan.brush != brush.name)
+        throw Error("options-contradict", "the plan was made for brush " + plan.brush + ", not for " + brush.name);
+    if (plan.passes.empty()) throw Error("nothing-to-paint", "there is nothing to paint");
+    for (const Pass& pass : plan.passes) {
+        const std::string where = pass.stroke.name();
+        if (pass.poses_mm.rows() == 0) throw Error("pass-empty", "the pass has no poses", where);
+        require_inside(pass, cell, plan.sheet_mm);
+        const double deepest_mm = -pass.poses_mm.col(2).minCoeff();
+        require(deepest_mm, {0.0, brush.depth_range_mm[1]}, "the depth", "mm", where);
+        if (!(deepest_mm >= 1.0 / kUnit))
+            throw Error("never-pressed", "the brush is never pressed to the paper: nothing would be painted", where);
+        require(pass.speed_mm_s, {kSlowestMmS, std::min(cell.paint_mm_s, brush.max_speed_mm_s)},
+                "the speed of painting", "mm/s", where);
+    }
+}
+
+/// Rows of the poses as they are written: those too near to the one before give way, but not the ends of circles.
+std::vector<Index> kept(const Poses& written, const std::vector<bool>& stays) {
+    std::vector<Index> out{0};
+    const auto near = [&](Index i) { return (written.row(i) - written.row(out.back())).norm() < kLeastMoveMm; };
+    for (Index i = 1; i < written.rows(); ++i) {
+        if (stays[std::size_t(i)])
+            while (!stays[std::size_t(out.back())] && near(i)) out.pop_back();
+        else if (near(i))
+            continue;
+        out.push_back(i);
+    }
+    return out;
+}
+
+class Text {
+ public:
+    std::string all;
+
+    void go(const char* word, const Eigen::RowVector3d& to) { all += word + coordinates(to) + "\n"; }
+    void feed(double mm_s) {  // in steps of 0.1 mm/min, rounded down, so that a limit is kept
+        const std::string line = text_of("F%.1f\n", std::max(std::floor(600.0 * mm_s + 1e-6), 1.0) / 10.0);
+        if (line != feed_) all += line;
+        feed_ = line;
+    }
+    void circle(int direction, const Eigen::RowVector3d& to, const Vector2d& centre_from_start) {
+        all += (direction > 0 ? "G3" : "G2") + coordinates(to) +
+               text_of(" I%.4f J%.4f\n", rounded(centre_from_start.x()), rounded(centre_from_start.y()));
+    }
+
+ private:
+    static std::string coordinates(const Eigen::RowVector3d& to) {
+        return text_of(" X%.4f Y%.4f Z%.4f", rounded(to.x()), rounded(to.y()), rounded(to.z()));
+    }
+    std::string feed_;
+};
+
+/// The pass as it is run: one that begins or ends below the paper is set down and lifted there.
+Pass on_the_paper(Pass pass) {
+    const Poses& poses = pass.poses_mm;
+    const Index n = poses.rows(), before = poses(0, 2) < 0.0 ? 1 : 0, after = poses(n - 1, 2) < 0.0 ? 1 : 0;
+    Poses all(before + n + after, 3);
+    all << poses.topRows(before), poses, poses.bottomRows(after);
+    all(0, 2) = all(all.rows() - 1, 2) = 0.0;
+    for (Arc& arc : pass.arcs) {
+        arc.first += before;
+        arc.last += before;
+    }
+    pass.poses_mm = all;
+    return pass;
+}
+
+/// An arc that comes back to where it began or goes on beyond, in parts: rounded, it might be no circle, or lose a
+/// turn.
+std::vector<Arc> in_parts(const Arc& arc, const Poses& written) {
+    std::vector<double> turned{0.0};
+    for (Index i = arc.first; i < arc.last; ++i)
+        turned.push_back(turned.back() + arc.direction * turn_between(arc, written.row(i).head<2>().transpose(),
+                                                                      written.row(i + 1).head<2>().transpose()));
+    const double all = turned.back();
+    std::vector<Arc> parts;
+    Arc part = arc;
+    if (all >= 2.0 * std::acos(-1.0) || (written.row(arc.last) - written.row(arc.first)).head<2>().norm() < kCircleMm) {
+        const double share = all / std::max(2.0, std::ceil(all / kPartRad)) - 1e-6;
+        std::size_t first = 0;
+        for (std::size_t k = 1; k + 1 < turned.size(); ++k) {
+            if (turned[k] - turned[first] < share && turned[k + 1] - turned[first] <= kMostRad) continue;
+            part.last = arc.first + std::int64_t(k);
+            parts.push_back(part);
+            part.first = part.last;
+            first = k;
+        }
+    }
+    part.last = arc.last;
+    parts.push_back(part);
+    return parts;
+}
+
+void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, Text& text) {
+    const Pass pass = on_the_paper(planned);
+    const Index last = pass.poses_mm.rows() - 1;
+    const Poses written = pass.poses_mm.unaryExpr([](double value) { return rounded(value); });
+    const auto apart = [&](Index a, Index b) { return (written.row(a) - written.row(b)).norm(); };
+    std::vector<Arc> parts;
+    for (const Arc& arc : pass.arcs)
+        for (const Arc& part : in_parts(arc, written)) parts.push_back(part);
+    std::vector<const Arc*> circle_at(std::size_t(last + 1), nullptr);  // by its first pose
+    std::vector<bool> stays(std::size_t(last + 1), false);
+    stays.front() = stays.back() = true;
+    Index done = 0;
+    for (const Arc& arc : parts) {
+        const auto is_tiny = [&](Index a, Index b) { return a != b && apart(a, b) < kLeastMoveMm; };
+        if (apart(arc.first, arc.last) < kCircleMm || is_tiny(done, arc.first) || is_tiny(arc.last, last)) continue;
+        circle_at[std::size_t(arc.first)] = &arc;
+        stays[std::size_t(arc.first)] = stays[std::size_t(arc.last)] = true;
+        done = arc.last;
+    }
+    const double press_mm_s = std::min(cell.press_mm_s, pass.speed_mm_s);
+    Eigen::RowVector3d over = pass.poses_mm.row(0);
+    over.z() = cell.safe_mm;
+    text.go("G0", over);
+    text.feed(std::min(cell.approach_mm_s, brush.max_speed_mm_s));
+    over.z() = cell.clearance_mm;
+    text.go("G1", over);
+    text.feed(press_mm_s);
+    text.go("G1", pass.poses_mm.row(0));
+    Index here = 0;
+    for (const Index i : kept(written, stays)) {
+        checkpoint();
+        if (i <= here) continue;
+        if (const Arc* arc = circle_at[std::size_t(here)]) {
+            if (i < arc->last) continue;
+            text.feed(pass.speed_mm_s);
+            text.circle(arc->direction, pass.poses_mm.row(i), arc->centre_mm - written.row(here).head<2>().transpose());
+        } else {
+            const Eigen::RowVector3d step = (written.row(i) - written.row(here)).cwiseAbs();
+            const bool is_on_the_spot = std::max(step.x(), step.y()) < kOnTheSpotMm && step.z() > kOnTheSpotMm;
+            text.feed(is_on_the_spot ? press_mm_s : pass.speed_mm_s);
+            text.go("G1", pass.poses_mm.row(i));
+        }
+        here = i;
+    }
+    over = pass.poses_mm.row(last);
+    over.z() = cell.clearance_mm;
+    text.feed(press_mm_s);
+    text.go("G1", over);
+    over.z() = cell.safe_mm;
+    text.go("G0", over);
+}
+
+}  // namespace
+
+std::string linuxcnc(const Plan& plan, const Brush& brush, const FlatCell& cell) {
+    require_sound(plan, brush, cell);
+    Text text;
+    text.all = comment("brush: " + brush.name + ", " + std::to_string(plan.passes.size()) + " strokes") +
+               comment(text_of("sheet: %g x %g mm", plan.sheet_mm[0], plan.sheet_mm[1])) +
+               comment("frame: the sheet's lower left corner, mm; z 0 touches") + "G21 G90 G94 G17 G40 G80 G91.1\n" +
+               (rounded(cell.blending_mm) > 0.0 ? text_of("G64 P%.4f\n", rounded(cell.blending_mm)) : "G61\n") +
+               text_of("G0 Z%.4f\n", rounded(cell.safe_mm));
+    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+        text.all += "\n" + comment("stroke " + std::to_string(i + 1) + " of " + std::to_string(plan.passes.size()) +
+                                   ": " + plan.passes[i].stroke.name());
+        write_pass(plan.passes[i], brush, cell, text);
+    }
+    return text.all + "\nM2\n";
+}
+
+}  // namespace brushsvg::posts

@@ -1,0 +1,30 @@
+// A brush file and a stroke by hand become G-code: 02_brush_file_to_gcode BRUSH.json PROGRAM.ngc
+#include <brushsvg/brushsvg.hpp>
+#include <brushsvg/io/brush_json.hpp>
+#include <brushsvg/posts/linuxcnc.hpp>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+using namespace brushsvg;
+
+int main(int count, char** words) try {
+    if (count != 3) return std::fprintf(stderr, "02_brush_file_to_gcode BRUSH.json PROGRAM.ngc\n"), 2;
+    std::stringstream text;
+    text << std::ifstream(words[1]).rdbuf();
+    const Brush brush = io::read_brush(text.str());
+    check(brush);
+
+    WideLine points(4, 3);  // x, y and half width [mm]; the origin is the sheet's lower left corner, y up
+    points << 30, 30, 1.0, 50, 40, 1.8, 70, 30, 1.8, 90, 35, 1.0;
+    const CompensatedPass done = compensate(stroke_along("wave", points, 0.1), brush);
+    for (const Warning& each : done.warnings) std::fprintf(stderr, "%s\n", each.sentence.c_str());
+
+    const Plan plan{brush.name, brush.sha256, {120.0, 60.0}, {done.pass}};
+    std::ofstream program(words[2]);
+    program << posts::linuxcnc(plan, brush);
+    std::printf("%ld poses, at most %.3f mm off the line\n", long(done.pass.poses_mm.rows()), done.miss.largest_mm);
+    return program.flush() ? 0 : 1;
+} catch (const Error& refused) {
+    return std::fprintf(stderr, "%s: %s\n", refused.where().c_str(), refused.what()), 1;
+}

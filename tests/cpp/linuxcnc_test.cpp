@@ -1,0 +1,100 @@
+#include "linuxcnc.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "brush_json.hpp"
+#include "brushsvg/error.hpp"
+#include "plan_json.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+std::string file(const std::string& path) {
+    std::stringstream text;
+    text << std::ifstream(path).rdbuf();
+    REQUIRE(!text.str().empty());
+    return text.str();
+}
+
+const Brush& round6() {
+    static const Brush brush = io::read_brush(file(std::string(BRUSHES_DIR) + "/round-6.json"));
+    return brush;
+}
+
+Plan golden_plan() { return io::read_plan(file(std::string(GOLDEN_DIR) + "/flat_machine.plan.json")); }
+
+std::string code_of(const std::function<void(Plan&, Brush&, posts::FlatCell&)>& change) {
+    Plan plan = golden_plan();
+    Brush brush = round6();
+    posts::FlatCell cell;
+    change(plan, brush, cell);
+    try {
+        posts::linuxcnc(plan, brush, cell);
+    } catch (const Error& error) {
+        return error.code();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("the golden program, which Python is held against, too") {
+    CHECK(posts::linuxcnc(golden_plan(), round6()) == file(std::string(GOLDEN_DIR) + "/flat_machine.ngc"));
+}
+
+TEST_CASE("what would lead a machine astray is refused") {
+    using posts::FlatCell;
+    const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+    CHECK(code_of([](Plan&, Brush&, FlatCell&) {}) == "");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes.clear(); }) == "nothing-to-paint");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes[0].poses_mm.resize(0, 3); }) == "pass-empty");
+    CHECK(code_of([](Plan&, Brush& brush, FlatCell&) { brush.name = "mine"; }) == "options-contradict");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.sheet_mm = {0.0, 50.0}; }) == "out-of-range");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.sheet_mm = {50.0, 120.0}; }) == "out-of-range");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes[0].arcs[0].centre_mm.x() += 1.0; }) == "arc-invalid");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes[2].poses_mm.col(2).setZero(); }) == "never-pressed");
+    for (const double value : {nan, inf, -inf}) {
+        CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].poses_mm(1, 0) = value; }) != "");
+        CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].speed_mm_s = value; }) == "out-of-range");
+        for (double FlatCell::* field :
+             {&FlatCell::safe_mm, &FlatCell::clearance_mm, &FlatCell::lowest_mm, &FlatCell::margin_mm,
+              &FlatCell::approach_mm_s, &FlatCell::press_mm_s, &FlatCell::paint_mm_s, &FlatCell::blending_mm})
+            CHECK(code_of([=](Plan&, Brush&, FlatCell& cell) { cell.*field = value; }) == "out-of-range");
+    }
+    for (const double z : {0.1, -10.5, -25.0})
+        CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].poses_mm(1, 2) = z; }) == "out-of-range");
+    for (const double speed : {0.0, -1.0, 26.0})
+        CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].speed_mm_s = speed; }) == "out-of-range");
+}
+
+TEST_CASE("a circle that bulges out of the sheet's margin is refused where its poses lie inside") {
+    Plan plan;
+    plan.brush = "round-6";
+    plan.sheet_mm = {100.0, 60.0};
+    Pass pass;
+    pass.stroke = StrokeId("o");
+    pass.poses_mm.resize(2, 3);
+    const double c = 20.0 * std::cos(1.0), s = 20.0 * std::sin(1.0);
+    pass.poses_mm << 115 + c, 30 - s, -2, 115 + c, 30 + s, -2;  // its right side is at x = 135
+    pass.arcs = {{0, 1, {115, 30}, 1}};
+    plan.passes = {pass};
+    CHECK_THROWS_AS(posts::linuxcnc(plan, round6()), Error);
+    posts::FlatCell cell;
+    cell.margin_mm = 36.0;
+    CHECK(posts::linuxcnc(plan, round6(), cell).find("G3") != std::string::npos);
+}
+
+TEST_CASE("a comment stays one") {
+    Plan plan = golden_plan();
+    plan.passes[0].stroke = StrokeId("a) M2\n(\xC3\xA9");
+    const std::string text = posts::linuxcnc(plan, round6());
+    CHECK(text.find("(stroke 1 of 3: a] M2 [?)\n") != std::string::npos);
+}

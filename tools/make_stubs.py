@@ -1,0 +1,65 @@
+"""Writes what editors and type checkers know of the C++ module: python tools/make_stubs.py [FOLDER].
+
+pybind11-stubgen reads it off the module that is built; what pybind11 cannot say is put in here. A test holds the
+files in the tree against what this makes.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[1] / "python" / "brushsvg"
+
+# What a signature of pybind11 does not tell: a name is taken for a StrokeId, and any value may be compared.
+TOLD = (
+    (r"def __eq__\(self, arg0: \w+\) -> bool", "def __eq__(self, other: object, /) -> bool"),
+    (r"\b(id|stroke): StrokeId = ''", r"\1: StrokeId | str = ''"),
+    (r"(def (?:id|stroke)\(self, arg1): StrokeId\)", r"\1: StrokeId | str)"),
+    (r"progress: typing\.Any = None", "progress: collections.abc.Callable[[int, int], object] | None = None"),
+    (r"def warnings\(self\) -> tuple:", "def warnings(self) -> tuple[Notice, ...]:"),
+    (r"def remarks\(brush: Brush\) -> list:", "def remarks(brush: Brush) -> list[Notice]:"),
+    (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
+    (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
+    (r'typing\.Annotated\[([^"]*), "[^"]*"\]', r"\1"),
+    (r"numpy\.typing\.ArrayLike, numpy\.float64", "numpy.typing.ArrayLike"),
+    (r"typing\.Annotated\[numpy\.typing\.ArrayLike\]", "numpy.typing.ArrayLike"),
+    (
+        r"__hash__: typing\.ClassVar\[None\] = None",
+        "__hash__: typing.ClassVar[None]  # type: ignore[assignment]",
+    ),
+)
+
+
+def stub_files() -> dict[str, str]:
+    """File name -> text of the stubs, below the package."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = ["-m", "pybind11_stubgen", "brushsvg._core", "--output-dir", folder]
+        enums = [f"--enum-class-locations={name}:brushsvg._core" for name in ("Norm", "Lines", "Displaced")]
+        exact = ["--numpy-array-wrap-with-annotated", "--exit-code"]
+        subprocess.run([sys.executable, *words, *enums, *exact], check=True, capture_output=True, text=True)
+        made = {path.name: path.read_text() for path in sorted(Path(folder).rglob("*.pyi"))}
+    for name, text in made.items():
+        for said, meant in TOLD:
+            text = re.sub(said, meant, text)
+        if "Notice" in text:
+            text = text.replace("import typing\n", "import typing\nfrom ..errors import Notice\n", 1)
+        format_it = [sys.executable, "-m", "ruff", "format", "--stdin-filename", name, "-"]
+        done = subprocess.run(format_it, input=text, capture_output=True, text=True, check=True, cwd=PACKAGE)
+        made[name] = done.stdout
+    return made
+
+
+def main() -> None:
+    """Write the files into the folder given, or where the package has them."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PACKAGE / "_core"
+    folder.mkdir(exist_ok=True)
+    for name, text in stub_files().items():
+        (folder / name).write_text(text)
+
+
+if __name__ == "__main__":
+    main()
