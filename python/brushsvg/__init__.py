@@ -45,6 +45,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .machine.writer import write_program
     from .pictures.marks_png import marks_png
     from .pictures.marks_svg import marks_svg
+    from .pipeline.conversion import Conversion, convert
     from .pipeline.json_files import read_marks, read_plan
     from .strokes.corners import lifted_at_corners
     from .strokes.extraction import strokes
@@ -73,6 +74,8 @@ _HOME = {
     "new_brush": "calibration.from_widths",
     "calibrate": "calibration.from_file",
     "chart": "calibration.chart.layout",
+    "Conversion": "pipeline.conversion",
+    "convert": "pipeline.conversion",
     "read_marks": "pipeline.json_files",
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
@@ -112,6 +115,7 @@ __all__ = [
     "Brush",
     "Cell",
     "Compensated",
+    "Conversion",
     "Error",
     "Marks",
     "Pass",
@@ -126,6 +130,7 @@ __all__ = [
     "cell_names",
     "chart",
     "compensate",
+    "convert",
     "coverage",
     "find_brush",
     "find_cell",

@@ -234,6 +234,7 @@ ARGUMENTS = {
     "Brush": [],
     "Cell": [],
     "Compensated": [],
+    "Conversion": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
     "Marks": [],
     "Pass": [
@@ -264,6 +265,7 @@ ARGUMENTS = {
         [None, *NUMBERS],
         [20.0, *NUMBERS],
     ],
+    "convert": [lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS], [None, FOLDER / "o.ngc", *PATHS]],
     "coverage": [
         marks,
         brushes,

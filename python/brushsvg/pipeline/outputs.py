@@ -67,6 +67,17 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
 
 
+def page(suffix: str, work: Work) -> bytes:
+    """The page that is printed for a job (.pdf, .svg), of strokes in the order they were drawn in."""
+    from ..calibration.chart.page import chart_page, chart_pdf
+    from ..painted.job_page import job_page
+
+    made = job_page(work.plan, work.title)
+    if suffix == ".pdf":
+        return chart_pdf(made.printed, made.ticks)
+    return chart_page(made.printed, made.ticks).encode()
+
+
 def overlap_picture(suffix: str, work: Work, marks) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
     outlines. Error for a plan, which does not say what was wanted."""
