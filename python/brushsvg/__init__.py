@@ -33,6 +33,7 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
+    from .batch.run import Batch, batch
     from .brush.library import brush_names, find_brush, save_brush
     from .calibration.chart.layout import chart
     from .calibration.from_file import calibrate
@@ -76,6 +77,8 @@ _HOME = {
     "chart": "calibration.chart.layout",
     "Conversion": "pipeline.conversion",
     "convert": "pipeline.conversion",
+    "Batch": "batch.run",
+    "batch": "batch.run",
     "read_marks": "pipeline.json_files",
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
@@ -112,6 +115,7 @@ _MODULES = ("laws",)
 
 __all__ = [
     "Arc",
+    "Batch",
     "Brush",
     "Cell",
     "Compensated",
@@ -125,6 +129,7 @@ __all__ = [
     "Stroke",
     "__version__",
     "area",
+    "batch",
     "brush_names",
     "calibrate",
     "cell_names",

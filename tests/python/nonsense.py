@@ -247,6 +247,8 @@ ARGUMENTS = {
     "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
+    "Batch": [],
+    "batch": [[[], [("a", OPEN + "</svg>")], *([path] for path in PATHS)], [FOLDER / "many", *PATHS]],
     "brush_names": [],
     "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
     "cell_names": [],

@@ -19,6 +19,7 @@ SOUND = {  # the word that stands for a file, and what lies there when it is sou
     "CHART": "page.json",
     "PHOTO": "photo.jpg",
     "FONT": "font.svg",
+    "WORDS": "words.txt",
     "ZIP": "extension.zip",
 }
 COMMANDS = [
@@ -41,6 +42,7 @@ COMMANDS = [
     "check own.ngc IN --preview OUT.svg",
     "check own.ngc PLAN",
     "text T OUT.svg --font FONT",
+    "batch --words WORDS --font FONT --out new",  # a drawing that is nonsense is a row: test_batch.py
     "chart OUT.ngc --drawing IN",
     "calibrate TABLE -o OUT.json",
     "calibrate MEASURED -o OUT.json",
@@ -87,6 +89,7 @@ def sound(tmp_path_factory):
         '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
         '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
     )
+    (folder / "words.txt").write_text("T\n")
     rows = [f"{kind},{depth},{k * depth}" for depth in range(1, 7) for kind, k in (("lag", 2), ("width", 1))]
     (folder / "table.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
     (folder / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")
