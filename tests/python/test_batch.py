@@ -20,6 +20,7 @@ from test_conversion import LINE, PAGE
 
 import brushsvg
 from brushsvg.batch import executors, one, run
+from brushsvg.batch.items import words
 from brushsvg.cli import main
 from brushsvg.pictures.contact_sheet import (
     ACROSS,
@@ -218,6 +219,30 @@ def test_lists_patterns_and_documents_in_memory(desk):
     )
 
 
+@pytest.mark.parametrize("data", [b"", b" \n\n", b"\xff\xfe\x00", None])
+def test_a_list_of_nothing_is_refused_by_its_name(desk, capsys, data):
+    Path("font.svg").write_text(FONT)
+    if data is not None:
+        Path("w.txt").write_bytes(data)
+    for typed in ("--words w.txt --font font.svg", "w.txt"):
+        status, _, ((file, notice),) = in_json(capsys, "batch", *typed.split(), "--out", "out")
+        assert (status, file) == (1, "w.txt") and notice.code in ("file-empty", "not-text", "file-unreadable")
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize("data", [bytes(range(256)) * 40, bytes(3000), b"<svg>\xc3", b"[" * 100_000])
+def test_nonsense_is_a_row(desk, data):
+    Path("x.svg").write_bytes(data)
+    Path("x.dxf").write_bytes(data)
+    Path("words.txt").write_bytes(b"T\n" + data.replace(b"\xc3", b"").decode("latin-1").encode())
+    with threads() as executor:
+        items = [*words("words.txt", FONT.encode()), "in/1.svg", "x.svg", ("d", data)]
+        done = brushsvg.batch(items, "out", executor=executor)
+        assert brushsvg.batch(["x.dxf"], "out", executor=executor).refused
+    assert [row.code for row in done.rows if row.name in ("T", "1")] == ["", ""]
+    assert all(row.code and row.code != "unexpected" for row in done.rows if row.name not in ("T", "1"))
+
+
 @pytest.mark.parametrize(
     ("items", "choices", "said"),
     [
@@ -227,6 +252,7 @@ def test_lists_patterns_and_documents_in_memory(desk):
         ([("x", 5)], {}, "wrong-type"),
         ("in", {}, "wrong-type"),
         (5, {}, "wrong-type"),
+        ([""], {}, "name-invalid"),
         (["in"], {"brush": "none"}, "brush-unknown none"),
         (["in"], {"cell": "none"}, "cell-unknown none"),
         (["in"], {"format": ".txt"}, "program-format .txt"),
@@ -335,8 +361,7 @@ def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
         Path(f"in/{k}.svg").write_text(drawing(k / 4))
     with threads() as executor:
         brushsvg.batch(["in"], "whole", executor=executor)
-    words = ["batch", "in", "--out", "out", "--jobs", "2"]
-    process = started(*words)
+    process = started("batch", "in", "--out", "out", "--jobs", "2")
     while len(rows_there()) < 5 and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(by)

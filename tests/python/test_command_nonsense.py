@@ -19,7 +19,6 @@ SOUND = {  # the word that stands for a file, and what lies there when it is sou
     "CHART": "page.json",
     "PHOTO": "photo.jpg",
     "FONT": "font.svg",
-    "WORDS": "words.txt",
     "ZIP": "extension.zip",
 }
 COMMANDS = [
@@ -42,7 +41,7 @@ COMMANDS = [
     "check own.ngc IN --preview OUT.svg",
     "check own.ngc PLAN",
     "text T OUT.svg --font FONT",
-    "batch --words WORDS --font FONT --out new",  # a drawing that is nonsense is a row: test_batch.py
+    "batch --words words.txt --font FONT --out new",  # words and drawings of nonsense are rows: test_batch.py
     "chart OUT.ngc --drawing IN",
     "calibrate TABLE -o OUT.json",
     "calibrate MEASURED -o OUT.json",

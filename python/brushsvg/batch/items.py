@@ -91,7 +91,8 @@ def _drawing(path: Path, name: Path) -> Item:
         digest = hashlib.sha256(f"{path.suffix.lower()}\n".encode() + read_bytes(path)).hexdigest()
     except Error:
         digest = ""
-    return Item(name.with_suffix("").as_posix(), str(path), digest, read)
+    stem = name.with_suffix("").as_posix() if name.name else ""
+    return Item(stem, str(path), digest, read)
 
 
 def words(

@@ -118,10 +118,11 @@ def batch(
         left = [index for index, row in enumerate(rows) if row is None]
         tell = _told(len(listed), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
+            is_ours = executor is None and cluster is None
             if left and executor is None:
                 place = executors.cluster(cluster) if cluster else executors.processes(min(count, len(left)))
                 executor = stack.enter_context(place)
-            for index, done in _each_made(executor, left, listed, way, is_over):
+            for index, done in _each_made(executor, is_ours, left, listed, way, is_over):
                 rows[index] = _kept(folder, listed[index], keys[index], done)
                 manifest.add(rows[index])
                 tell(rows[index])
@@ -177,8 +178,8 @@ def _sent(brush) -> SentBrush:
     return SentBrush(data, sha256(data))
 
 
-def _each_made(executor, left: list[int], items: list[Item], way: _Way, is_over):
-    """(Number, Made) of each that is left, as they come."""
+def _each_made(executor, is_ours: bool, left: list[int], items: list[Item], way: _Way, is_over):
+    """(Number, Made) of each that is left, as they come. is_ours: it ends with what it has, and is not to be asked."""
     done: queue.SimpleQueue = queue.SimpleQueue()
     waiting: dict[Future, tuple[int, int]] = {}
     numbers = iter(left)
@@ -207,7 +208,7 @@ def _each_made(executor, left: list[int], items: list[Item], way: _Way, is_over)
             index, _ = waiting.pop(future)
             yield index, _result(future, items[index], way.version)
     finally:
-        for future in waiting:
+        for future in () if is_ours else waiting:
             future.cancel()
 
 

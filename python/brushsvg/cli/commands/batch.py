@@ -19,7 +19,7 @@ def batch_files(args) -> None:
     from ...batch.items import drawings, words
     from ...batch.run import batch
 
-    with about(args.words or ""):
+    with about(args.font or ""):  # errors about the words name their file
         set_in_font = (
             words(args.words, font_of(args.font), args.size or 20.0, args.sheet) if args.words else []
         )
