@@ -15,7 +15,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from diagnostics import in_json, refused
+from diagnostics import are_told, in_json, refused
 from test_conversion import LINE, PAGE
 
 import brushsvg
@@ -205,6 +205,17 @@ def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
     assert main(["text", "T T", "t.svg", "--font", "font.svg", "--size", "30", "--quiet"]) == 0
     assert main("convert t.svg t.ngc --quiet".split()) == 0
     assert Path("out/programs/T_T.ngc").read_bytes() == Path("t.ngc").read_bytes()
+
+
+def test_warnings_of_a_kind_are_told_as_one(desk, capsys):
+    for k in range(6):
+        Path(f"in/{k}.svg").write_text(drawing(k).replace("</svg>", "<text>A</text></svg>"))
+    status, _, told = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    assert status == 1 and are_told(
+        [n for _, n in told], "text-unread in/0.svg 5", "width-out-of-reach 30.000"
+    )
+    rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
+    assert [len(row["notices"]) for row in rows if not row["code"]] == [1] * 6
 
 
 def test_lists_patterns_and_documents_in_memory(desk):

@@ -21,7 +21,7 @@ import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments import values
 from brushsvg.cli.arguments.parser import command_parser
-from brushsvg.pipeline.choices import CHOICES, ONE_OF, RANGES
+from brushsvg.pipeline.choices import CHOICES, ONE_OF, RANGES, Given
 
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'
 LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="{}" stroke-width="{}"/>'
@@ -190,6 +190,10 @@ def test_what_the_page_shows_runs(desk, capsys):
         exec(block, names)
     assert names["poses_mm"].shape[1] == 3 and Path("word.ngc").exists()
     assert set(re.findall("`([a-z_]+)`", page.split("What cannot")[0])) >= {*CHOICES} - {"input"}
+
+
+def test_type_checkers_know_every_choice():
+    assert [*Given.__annotations__] == [name for name in CHOICES if name != "input"]
 
 
 def test_a_choice_that_there_is_not_is_a_type_error(desk):

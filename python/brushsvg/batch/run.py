@@ -11,6 +11,7 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Unpack
 
 from .. import _core
 from ..brush import library
@@ -20,7 +21,7 @@ from ..machine import cell_file
 from ..machine.cell_file import write_cell
 from ..machine.posts import POSTS
 from ..pictures.contact_sheet import Card, contact_sheets
-from ..pipeline.choices import Choices, cell_of
+from ..pipeline.choices import Choices, Given, cell_of
 from ..pipeline.conversion import ORDERS, chosen_of
 from ..units import clock
 from . import executors, one, tables
@@ -61,7 +62,7 @@ def batch(
     parquet: bool = False,
     progress: Callable[[str], object] | None = None,
     cancel=None,
-    **choices,
+    **choices: Unpack[Given],
 ) -> Batch:
     """Convert many drawings, each as `convert` does. What an earlier run into the same folder has done with the same
     drawing, choices, brush, cell and version, and what lies there as it was written, is not done again.

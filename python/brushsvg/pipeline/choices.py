@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from typing import TypedDict
 
 from .. import _core
 from ..brush.library import brush_names, find_brush
@@ -69,6 +70,33 @@ class Choices:
     end: str | None = None
     z_offset: float | None = None
     corrections: str | os.PathLike | None = None
+
+
+class Given(TypedDict, total=False):
+    """The same as keywords, for editors and type checkers; see `convert`."""
+
+    brush: str | os.PathLike[str] | _core.Brush | None
+    cell: str | os.PathLike[str] | Cell | None
+    sheet: tuple[float, float] | None
+    units: str | None
+    layer: Sequence[str] | None
+    select: str | None
+    width: float | None
+    paths_as: str | None
+    fit: tuple[float, float] | None
+    scale: float | None
+    origin: tuple[float, float] | None
+    wide: str | None
+    corners: str | None
+    join: bool | None
+    compensation: str | None
+    lag: float | None
+    paint_speed: float | None
+    tolerance: float | None
+    start: str | None
+    end: str | None
+    z_offset: float | None
+    corrections: str | os.PathLike[str] | None
 
 
 def checked(chosen: Choices) -> Choices:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Unpack
 
 from ..errors import Error, Notice, lacking, need, need_number, need_one_of
 from ..evaluation import report as reports
@@ -21,7 +22,17 @@ from ..machine.posts import POSTS
 from ..machine.program import WHOLE_JOB, Job, Walked
 from ..text_summary import summarized
 from . import cancelling, outputs, prediction, preparation
-from .choices import Choices, checked, concerning, name_of, options_of, settled, suffix_of, without_effect
+from .choices import (
+    Choices,
+    Given,
+    checked,
+    concerning,
+    name_of,
+    options_of,
+    settled,
+    suffix_of,
+    without_effect,
+)
 
 ORDERS = ("drawn", "nearest")
 FORMATS = {
@@ -69,7 +80,7 @@ def convert(
     lenient: bool = False,
     progress: Callable[[str], object] | None = None,
     cancel=None,
-    **choices,
+    **choices: Unpack[Given],
 ) -> Conversion:
     """A drawing to a plan and a program, as `brushsvg convert` makes them, byte for byte. Nothing is written but to
     the paths given: all of them or none.
