@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pybind11/eval.h>
+
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -36,13 +38,15 @@ void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);
 
-/// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints.
+/// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints. Any thread is given up by
+/// PyThreadState_SetAsyncExc, which is heard by whoever runs a line of Python, as here every now and then.
 class Unlocked {
  public:
     Unlocked()
         : listens_([] {
               const py::gil_scoped_acquire locked;
               if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+              py::eval("None");
               return false;
           }) {}
 

@@ -34,6 +34,7 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
+    from .batch.run import Batch, batch
     from .brush.library import brush_like, brush_names, find_brush, save_brush
     from .calibration.chart.layout import chart
     from .calibration.from_file import calibrate
@@ -46,6 +47,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .machine.writer import write_program
     from .pictures.marks_png import marks_png
     from .pictures.marks_svg import marks_svg
+    from .pipeline.conversion import Conversion, convert
     from .pipeline.json_files import read_marks, read_plan
     from .strokes.corners import lifted_at_corners
     from .strokes.extraction import strokes
@@ -75,6 +77,10 @@ _HOME = {
     "new_brush": "calibration.from_widths",
     "calibrate": "calibration.from_file",
     "chart": "calibration.chart.layout",
+    "Conversion": "pipeline.conversion",
+    "convert": "pipeline.conversion",
+    "Batch": "batch.run",
+    "batch": "batch.run",
     "read_marks": "pipeline.json_files",
     "read_plan": "pipeline.json_files",
     "write_program": "machine.writer",
@@ -111,9 +117,11 @@ _MODULES = ("laws",)
 
 __all__ = [
     "Arc",
+    "Batch",
     "Brush",
     "Cell",
     "Compensated",
+    "Conversion",
     "Error",
     "Marks",
     "Pass",
@@ -123,12 +131,14 @@ __all__ = [
     "Stroke",
     "__version__",
     "area",
+    "batch",
     "brush_like",
     "brush_names",
     "calibrate",
     "cell_names",
     "chart",
     "compensate",
+    "convert",
     "coverage",
     "find_brush",
     "find_cell",

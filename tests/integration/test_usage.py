@@ -34,6 +34,10 @@ USAGE = [
     "convert sound.svg out.ngc --report out.ngc",
     "convert sound.svg ./sound.svg",
     "brush",
+    "batch",
+    "batch in --out x --words w.txt",
+    "batch in --out x --jobs 0",
+    "batch in --out x --format .txt",
     "brush wash round-6",
 ]
 # of house rules, but not there yet: neither understood nor promised
@@ -50,6 +54,7 @@ PAGES = [
     ["report"],
     ["import"],
     ["text"],
+    ["batch"],
     ["brush"],
     ["cell"],
     ["cell", "list"],
@@ -91,7 +96,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
     commands = set(re.findall(r"(?m)^    ([a-z]+)(?: |$)", pages[()]))
     assert commands == {
-        *("convert", "border", "height", "predict", "animate", "check", "report", "import", "text"),
+        *("convert", "border", "height", "predict", "animate", "check", "report", "import", "text", "batch"),
         *("article", "brush", "calibrate", "cell", "chart", "compare", "scan"),
     }
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {

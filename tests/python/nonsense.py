@@ -236,6 +236,7 @@ ARGUMENTS = {
     "Brush": [],
     "Cell": [],
     "Compensated": [],
+    "Conversion": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
     "Marks": [],
     "Pass": [
@@ -248,6 +249,8 @@ ARGUMENTS = {
     "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
     "area": [rings],
+    "Batch": [],
+    "batch": [[[], [("a", OPEN + "</svg>")], *([path] for path in PATHS)], [FOLDER / "many", *PATHS]],
     "brush_like": [["mine", *TEXTS], brushes],
     "brush_names": [],
     "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
@@ -267,6 +270,7 @@ ARGUMENTS = {
         [None, *NUMBERS],
         [20.0, *NUMBERS],
     ],
+    "convert": [lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS], [None, FOLDER / "o.ngc", *PATHS]],
     "coverage": [
         marks,
         brushes,

@@ -41,6 +41,7 @@ COMMANDS = [
     "check own.ngc IN --preview OUT.svg",
     "check own.ngc PLAN",
     "text T OUT.svg --font FONT",
+    "batch --words words.txt --font FONT --out new",  # words and drawings of nonsense are rows: test_batch.py
     "chart OUT.ngc --drawing IN",
     "calibrate TABLE -o OUT.json",
     "calibrate MEASURED -o OUT.json",
@@ -88,6 +89,7 @@ def sound(tmp_path_factory):
         '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
         '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
     )
+    (folder / "words.txt").write_text("T\n")
     rows = [f"{kind},{depth},{k * depth}" for depth in range(1, 7) for kind, k in (("lag", 2), ("width", 1))]
     (folder / "table.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
     (folder / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")

@@ -27,13 +27,17 @@ def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
     have the file in `file`, the last the key in `where`.
     """
     path = find_file("brush", SHIPPED, ".json", name_or_path)
-    data = read_bytes(path)
     try:
-        brush = _core.read_brush(data)
-        _core.check(brush)
+        return parse_brush(read_bytes(path))
     except Error as refusal:
         refusal.file = str(path)
         raise
+
+
+def parse_brush(data: bytes) -> _core.Brush:
+    """The brush that a file holds, read, checked, with its sha256."""
+    brush = _core.read_brush(data)
+    _core.check(brush)
     brush.sha256 = hashlib.sha256(data).hexdigest()
     return brush
 

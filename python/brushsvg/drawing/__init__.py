@@ -34,6 +34,14 @@ class ReadOptions:
 AS_DRAWN = ReadOptions()
 
 
+@dataclass(frozen=True)
+class InMemory:
+    """A drawing that is no file, or not read here: the extension says its format, data is what a file would hold."""
+
+    extension: str
+    data: bytes
+
+
 def _svg(data: bytes, options: ReadOptions) -> Design:
     from .svg import read_svg  # loaded for who reads, not for who only asks what can be read
 
@@ -52,18 +60,25 @@ def _gcode(data: bytes, options: ReadOptions) -> Design:
     return read_gcode(data, options)
 
 
-def settings_in(path: str | os.PathLike, alone: bool = False) -> dict:
+def settings_in(path, alone: bool = False) -> dict:
     """Brush, cell, compensation, tolerance [mm] and wide that a drawing asks for, as far as it does.
 
-    Error if the file cannot be read; alone, where nothing else of it will be: also if it is no drawing.
+    path: as for read_drawing; anything else asks for nothing. Error if the file cannot be read; alone, where nothing
+    else of it will be: also if it is no drawing.
     """
-    if os.path.splitext(path)[1].lower() not in (".svg", ".svgz"):
-        if alone:
-            read_bytes(path)  # a DXF asks for nothing, but there should be one
+    if isinstance(path, str | os.PathLike):
+        if os.path.splitext(path)[1].lower() not in (".svg", ".svgz"):
+            if alone:
+                read_bytes(path)  # a DXF asks for nothing, but there should be one
+            return {}
+        data = read_bytes(path)
+    elif (opened := _of_opened(path)) and opened[0] is _svg:
+        data = opened[1]
+    else:
         return {}
     from .svg import settings_of
 
-    return settings_of(read_bytes(path), alone)
+    return settings_of(data, alone)
 
 
 READERS = {  # by extension; each takes (bytes, ReadOptions)
@@ -79,8 +94,9 @@ READERS = {  # by extension; each takes (bytes, ReadOptions)
 def read_drawing(path, options: ReadOptions = AS_DRAWN) -> Design:
     """The drawing in a file, its format chosen by extension; or one that is open already.
 
-    path: of the file; or an ezdxf document, or an SVG as an ElementTree or its root element: read as their files would
-    be, but an ElementTree holds nothing that stands before its root, so of links to style sheets there nothing is said.
+    path: of the file; or an ezdxf document, or an SVG as an ElementTree, its root element or svgpathtools' Document:
+    read as their files would be, but an ElementTree holds nothing that stands before its root, so of links to style
+    sheets there nothing is said.
     Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
     is not asked for.
     """
@@ -103,15 +119,26 @@ def _opened(path) -> tuple:
                 code="drawing-format",
             )
         return reader, read_bytes(path)
-    if hasattr(path, "modelspace"):
+    opened = _of_opened(path)
+    if opened is None:
+        raise Error(
+            f"a {type(path).__name__} is neither the path of a drawing nor an open one, "
+            "an ezdxf document or an ElementTree",
+            code="drawing-format",
+        )
+    return opened
+
+
+def _of_opened(drawing) -> tuple | None:
+    """The same of what was open already; None for anything else."""
+    if isinstance(drawing, InMemory) and drawing.extension in READERS:
+        return READERS[drawing.extension], drawing.data
+    if hasattr(drawing, "modelspace"):
         text = io.StringIO()
-        path.write(text)
-        return _dxf, text.getvalue().encode(path.output_encoding, errors="dxfreplace")
-    root = path.getroot() if hasattr(path, "getroot") else path
+        drawing.write(text)
+        return _dxf, text.getvalue().encode(drawing.output_encoding, errors="dxfreplace")
+    tree = getattr(drawing, "tree", drawing)
+    root = tree.getroot() if hasattr(tree, "getroot") else tree
     if ElementTree.iselement(root) and isinstance(root, ElementTree.Element):
         return _svg, ElementTree.tostring(root)
-    raise Error(
-        f"a {type(path).__name__} is neither the path of a drawing nor an open one, "
-        "an ezdxf document or an ElementTree",
-        code="drawing-format",
-    )
+    return None

@@ -8,19 +8,24 @@ from .overlap_svg import BOTH, MISSING, OVERLAP_COLOURS, SPILT
 from .png_canvas import TEXT, bgr, canvas, encoded, write
 
 
-def overlap_png(wanted: np.ndarray, painted: np.ndarray) -> bytes:
+def overlap_png(wanted: np.ndarray, painted: np.ndarray, legend: bool = True) -> bytes:
     """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
     common = np.minimum(wanted, painted)
     rows, columns = common.shape
     size = max(14, round(0.016 * max(rows, columns)))
-    image = canvas((rows + 2 * size, columns), "#ffffff")
+    image = canvas((rows + 2 * size * legend, columns), "#ffffff")
     shares = ((common, BOTH), (wanted - common, MISSING), (painted - common, SPILT))
     page = np.full((rows, columns, 3), 255.0)
     for share, colour in shares:  # side by side in a pixel, not over each other
         page -= share[..., None] * (255.0 - np.array(bgr(colour)))
     image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
-    x = size
-    for colour, words in OVERLAP_COLOURS:
-        image[rows + size // 2 : rows + 3 * size // 2, x : x + size] = bgr(colour)
-        x = write(image, words, (x + 3 * size // 2, rows + 11 * size // 8), size, 400, TEXT) + 2 * size
+    if legend:
+        write_legend(image, size, rows + size // 2, size)
     return encoded(image)
+
+
+def write_legend(image: np.ndarray, x: int, y: int, size: int) -> None:
+    """What the colours mean, from x, y (px) on, in letters of that size."""
+    for colour, words in OVERLAP_COLOURS:
+        image[y : y + size, x : x + size] = bgr(colour)
+        x = write(image, words, (x + 3 * size // 2, y + 7 * size // 8), size, 400, TEXT) + 2 * size

@@ -67,9 +67,20 @@ def picture(suffix: str, work: Work, marks, band=None) -> bytes:
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
 
 
-def overlap_picture(suffix: str, work: Work, marks) -> bytes:
+def page(suffix: str, work: Work) -> bytes:
+    """The page that is printed for a job (.pdf, .svg), of strokes in the order they were drawn in."""
+    from ..calibration.chart.page import chart_page, chart_pdf
+    from ..painted.job_page import job_page
+
+    made = job_page(work.plan, work.title)
+    if suffix == ".pdf":
+        return chart_pdf(made.printed, made.ticks)
+    return chart_page(made.printed, made.ticks).encode()
+
+
+def overlap_picture(suffix: str, work: Work, marks, long_side_px: int | None = None) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
-    outlines. Error for a plan, which does not say what was wanted."""
+    outlines. long_side_px: of a small .png without legend. Error for a plan, which does not say what was wanted."""
     if work.strokes is None:
         raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
     if suffix == ".svg":
@@ -78,10 +89,11 @@ def overlap_picture(suffix: str, work: Work, marks) -> bytes:
     from ..pictures.overlap_png import overlap_png
     from ..pictures.png_canvas import PNG_LONG_SIDE_PX
 
-    px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(work.plan.sheet_mm))
+    px_per_mm = min(20.0, (long_side_px or PNG_LONG_SIDE_PX) / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
     wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
-    return overlap_png(wanted, _core.coverage(marks, work.brush, window, px_per_mm))
+    painted = _core.coverage(marks, work.brush, window, px_per_mm)
+    return overlap_png(wanted, painted, legend=long_side_px is None)
 
 
 def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:

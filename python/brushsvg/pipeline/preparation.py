@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core, drawing
 from ..brush.library import find_brush
 from ..drawing import layout
-from ..drawing.design import Notice
+from ..drawing.design import Design, Notice
 from ..errors import Error
 from ..machine.cell import LEAST_SPEED_MM_S, Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
@@ -83,17 +83,18 @@ class Work:
     astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
 
 
-def prepare(
-    path: str | os.PathLike, options: Options = Options(), stage=lambda text: None, partly: bool = False
-) -> Work:
-    """Read a drawing or plan.json and lay out the TCP's path. Error when it cannot be read or painted; partly: strokes
-    that are refused are left out."""
-    if Path(path).suffix.lower() == ".json":
-        return _prepare_plan(path, options)
+def prepare(source, options: Options = Options(), stage=lambda text: None, partly: bool = False) -> Work:
+    """Read a drawing or plan.json and lay out the TCP's path. source: the path of one, a Plan, a Design, or an open
+    drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
+    out."""
+    if isinstance(source, _core.Plan):
+        return _prepare_plan(source, options)
+    if isinstance(source, str | os.PathLike) and Path(source).suffix.lower() == ".json":
+        return _prepare_plan(read_plan(source), options)
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     _check_speed(brush, options)
-    design = layout.arrange(drawing.read_drawing(path, options.reading), options.layout)
+    design = layout.arrange(_design(source, options.reading), options.layout)
     stage("finding strokes")
     strokes, notices = strokes_of(design, options.paths_as)
     if options.join:
@@ -159,6 +160,15 @@ def prepare(
         tuple(blank),
         tuple(notice.where for notice in astray),
     )
+
+
+def _design(source, reading: drawing.ReadOptions) -> Design:
+    if not isinstance(source, Design):
+        return drawing.read_drawing(source, reading)
+    if reading.units or reading.select:
+        sentence = "units and select are for reading: a Design was read already"
+        raise Error(sentence, code="options-contradict")
+    return source if reading.sheet_mm is None else replace(source, sheet_mm=reading.sheet_mm)
 
 
 def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
@@ -372,8 +382,7 @@ def _astray(painted, wanted, plan, tracking_errors, moved, brush, options: Optio
     ]
 
 
-def _prepare_plan(path: str | os.PathLike, options: Options) -> Work:
-    plan = read_plan(path)
+def _prepare_plan(plan, options: Options) -> Work:
     brush = options.brush or find_brush(plan.brush)
     notices = []
     if brush.name != plan.brush:

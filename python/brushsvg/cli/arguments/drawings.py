@@ -10,8 +10,10 @@ from .flags import (
     add_input,
     add_job,
     add_layout,
+    add_order,
     add_quiet,
     add_speed,
+    add_z_offset,
     plans_and_programs,
 )
 from .usage_checks import (
@@ -55,6 +57,61 @@ def _check_convert(args) -> None:
     ]
     read = [(args.input, DRAWINGS), (args.brush, None), (args.corrections, (".json",))]
     check_files(args, read, written)
+
+
+def add_batch(commands) -> None:
+    batch = commands.add_parser("batch", help="convert many drawings, and go on where the last run ended")
+    batch.add_argument(
+        "inputs",
+        metavar="IN",
+        nargs="*",
+        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line)",
+    )
+    batch.add_argument(
+        "--out",
+        metavar="DIR",
+        dest="output",
+        required=True,
+        help="a folder for programs, pictures and tables",
+    )
+    batch.add_argument(
+        "--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)"
+    )
+    batch.add_argument("--font", metavar="FILE", help="of --words, as for brushsvg text")
+    batch.add_argument("--size", metavar="MM", type=values.width, help="of the em of --font; default: 20")
+    batch.add_argument(
+        "--format", metavar="EXT", choices=(".json", *PROGRAMS), help="of programs; default: the cell's first"
+    )
+    batch.add_argument(
+        "--jobs", metavar="N", type=values.jobs, help="processes; default: one for each processor"
+    )
+    batch.add_argument(
+        "--cluster", metavar="ADDRESS", help="of a scheduler of Dask's, whose workers do it (tcp://host:8786)"
+    )
+    batch.add_argument("--parquet", action="store_true", help="also write the table as table.parquet")
+    add_choices(batch)
+    add_speed(batch)
+    add_z_offset(batch)
+    add_order(batch)
+    add_quiet(batch)
+    batch.set_defaults(run="batch_files", parser=batch, check=_check_batch)
+
+
+def _check_batch(args) -> None:
+    if not args.inputs and args.words is None:
+        args.parser.error("there is nothing to paint: give drawings, or --words FILE with --font FILE")
+    if (args.words is None) != (args.font is None):
+        args.parser.error("--words and --font go together")
+    if args.size is not None and args.words is None:
+        args.parser.error("--size is for --words")
+    if args.lag is not None and args.compensation != "constant":
+        args.parser.error("--lag needs --compensation constant")
+    if args.jobs is not None and args.cluster is not None:
+        args.parser.error("--jobs is for this machine, not for --cluster")
+    if args.z_offset and args.format == ".json":
+        args.parser.error("--z-offset is for programs; a .json is the plan of the whole job, on the paper")
+    check_files(args, [(args.words, (".txt",)), (args.font, None), (args.brush, None)], [])
+    args.input = args.output
 
 
 def add_compare(commands) -> None:

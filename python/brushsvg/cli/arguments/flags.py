@@ -40,7 +40,11 @@ def add_job(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add_z_offset(command)
     add("--from-stroke", metavar="N", type=values.count, default=1, help="resume a job at this stroke")
-    add(
+    add_order(command)
+
+
+def add_order(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
         "--order", choices=("drawn", "nearest"), default="drawn", help="of strokes in a layer; default: drawn"
     )
 

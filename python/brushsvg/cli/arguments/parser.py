@@ -61,6 +61,7 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_animate(commands)
     drawings.add_import(commands)
     drawings.add_text(commands)
+    drawings.add_batch(commands)
     machines.add_first_run(commands)
     machines.add_border(commands)
     machines.add_height(commands)

@@ -76,6 +76,13 @@ def count(text: str) -> int:
     return int(text)
 
 
+def jobs(text: str) -> int:
+    number = count(text)
+    if number > 1000:
+        raise argparse.ArgumentTypeError(f"{number} is outside the range [1, 1000]")
+    return number
+
+
 def share(text: str) -> float:
     outside = f"{text[:24]!r} is outside the range [0, 1]"
     value = _number(text, outside)

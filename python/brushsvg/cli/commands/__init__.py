@@ -5,6 +5,7 @@ An import inside a function is of what only that command needs: the others start
 
 from .animate import animate_file
 from .article import article_files
+from .batch import batch_files
 from .border import border_file
 from .brush import brush_check, brush_list, brush_new, brush_plot, brush_show
 from .calibrate import calibrate_file
@@ -26,6 +27,7 @@ from .text import text_file
 __all__ = [
     "animate_file",
     "article_files",
+    "batch_files",
     "border_file",
     "brush_check",
     "brush_list",

@@ -8,12 +8,12 @@ from ...machine import preflight, writer
 from ...machine.paint_reload import in_loads
 from ...machine.program import Job
 from ...pipeline import preparation
+from ...pipeline.conversion import time_written_s
 from ...text_summary import summarized
 from ..arguments.values import EDGE_NOISE_MM
 from ..console import RefusedError, about, stage, tell
 from ..steps.options import brush_of, exact_cell, settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
-from ..steps.prepared import seconds_written
 
 
 def chart_file(args) -> None:
@@ -49,7 +49,7 @@ def chart_file(args) -> None:
     if args.chart:
         files[args.chart] = write_chart(made).encode()
     warn_of_cell(args, cell)
-    write(args, files, len(loads.loads), seconds_written(suffix, made.plan, walk, brush, cell))
+    write(args, files, len(loads.loads), time_written_s(suffix, made.plan, walk, brush, cell))
     tell(
         dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise or EDGE_NOISE_MM)
     )

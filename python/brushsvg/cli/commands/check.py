@@ -19,13 +19,14 @@ from ...machine.posts import GCODE
 from ...machine.program import out_of_arm
 from ...machine.writer import beside
 from ...pipeline import outputs, prediction, preparation
+from ...pipeline.choices import LAYOUT_FLAGS, MADE_FLAGS
 from ...pipeline.foreign_program import foreign_program
 from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell
 from ..steps.options import brush_of, cell_of, exact_cell, typed, warn_of_arm
 from ..steps.output_places import check_places, suffix_of, write
-from ..steps.prepared import LAYOUT_FLAGS, MADE_FLAGS, prepare
+from ..steps.prepared import prepare
 
 
 def check_file(args) -> None:

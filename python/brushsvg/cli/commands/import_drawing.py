@@ -5,9 +5,10 @@ from __future__ import annotations
 from ...drawing import read_drawing
 from ...drawing.layout import arrange
 from ...errors import Error
+from ...pipeline.choices import layout_of, reading_of
 from ...strokes.extraction import strokes as strokes_of
 from ..console import about, stage, warn
-from ..steps.options import layout_of, reading_of, typed
+from ..steps.options import typed
 from ..steps.output_places import check_places, suffix_of, write
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from ...pipeline import outputs
+from ...pipeline.conversion import time_of_s
 from ..console import about, say, stage
 from ..steps.options import settled, typed
 from ..steps.output_places import check_places, suffix_of, write
-from ..steps.prepared import look, seconds_of
+from ..steps.prepared import look
 
 
 def predict_file(args) -> None:
@@ -25,5 +26,5 @@ def predict_file(args) -> None:
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = outputs.picture(suffix, work, marks, band)
-    seconds = seconds_of(looked.loads, work.brush, work.options.cell)
+    seconds = time_of_s(looked.loads, work.brush, work.options.cell)
     write(args, {args.output: picture}, len(work.plan.passes), seconds)

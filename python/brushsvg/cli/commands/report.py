@@ -7,9 +7,10 @@ from ...drawing import read_drawing
 from ...drawing.layout import arrange
 from ...evaluation import report
 from ...pipeline import other_brushes, other_sizes, outputs, preparation
+from ...pipeline.choices import layout_of, reading_of
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, tell
-from ..steps.options import layout_of, options_of, reading_of, settled, typed
+from ..steps.options import options_of, settled, typed
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import look
 

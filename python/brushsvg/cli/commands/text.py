@@ -20,7 +20,7 @@ def text_file(args) -> None:
         stage("setting the text")
         drawing, notices = text_svg(
             args.input.replace("\\n", "\n"),
-            _font(args.font),
+            font_of(args.font),
             size_mm=args.size,
             width_mm=args.width,
             sheet_mm=args.sheet,
@@ -29,7 +29,7 @@ def text_file(args) -> None:
     write(args, {args.output: drawing.encode()})
 
 
-def _font(name: str) -> bytes:
+def font_of(name: str) -> bytes:
     """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
     if not Path(name).exists():
         for known in (_INKSCAPES / name, _INKSCAPES / f"{name}.svg"):

@@ -2,47 +2,23 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
 
-from ...errors import Error, Notice
-from ...machine import preflight, writer
+from ...errors import Notice
+from ...machine import preflight
 from ...machine.cell import Cell
-from ...machine.motion import duration_s
 from ...machine.paint_reload import PlanInLoads, in_loads, too_long
-from ...machine.program import Walked
 from ...pipeline import prediction, preparation
+from ...pipeline.choices import Choices, without_effect
 from ..console import about, stage, warn
-from .options import Choices, options_of
-from .output_places import suffix_of
-
-LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
-MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
+from .options import options_of
 
 
 def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> preparation.Work:
-    if suffix_of(chosen.input) == ".json":
-        for flag in (*LAYOUT_FLAGS, *MADE_FLAGS):
-            if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None:
-                sentence = f"--{flag} has no effect on a plan, whose poses are fixed"
-                warn(chosen.input, [Notice("", sentence, code="flag-without-effect", about=flag)])
+    warn(chosen.input, without_effect(chosen))
     options = options_of(chosen, cell, brush)
     with about(chosen.input):
         return preparation.prepare(chosen.input, options, stage, partly)
-
-
-def seconds_of(loads: PlanInLoads, brush, cell: Cell) -> float | None:
-    """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
-    with suppress(Error):
-        return writer.time_s(loads, brush, cell)
-    return None
-
-
-def seconds_written(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
-    """How long the machine takes for a program that was gone through, or for one of a plan.json."""
-    if suffix != ".json":
-        return duration_s(walk.made)
-    return seconds_of(in_loads(plan, brush, cell), brush, cell)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Many drawings: each converted on its own, wherever; what is done stays done."""

@@ -1,0 +1,70 @@
+"""Work that is given up within a second when its caller asks for it, wherever it is."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import CancelledError
+
+from ..errors import need
+
+LOOKS_S = 0.05
+PATIENCE_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
+
+
+class _GivenUp(BaseException):
+    """What the work's thread is told: no `except Exception` on its way takes it for an error."""
+
+
+def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=None):
+    """What work(stage) returns, stage being told in words what is done. progress: is told the same; cancel: None, a
+    callable or something with is_set(): once it says yes, CancelledError is raised.
+
+    Work that may be given up runs in a thread of its own, so that an exception can be put into it at any line of
+    Python, which loops of C++ run, too (bindings.hpp). Both callables are called in the thread of the caller.
+    """
+    if progress is not None and not callable(progress):
+        need(progress, Callable, "a callable, which progress is")
+    if cancel is None:
+        return work(progress or (lambda text: None))
+    is_over = getattr(cancel, "is_set", cancel)
+    need(is_over, Callable, "a callable or an event, which cancel is")
+    said, outcome = deque(maxlen=1), []
+
+    def worked() -> None:
+        try:
+            outcome.append((work(said.append), None))
+        except BaseException as problem:
+            outcome.append((None, problem))
+
+    def look() -> None:
+        if is_over():
+            raise CancelledError("cancelled")
+        if progress is not None and said:
+            progress(said.pop())
+
+    look()
+    thread = threading.Thread(target=worked, name="brushsvg", daemon=True)
+    thread.start()
+    try:
+        while thread.is_alive():
+            look()
+            thread.join(LOOKS_S)
+    except BaseException:
+        _give_up(thread)
+        raise
+    result, problem = outcome[0]
+    if problem is not None:
+        raise problem
+    return result
+
+
+def _give_up(thread: threading.Thread) -> None:
+    """What does not hear it within PATIENCE_S ends on its own: it writes nothing."""
+    end = time.monotonic() + PATIENCE_S
+    while thread.is_alive() and time.monotonic() < end:
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(_GivenUp))
+        thread.join(PATIENCE_S / 4)  # raised where Python ignores exceptions, as in a destructor, it is lost

@@ -1,0 +1,260 @@
+"""What may be chosen for a drawing, as it was typed or given, completed by what the drawing says, as options."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from typing import TypedDict
+
+from .. import _core
+from ..brush.library import brush_names, find_brush
+from ..drawing import ReadOptions, settings_in
+from ..drawing.layout import Layout
+from ..errors import Error, Notice, need, need_number, need_one_of
+from ..machine.cell import Cell
+from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
+from ..painted.corrections import Correction, read_corrections
+from .preparation import Options
+
+LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
+MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
+SIZE_MM = (0.001, 1e6)
+RANGES = {  # the same as a flag's
+    "width": (0.001, 1000.0),
+    "scale": (1e-4, 1e4),
+    "lag": (0.0, 1000.0),
+    "tolerance": (1e-5, 10.0),
+    "paint_speed": (0.001, 5000.0),
+    "z_offset": (-20.0, 20.0),
+}
+ONE_OF = {
+    "units": ("mm", "in"),
+    "paths_as": ("stroke", "outline"),
+    "wide": ("auto", "clamp", "passes", "refuse"),
+    "corners": ("auto", "turn"),
+    "compensation": ("none", "constant", "closed", "refined"),
+    "start": ("exposed", "hidden", "squared", "auto"),
+    "end": ("lifted", "squared", "auto"),
+}
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What a drawing or plan is read and painted with; None where nobody says it. Lengths in mm, the speed in mm/s.
+
+    input: a path, or whatever else a drawing may be; brush, cell: by name or path, or themselves.
+    """
+
+    input: object = None
+    brush: object = None
+    cell: object = None
+    sheet: tuple[float, float] | None = None
+    units: str | None = None
+    layer: list[str] | None = None
+    select: str | None = None
+    width: float | None = None
+    paths_as: str | None = None
+    fit: tuple[float, float] | None = None
+    scale: float | None = None
+    origin: tuple[float, float] | None = None
+    wide: str | None = None
+    corners: str | None = None
+    join: bool | None = None
+    compensation: str | None = None
+    lag: float | None = None
+    paint_speed: float | None = None
+    tolerance: float | None = None
+    start: str | None = None
+    end: str | None = None
+    z_offset: float | None = None
+    corrections: str | os.PathLike | None = None
+
+
+class Given(TypedDict, total=False):
+    """The same as keywords, for editors and type checkers; see `convert`."""
+
+    brush: str | os.PathLike[str] | _core.Brush | None
+    cell: str | os.PathLike[str] | Cell | None
+    sheet: tuple[float, float] | None
+    units: str | None
+    layer: Sequence[str] | None
+    select: str | None
+    width: float | None
+    paths_as: str | None
+    fit: tuple[float, float] | None
+    scale: float | None
+    origin: tuple[float, float] | None
+    wide: str | None
+    corners: str | None
+    join: bool | None
+    compensation: str | None
+    lag: float | None
+    paint_speed: float | None
+    tolerance: float | None
+    start: str | None
+    end: str | None
+    z_offset: float | None
+    corrections: str | os.PathLike[str] | None
+
+
+def checked(chosen: Choices) -> Choices:
+    """The choices themselves. Error for what no flag would take."""
+    for name, choices in ONE_OF.items():
+        if getattr(chosen, name) is not None:
+            need_one_of(getattr(chosen, name), choices, name)
+    for name, limits in RANGES.items():
+        if getattr(chosen, name) is not None:
+            need_number(getattr(chosen, name), name, *limits)
+    for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
+        pair = getattr(chosen, name)
+        if pair is not None:
+            need(pair, (tuple, list), f"two numbers, which {name} is")
+            if len(pair) != 2:
+                raise Error(f"{name} has {len(pair)} numbers, not two", name, code="wrong-type")
+            chosen = replace(
+                chosen, **{name: tuple(need_number(each, f"a number of {name}", *limits) for each in pair)}
+            )
+    for name in ("layer", "select"):
+        given = getattr(chosen, name)
+        if name == "layer" and given is not None:
+            need(given, (tuple, list), "a list of names, which layers are")
+        for text in () if given is None else given if name == "layer" else [given]:
+            need(text, str, f"a text, which {name} is")
+    for name in ("brush", "cell", "corrections"):
+        kinds = {"brush": (_core.Brush,), "cell": (Cell,)}.get(name, ())
+        if getattr(chosen, name) is not None:
+            need(getattr(chosen, name), (str, os.PathLike, *kinds), f"the name or the path of {name}")
+    if isinstance(chosen.brush, _core.Brush):
+        _core.check(chosen.brush)
+    if isinstance(chosen.cell, Cell):  # one made by hand must be one that a file may hold
+        chosen = replace(chosen, cell=parse_cell(write_cell(chosen.cell)))
+    if chosen.fit is not None and chosen.scale is not None:
+        raise Error("fit and scale exclude each other", code="options-contradict")
+    if chosen.lag is not None and chosen.compensation != "constant":
+        raise Error("a lag needs compensation constant", "lag", code="options-contradict")
+    suffix = suffix_of(chosen.input)
+    if chosen.units and suffix in (".svg", ".svgz"):
+        sentence = "units are for drawings that do not say them; an SVG does"
+        raise Error(sentence, "units", code="options-contradict")
+    if chosen.select and suffix == ".dxf":
+        sentence = "select is for SVG; layers of a DXF are chosen by layer"
+        raise Error(sentence, "select", code="options-contradict")
+    return chosen
+
+
+def suffix_of(source) -> str:
+    """The extension of a path or of a Document; ".json" for a plan, "" for other things."""
+    if isinstance(source, _core.Plan):
+        return ".json"
+    if isinstance(source, str | os.PathLike):
+        return os.path.splitext(os.fspath(source))[1].lower()
+    return getattr(source, "extension", "")
+
+
+def name_of(source) -> str:
+    """What a person calls it: its path, or nothing."""
+    return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
+
+
+@contextmanager
+def concerning(file: str | os.PathLike) -> Iterator[None]:
+    """Lets an error inside be one of this file, unless it names another."""
+    try:
+        yield
+    except Error as problem:
+        problem.file = problem.file or os.fspath(file)
+        raise
+
+
+def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
+    """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
+    nothing else of the drawing is read."""
+    said = settings_in(drawing, alone)
+    for kind, names in (("brush", brush_names()), ("cell", cell_names())):
+        if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
+            raise Error(
+                f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
+                f"{', '.join(names)}",
+                where="svg",
+                code=f"{kind}-unknown",
+                advice=f"give --{kind}",
+            )
+    return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
+
+
+def without_effect(chosen: Choices) -> list[Notice]:
+    """What was chosen for a plan, whose poses are fixed."""
+    if suffix_of(chosen.input) != ".json":
+        return []
+    return [
+        Notice(
+            "",
+            f"--{flag} has no effect on a plan, whose poses are fixed",
+            code="flag-without-effect",
+            about=flag,
+        )
+        for flag in (*LAYOUT_FLAGS, *MADE_FLAGS)
+        if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None
+    ]
+
+
+def brush_of(given):
+    """The brush of a name or path, itself, or None."""
+    if given is None or isinstance(given, _core.Brush):
+        return given
+    with concerning(given):
+        return find_brush(given)
+
+
+def cell_of(given) -> Cell:
+    """The cell of a name or path, itself, or the default one."""
+    if given is None or isinstance(given, Cell):
+        return given or find_cell()
+    with concerning(given):
+        return find_cell(given)
+
+
+def corrections_of(path: str | os.PathLike | None) -> tuple[Correction, ...]:
+    if path is None:
+        return ()
+    with concerning(path):
+        return read_corrections(path)
+
+
+def reading_of(chosen: Choices) -> ReadOptions:
+    return ReadOptions(
+        chosen.sheet, chosen.units, chosen.select, lenient=True
+    )  # damage is told with all the rest
+
+
+def layout_of(chosen: Choices) -> Layout:
+    return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin)
+
+
+def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
+    """cell, brush: where they are known already."""
+    cell = cell or cell_of(chosen.cell)
+    return Options(
+        brush=brush or brush_of(chosen.brush),
+        reading=reading_of(chosen),
+        layout=layout_of(chosen),
+        compensation=chosen.compensation or Options.compensation,
+        lag_mm=chosen.lag,
+        tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance) or Options.tolerance_mm,
+        start=chosen.start or Options.start,
+        end=chosen.end or Options.end,
+        paths_as=chosen.paths_as,
+        wide=chosen.wide or Options.wide,
+        corners=chosen.corners or Options.corners,
+        join=bool(chosen.join),
+        speed_mm_s=min(Options.speed_mm_s, cell.speeds.paint_mm_s),
+        speed_of_all_mm_s=chosen.paint_speed,
+        cell=cell,
+        z_offset_mm=chosen.z_offset or 0.0,
+        corrections=corrections_of(chosen.corrections),
+    )
+
+
+CHOICES = tuple(field.name for field in fields(Choices))

@@ -1,0 +1,415 @@
+"""brushsvg batch: many drawings, the same rows and files whatever does the work, and nothing done twice."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import CancelledError, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from diagnostics import are_told, in_json, refused
+from test_conversion import LINE, PAGE
+
+import brushsvg
+from brushsvg.batch import executors, one, run
+from brushsvg.batch.items import words
+from brushsvg.cli import main
+from brushsvg.pictures.contact_sheet import (
+    ACROSS,
+    CARD_W,
+    DOWN,
+    GAP,
+    PICTURE_H,
+    WORDS_H,
+    Card,
+    contact_sheets,
+)
+
+COMMAND = Path(sys.executable).with_name("brushsvg")
+FONT = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
+    '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/><glyph unicode=" "/></font></svg>'
+)
+
+
+def drawing(k, width=3):
+    return PAGE.format("", LINE.format("a", 20 + k, 90, "#203060", width))
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("in/below").mkdir(parents=True)
+    for k in range(3):
+        Path(f"in/{k}.svg").write_text(drawing(k))
+    Path("in/below/wide.svg").write_text(drawing(0, width=30))
+    Path("in/note.txt").write_text("no drawing")
+    return tmp_path
+
+
+def contents(folder="out"):
+    files = (path for path in Path(folder).rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def done_again(monkeypatch):
+    """The names of drawings that are converted from now on."""
+    names = []
+    kept = run._kept
+
+    def noted(folder, item, key, done):
+        names.append(item.name)
+        return kept(folder, item, key, done)
+
+    monkeypatch.setattr(run, "_kept", noted)
+    return names
+
+
+def dies(task):
+    os._exit(3)
+
+
+def threads():
+    return ThreadPoolExecutor(2)
+
+
+def test_each_becomes_what_convert_makes_of_it(desk):
+    with threads() as executor:
+        done = brushsvg.batch(["in"], "out", executor=executor, tolerance=0.1)
+    assert [row.name for row in done.rows] == ["0", "1", "2", "below/wide"]
+    assert [row.code for row in done.rows] == ["", "", "", "width-out-of-reach"]
+    assert {row.name for row in done.refused} == {"below/wide"}
+    for row in done.rows[:3]:
+        alone = brushsvg.convert(row.source, tolerance=0.1, figures=True)
+        assert Path("out/programs", f"{row.name}.ngc").read_text() == alone.text
+        assert row.figures.time_s == alone.time_s
+        assert row.figures.overlap == alone.figures.total.overlap
+        assert row.files.keys() == {f"programs/{row.name}.ngc", f"pictures/{row.name}.png"}
+    table = list(csv.DictReader(Path("out/table.csv").read_text().splitlines()))
+    assert [each["name"] for each in table] == [row.name for row in done.rows]
+    assert float(table[1]["overlap"]) == pytest.approx(done.rows[1].figures.overlap, abs=1e-6)
+    assert (table[3]["overlap"], table[3]["where"], table[3]["code"]) == ("", "a", "width-out-of-reach")
+    assert {*contents()} == {
+        *("manifest.jsonl", "table.csv", "contact-1.png"),
+        *(f"{kind}/{k}.{end}" for k in range(3) for kind, end in (("programs", "ngc"), ("pictures", "png"))),
+    }
+
+
+@pytest.mark.slow
+def test_it_is_the_same_whatever_does_the_work(desk):
+    made = {}
+    for name, place in {
+        "threads": threads(),
+        "processes of others": ProcessPoolExecutor(2, executors.multiprocessing.get_context("spawn")),
+        "own processes": None,
+    }.items():
+        done = brushsvg.batch(["in"], name, executor=place, **({} if place else {"jobs": 2}))
+        made[name] = done.rows, contents(name)
+        if place:
+            place.shutdown()
+    assert made["threads"] == made["processes of others"] == made["own processes"]
+
+
+@pytest.mark.slow
+def test_a_cluster_makes_the_same_and_outlives_a_worker(desk, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    with threads() as executor:
+        known = brushsvg.batch(["in"], "by threads", executor=executor).rows
+    with distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        pids = list(distributed.Client(cluster).run(os.getpid).values())
+        os.kill(pids[0], signal.SIGKILL)
+        done = brushsvg.batch(["in"], "by cluster", cluster=cluster.scheduler_address)
+    assert done.rows == known and contents("by cluster") == contents("by threads")
+    monkeypatch.setattr(executors, "PATIENCE_S", 0.5)
+    with refused("cluster-unreachable"):
+        brushsvg.batch(["in"], "out", cluster="tcp://127.0.0.1:9")
+
+
+CHANGES = {
+    "nothing": (lambda: None, {}, []),
+    "a drawing": (lambda: Path("in/1.svg").write_text(drawing(9)), {}, ["1"]),
+    "a new one": (lambda: Path("in/3.svg").write_text(drawing(9)), {}, ["3"]),
+    "a program": (lambda: Path("out/programs/2.ngc").write_text("M2"), {}, ["2"]),
+    "a picture that went": (lambda: Path("out/pictures/0.png").unlink(), {}, ["0"]),
+    "an option": (lambda: None, {"tolerance": 0.06}, ["0", "1", "2", "below/wide"]),
+    "the brush": (lambda: None, {"brush": "rigid"}, ["0", "1", "2", "below/wide"]),
+    "the cell": (lambda: None, {"cell": "grbl-3axis"}, ["0", "1", "2", "below/wide"]),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_only_what_changed_is_done_again(desk, monkeypatch, change):
+    happens, choices, expected = CHANGES[change]
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+        before = contents()
+        names = done_again(monkeypatch)
+        happens()
+        done = brushsvg.batch(["in"], "out", executor=executor, **choices)
+    assert sorted(names) == expected
+    assert done.resumed == len(done.rows) - len(expected)
+    if change in ("nothing", "a program", "a picture that went"):
+        assert contents() == before
+
+
+def test_another_version_does_all_again(desk, monkeypatch):
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+        names = done_again(monkeypatch)
+        monkeypatch.setattr(one, "version", lambda: "9.9")
+        brushsvg.batch(["in"], "out", executor=executor)
+        assert len(names) == 4
+        monkeypatch.setattr(run, "made", lambda task: one.Made(None, {}, b"", version="0.0.9"))
+        with refused("version-unknown 0.0.9 9.9"):
+            brushsvg.batch(["in"], "out", executor=executor, tolerance=0.2)
+
+
+def test_a_line_that_was_left_half_is_that_drawing_again(desk, monkeypatch):
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+        whole = Path("out/manifest.jsonl").read_bytes()
+        Path("out/manifest.jsonl").write_bytes(whole[:-40])
+        names = done_again(monkeypatch)
+        brushsvg.batch(["in"], "out", executor=executor)
+    assert names == ["below/wide"] and Path("out/manifest.jsonl").read_bytes() == whole
+
+
+def test_two_runs_do_not_write_to_one_folder(desk):
+    first = run.Manifest(Path("out"))
+    with refused("file-unwritable"), threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+    first.close()
+    Path("out/manifest.jsonl").write_text("mine\n")
+    with refused("format-unknown brushsvg/batch 1"), threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+
+
+def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
+    Path("font.svg").write_text(FONT)
+    Path("words.txt").write_text("TT\n\n T T \nTX\nTT\nT\\nT\n", encoding="utf-8")
+    status, _, told = in_json(
+        capsys, *"batch --words words.txt --font font.svg --size 30 --out out --jobs 1".split()
+    )
+    assert status == 1
+    assert [notice.code for _, notice in told if notice.code] == ["glyph-missing"]
+    rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
+    assert [row["name"] for row in rows] == ["TT", "T_T", "TX", "TT~2", "T_nT"]
+    assert main(["text", "T T", "t.svg", "--font", "font.svg", "--size", "30", "--quiet"]) == 0
+    assert main("convert t.svg t.ngc --quiet".split()) == 0
+    assert Path("out/programs/T_T.ngc").read_bytes() == Path("t.ngc").read_bytes()
+
+
+def test_warnings_of_a_kind_are_told_as_one(desk, capsys):
+    for k in range(6):
+        Path(f"in/{k}.svg").write_text(drawing(k).replace("</svg>", "<text>A</text></svg>"))
+    status, _, told = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    assert status == 1 and are_told(
+        [n for _, n in told], "text-unread in/0.svg 5", "width-out-of-reach 30.000"
+    )
+    rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
+    assert [len(row["notices"]) for row in rows if not row["code"]] == [1] * 6
+
+
+def test_lists_patterns_and_documents_in_memory(desk):
+    Path("list.txt").write_text("in/1.svg\nin/2.svg\n")
+    with threads() as executor:
+        items = ["list.txt", "in/0*.svg", ("mine", drawing(7)), ("bytes", drawing(8).encode())]
+        done = brushsvg.batch(items, "out", executor=executor)
+    assert [row.name for row in done.rows] == ["1", "2", "0", "mine", "bytes"]
+    assert (
+        Path("out/programs/mine.ngc").read_text()
+        == brushsvg.convert("in/0.svg" if Path("in/0.svg").write_text(drawing(7)) else "").text
+    )
+
+
+@pytest.mark.parametrize("data", [b"", b" \n\n", b"\xff\xfe\x00", None])
+def test_a_list_of_nothing_is_refused_by_its_name(desk, capsys, data):
+    Path("font.svg").write_text(FONT)
+    if data is not None:
+        Path("w.txt").write_bytes(data)
+    for typed in ("--words w.txt --font font.svg", "w.txt"):
+        status, _, ((file, notice),) = in_json(capsys, "batch", *typed.split(), "--out", "out")
+        assert (status, file) == (1, "w.txt") and notice.code in ("file-empty", "not-text", "file-unreadable")
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize("data", [bytes(range(256)) * 40, bytes(3000), b"<svg>\xc3", b"[" * 100_000])
+def test_nonsense_is_a_row(desk, data):
+    Path("x.svg").write_bytes(data)
+    Path("x.dxf").write_bytes(data)
+    Path("words.txt").write_bytes(b"T\n" + data.replace(b"\xc3", b"").decode("latin-1").encode())
+    with threads() as executor:
+        items = [*words("words.txt", FONT.encode()), "in/1.svg", "x.svg", ("d", data)]
+        done = brushsvg.batch(items, "out", executor=executor)
+        assert brushsvg.batch(["x.dxf"], "out", executor=executor).refused
+    assert [row.code for row in done.rows if row.name in ("T", "1")] == ["", ""]
+    assert all(row.code and row.code != "unexpected" for row in done.rows if row.name not in ("T", "1"))
+
+
+@pytest.mark.parametrize(
+    ("items", "choices", "said"),
+    [
+        (["in", "in/1.svg"], {}, "name-taken in/1.svg"),
+        (["none*.svg"], {}, "file-unreadable"),
+        ([("../x", "<svg/>")], {}, "name-invalid ../x"),
+        ([("x", 5)], {}, "wrong-type"),
+        ("in", {}, "wrong-type"),
+        (5, {}, "wrong-type"),
+        ([""], {}, "name-invalid"),
+        (["in"], {"brush": "none"}, "brush-unknown none"),
+        (["in"], {"cell": "none"}, "cell-unknown none"),
+        (["in"], {"format": ".txt"}, "program-format .txt"),
+        (["in"], {"jobs": 0}, "out-of-range 0"),
+        (["in"], {"corrections": "x.json"}, "options-contradict"),
+        (["in"], {"jobs": 2, "cluster": "x"}, "options-contradict"),
+        (["in"], {"executor": 5, "jobs": None}, "wrong-type 5"),
+        (["in"], {"progress": 5}, "wrong-type 5"),
+        (["in"], {"cancel": 5}, "wrong-type 5"),
+        (["in"], {"width": -1}, "out-of-range"),
+    ],
+)
+def test_what_concerns_all_is_refused_in_one_sentence(desk, items, choices, said):
+    choices = {"jobs": 1} | choices
+    with refused(said):
+        brushsvg.batch(items, "out", **choices)
+    assert not Path("out/table.csv").exists()
+
+
+def test_a_missing_drawing_is_a_row_and_tried_again(desk, monkeypatch):
+    with threads() as executor:
+        done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)
+        assert [row.code for row in done.rows] == ["", "file-unreadable", "drawing-format"]
+        Path("gone.svg").write_text(drawing(4))
+        names = done_again(monkeypatch)
+        done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)
+    assert [row.code for row in done.rows] == ["", "", "drawing-format"] and "1" not in names
+
+
+def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):
+    monkeypatch.setattr(one.outputs, "overlap_picture", lambda *_: 1 / 0)
+    with threads() as executor:
+        done = brushsvg.batch(["in/1.svg"], "out", executor=executor)
+    assert [row.code for row in done.rows] == ["unexpected"]
+
+
+def test_a_worker_that_dies_is_said_and_what_is_done_is_kept(desk, monkeypatch):
+    with threads() as executor:
+        brushsvg.batch(["in/1.svg"], "out", executor=executor)
+    monkeypatch.setattr(run, "made", dies)
+    with refused("worker-lost"):
+        brushsvg.batch(["in/1.svg", "in/2.svg"], "out", jobs=1)
+    assert Path("out/programs/1.ngc").exists()
+
+
+def test_parquet_holds_the_same_table(desk, monkeypatch):
+    pyarrow = pytest.importorskip("pyarrow.parquet")
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor, parquet=True)
+    rows = pyarrow.read_table("out/table.parquet").to_pylist()
+    table = list(csv.DictReader(Path("out/table.csv").read_text().splitlines()))
+    for row, told in zip(rows, table, strict=True):
+        assert row.keys() == told.keys()
+        for name, value in row.items():
+            assert value == (type(value)(told[name]) if value is not None else told[name] or None), name
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with refused("package-missing pyarrow"):
+        brushsvg.batch(["in"], "out", jobs=1, parquet=True)
+
+
+def test_progress_tells_rate_and_time_left_and_cancel_is_heard(desk):
+    said, is_over = [], threading.Event()
+
+    def progress(text):
+        said.append(text)
+        is_over.set()
+
+    with threads() as executor, pytest.raises(CancelledError):
+        brushsvg.batch(["in"], "out", executor=executor, progress=progress, cancel=is_over)
+    assert "of 4 drawings" in said[0] and "a second" in said[0] and "left" in said[0]
+    rows = Path("out/manifest.jsonl").read_text().splitlines()[1:]
+    assert 1 <= len(rows) < 4 or len(said) == len(rows)
+    assert not Path("out/table.csv").exists()
+
+
+def started(*words):
+    return subprocess.Popen(
+        [COMMAND, *words],
+        stderr=open("said.txt", "w"),  # no pipe: a worker that is left over would hold it open
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        start_new_session=True,
+    )
+
+
+def rows_there():
+    with suppress(FileNotFoundError):
+        return Path("out/manifest.jsonl").read_text().splitlines()[1:]
+    return []
+
+
+def processes_of(group) -> list[int]:
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            if os.getpgid(int(place.name)) == group and "State:\tZ" not in (place / "status").read_text():
+                found.append(int(place.name))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs /proc")
+@pytest.mark.parametrize("by", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.slow
+def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
+    for k in range(24):
+        Path(f"in/{k}.svg").write_text(drawing(k / 4))
+    with threads() as executor:
+        brushsvg.batch(["in"], "whole", executor=executor)
+    process = started("batch", "in", "--out", "out", "--jobs", "2")
+    while len(rows_there()) < 5 and process.poll() is None:
+        time.sleep(0.01)
+    process.send_signal(by)
+    status, said = process.wait(20), Path("said.txt").read_text()
+    assert status == (-by if by == signal.SIGKILL else 130), said
+    assert by == signal.SIGKILL or said == "brushsvg: interrupted\n"
+    end = time.monotonic() + 10
+    while (left := processes_of(process.pid)) and time.monotonic() < end:
+        time.sleep(0.05)
+    for each in left:  # of its own session
+        os.kill(each, signal.SIGKILL)
+    assert left == []
+    kept = rows_there()
+    assert 5 <= len(kept) < 25
+    for line in kept:
+        with suppress(ValueError):  # the last one may be half
+            for name in json.loads(line)["files"]:
+                assert contents()[name] == contents("whole")[name]
+    assert not Path("out/table.csv").exists()
+    names = done_again(monkeypatch)
+    with threads() as executor:
+        done = brushsvg.batch(["in"], "out", executor=executor)
+    assert len(names) == 25 - done.resumed and done.resumed >= len(kept) - 1
+    assert contents() == contents("whole")
+
+
+def test_a_contact_sheet_has_a_place_for_each(tmp_path):
+    picture = tmp_path / "a.png"
+    cv2.imwrite(str(picture), np.full((60, 120, 3), (0, 0, 255), np.uint8))
+    why = "a long sentence of 12.000 mm that goes on " * 12
+    cards = [
+        Card(f"drawing {k}" * 4, "overlap 0.990", why, None if k == 1 else picture.read_bytes)
+        for k in range(31)
+    ]
+    pages = [cv2.imdecode(np.frombuffer(each, np.uint8), 1) for each in contact_sheets(cards)]
+    assert len(pages) == 2 and ACROSS * DOWN == 30
+    assert pages[0].shape[1] == pages[1].shape[1] > ACROSS * CARD_W
+    red = (pages[0] == (0, 0, 255)).all(axis=2)
+    x, y = 40 + CARD_W // 2, 110 + PICTURE_H // 2
+    assert red[y, x] and not red[y, x + CARD_W + GAP] and red[y + PICTURE_H + WORDS_H + GAP, x]
+    assert pages[1].shape[0] < pages[0].shape[0]

@@ -1,0 +1,293 @@
+"""brushsvg.convert: what the command does, in one call from Python."""
+
+import copy
+import io
+import itertools
+import re
+import sys
+import threading
+from concurrent.futures import CancelledError
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import ezdxf
+import pytest
+import svgpathtools
+from diagnostics import refused
+
+import brushsvg
+from brushsvg.cli import main
+from brushsvg.cli.arguments import values
+from brushsvg.cli.arguments.parser import command_parser
+from brushsvg.pipeline.choices import CHOICES, ONE_OF, RANGES, Given
+
+PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'
+LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="{}" stroke-width="{}"/>'
+TWO = PAGE.format("", LINE.format("a", 20, 90, "#203060", 3) + LINE.format("b", 30, 100, "#a03020", 4))
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("two.svg").write_text(TWO)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("out", "flags", "choices"),
+    [
+        ("o.ngc", "", {}),
+        ("o.json", "--compensation constant --lag 6", {"compensation": "constant", "lag": 6}),
+        ("o.script", "--cell ur5e --tolerance 0.1", {"cell": "ur5e", "tolerance": 0.1}),
+        ("o.ngc", "--order nearest --z-offset -0.3 --from-stroke 2", {"z_offset": -0.3}),
+        ("o.ngc", "--fit 60x30 --width 2 --speed 9", {"fit": (60, 30), "width": 2, "paint_speed": 9}),
+    ],
+)
+def test_it_does_what_the_command_does(desk, out, flags, choices):
+    beside = {"preview": "o.svg", "report": "o.txt", "page": "p.svg"}
+    typed = itertools.chain(*((f"--{name}", path) for name, path in beside.items()))
+    assert main(["convert", "two.svg", out, *typed, *flags.split()]) == 0
+    names = [out, *beside.values()]
+    by_command = {name: Path(name).read_bytes() for name in names}
+    for name in names:
+        Path(name).unlink()
+    if "--order" in flags:
+        choices = choices | {"order": "nearest", "from_stroke": 2}
+    done = brushsvg.convert("two.svg", out, **beside, **choices)
+    assert {name: Path(name).read_bytes() for name in names} == by_command
+    assert sorted(done.files) == sorted(names) and done.files[0] == out
+    assert list(done.texts) == [Path(out).suffix] and done.text.encode() == by_command[out]
+    assert f"{done.figures.total.overlap:.3f}" in by_command["o.txt"].decode()
+
+
+def test_nothing_is_written_where_no_path_is_given(desk):
+    done = brushsvg.convert("two.svg", cell="ur5e", formats=[".script", ".json"], figures=True)
+    assert [path.name for path in desk.iterdir()] == ["two.svg"]
+    assert brushsvg.write_plan(brushsvg.read_plan(done.texts[".json"])) == done.texts[".json"]
+    assert (done.files, len(done.plan.passes)) == ((), 2)
+    assert done.time_s > 5 and done.figures.total.overlap > 0.9
+    assert "paper-example" in {notice.code for notice in done.notices}
+    assert copy.copy(done) == done and "speedl" not in repr(done) and len(repr(done)) < 2000
+
+
+def test_a_program_in_several_files_has_all_of_them(desk):
+    tiny = "".join(LINE.format(f"s{k}", 20, 60 + k / 4, "#203060", 3) for k in range(120))
+    Path("many.svg").write_text(PAGE.format("", tiny))
+    done = brushsvg.convert("many.svg", "many.ls", cell="lrmate200id")
+    assert len(done.files) == len(done.texts) > 1
+    assert {Path(name).read_text() for name in done.files} == {
+        text.replace("\r\n", "\n") for text in done.texts.values()
+    }
+
+
+def _ezdxf():
+    drawing = ezdxf.new(units=4)
+    drawing.modelspace().add_line((0, 0), (50, 9), dxfattribs={"lineweight": 200})
+    return drawing
+
+
+@pytest.mark.parametrize("kind", ["Path", "Design", "ElementTree", "svgpathtools", "Plan"])
+def test_whatever_a_drawing_is_it_becomes_the_same(desk, kind):
+    source = {
+        "Path": lambda: Path("two.svg"),
+        "Design": lambda: brushsvg.read_drawing("two.svg"),
+        "ElementTree": lambda: ElementTree.parse("two.svg"),
+        "svgpathtools": lambda: svgpathtools.Document("two.svg"),
+        "Plan": lambda: brushsvg.convert("two.svg").plan,
+    }[kind]()
+    texts = [brushsvg.convert(each, formats=[".json"]).text for each in ("two.svg", source)]
+    assert texts[0] == texts[1]
+
+
+def test_an_open_dxf_is_read_as_its_file(desk):
+    _ezdxf().saveas("line.dxf")
+    assert brushsvg.convert(_ezdxf()).text == brushsvg.convert("line.dxf").text
+
+
+def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
+    Path("says.svg").write_text(
+        PAGE.format(
+            ' data-brushsvg-cell="ur5e" data-brushsvg-compensation="none"',
+            LINE.format(*"a", 20, 90, "red", 3),
+        )
+    )
+    for source in ("says.svg", ElementTree.parse("says.svg")):
+        assert "compensation: none" in brushsvg.convert(source).texts[".script"]
+
+
+@pytest.mark.parametrize(
+    ("choices", "said"),
+    [
+        ({"width": 5000}, "out-of-range 5000 0.001 1000"),
+        ({"wide": "most"}, "choice-unknown auto clamp"),
+        ({"lag": 3}, "options-contradict"),
+        ({"units": "mm"}, "options-contradict"),
+        ({"fit": (1, 2), "scale": 2}, "options-contradict"),
+        ({"formats": [".txt"]}, "program-format .txt"),
+        ({"out": "o.script"}, "program-format .script"),
+        ({"preview": "o.bmp"}, "program-format o.bmp"),
+        ({"width": 300}, "width-out-of-reach 300 8.4 a"),
+        ({"sheet": (50, 50)}, "tool-off-sheet right a"),
+        ({"from_stroke": 7}, "stroke-unknown 7 2"),
+        ({"brush": "none"}, "brush-unknown none"),
+        ({"cancel": 5}, "wrong-type 5"),
+        ({"progress": 5}, "wrong-type 5"),
+    ],
+)
+def test_what_it_cannot_do_is_one_sentence_and_nothing_is_written(desk, choices, said):
+    with pytest.raises(brushsvg.Error) as told:
+        brushsvg.convert("two.svg", **{"out": "o.ngc", **choices})
+    assert [path.name for path in desk.iterdir()] == ["two.svg"]
+    code, *numbers = said.split()
+    assert code in told.value.code and all(number in str(told.value) + told.value.where for number in numbers)
+
+
+def test_of_several_reasons_the_others_are_notes(desk):
+    with refused("tool-off-sheet right") as told:
+        brushsvg.convert("two.svg", sheet=(60, 60))
+    assert any("b" in note for note in told.value.__notes__)
+
+
+@pytest.mark.parametrize("name", [name for name in CHOICES if name != "input"])
+def test_any_choice_may_be_nonsense(desk, name):
+    for value in (
+        -1,
+        1e300,
+        float("nan"),
+        10**400,
+        "x",
+        b"x",
+        [],
+        {},
+        (1,),
+        (1, "x"),
+        [None],
+        object(),
+        True,
+        "\0",
+    ):
+        with suppress(brushsvg.Error):
+            brushsvg.convert("two.svg", **{name: value})
+
+
+def test_brush_and_cell_may_be_at_hand(desk):
+    brush, cell = brushsvg.find_brush("round-6"), brushsvg.find_cell("ur5e")
+    assert (
+        brushsvg.convert("two.svg", brush=brush, cell=cell).text
+        == brushsvg.convert("two.svg", cell="ur5e").text
+    )
+    with refused("out-of-range decimals"):
+        brushsvg.convert("two.svg", cell=replace(cell, decimals=400))
+
+
+def test_what_the_page_shows_runs(desk, capsys):
+    Path("word.svg").write_text(TWO)
+    page = (Path(__file__).parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
+    names = {}
+    for block in re.findall("```python\n(.*?)```", page, re.DOTALL):
+        exec(block, names)
+    assert names["poses_mm"].shape[1] == 3 and Path("word.ngc").exists()
+    assert set(re.findall("`([a-z_]+)`", page.split("What cannot")[0])) >= {*CHOICES} - {"input"}
+
+
+def test_type_checkers_know_every_choice():
+    assert [*Given.__annotations__] == [name for name in CHOICES if name != "input"]
+
+
+def test_a_choice_that_there_is_not_is_a_type_error(desk):
+    with pytest.raises(TypeError, match="varnish"):
+        brushsvg.convert("two.svg", varnish=1)
+
+
+def test_ranges_are_those_of_the_flags():
+    """Whoever changes one changes the other."""
+    flags = {
+        action.dest: action
+        for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions
+    }
+    assert set(CHOICES) <= set(flags)
+    for name, limits in RANGES.items():
+        assert [flags[name].type(str(limit)) for limit in limits] == list(limits), name
+        for beyond in (limits[0] - 0.001 - abs(limits[0]) / 2, limits[1] * 1.01):
+            with pytest.raises(values.argparse.ArgumentTypeError):
+                flags[name].type(f"{beyond:.6f}")
+    for name, choices in ONE_OF.items():
+        assert tuple(flags[name].choices) == choices, name
+
+
+def waves(rows, columns=20):
+    wave = "c10 -20 25 -20 30 0s10 10 15 -5"
+    paths = "".join(
+        f'<path d="M{10 + 58 * column} {20 + 20 * row}{wave}" fill="none" stroke="#000" stroke-width="3"/>'
+        for row in range(rows)
+        for column in range(columns)
+    )
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="1200mm" height="1600mm">{paths}</svg>'
+
+
+def one_long_line():
+    return PAGE.format(
+        "",
+        f'<path d="M20 30{"c3 -20 6 20 9 0c-3 -20 -6 20 -9 0" * 4000}" fill="none" stroke="red" stroke-width="3"/>',
+    )
+
+
+def still_working() -> list[str]:
+    return [thread.name for thread in threading.enumerate() if thread.name == "brushsvg"]
+
+
+@pytest.mark.parametrize("word", ["reading", "finding", "compensated", "simulated", "writing", "drawing"])
+@pytest.mark.slow
+def test_it_is_given_up_wherever_it_is(desk, word):
+    Path("long.svg").write_text(
+        waves(40 if word in ("reading", "finding") else 10)
+        .replace("1200mm", "5000")
+        .replace("1600mm", "5000")
+    )
+    said = []
+
+    def cancel():
+        return any(word in text for text in said)
+
+    with pytest.raises(CancelledError):
+        brushsvg.convert("long.svg", "o.ngc", preview="o.png", progress=said.append, cancel=cancel)
+    assert word in said[-1] and still_working() == []
+    assert sorted(path.name for path in desk.iterdir()) == ["long.svg", "two.svg"]
+
+
+@pytest.mark.slow
+def test_a_loop_of_the_library_is_given_up_inside(desk):
+    Path("long.svg").write_text(one_long_line())
+    seen = []
+
+    def cancel():
+        """Once it is in the library's call for the only stroke, which takes a minute."""
+        for thread in threading.enumerate():
+            if thread.name == "brushsvg" and (frame := sys._current_frames().get(thread.ident)):
+                seen.append(frame.f_code.co_name == "compensated")
+        return seen[-5:] == [True] * 5
+
+    with pytest.raises(CancelledError):
+        brushsvg.convert("long.svg", compensation="refined", cancel=cancel)
+    assert still_working() == []
+
+
+def test_an_event_cancels_and_one_that_is_never_set_does_not(desk):
+    event = threading.Event()
+    assert brushsvg.convert("two.svg", cancel=event).text == brushsvg.convert("two.svg").text
+    event.set()
+    with pytest.raises(CancelledError):
+        brushsvg.convert("two.svg", cancel=event)
+
+
+def test_what_progress_raises_ends_the_work(desk):
+    def progress(text):
+        raise io.UnsupportedOperation
+
+    Path("long.svg").write_text(waves(10))
+    for cancel in (None, threading.Event()):
+        with pytest.raises(io.UnsupportedOperation):
+            brushsvg.convert("long.svg", progress=progress, cancel=cancel)
+    assert still_working() == []
