@@ -31,8 +31,8 @@ class Number:
 
 @dataclass(frozen=True)
 class FaultModel:
-    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's, all numbers are about
-    the middle of the marks."""
+    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's; turn, height and
+    tilt are about the middle of the marks, scale and skew about the work zero, which is the sheet's corner."""
 
     plan: object
     brush: object
@@ -98,7 +98,6 @@ class FaultModel:
         }
         brush = with_factors(self.brush, factors)
         marks = _core.simulate(_core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM)
-        off = np.array([[scale[0], skew], [0.0, scale[1]]]) @ middle - middle
         lie = rotation(turn)
         rings = {}
         for mark in marks.passes:
@@ -106,5 +105,5 @@ class FaultModel:
             alone.passes = [mark]
             _core.trace_outlines(alone, brush)
             outline = alone.passes[0].outline_mm
-            rings[mark.stroke] = [(np.array(ring) - off - middle) @ lie + middle + shift for ring in outline]
+            rings[mark.stroke] = [(np.array(ring) - middle) @ lie + middle + shift for ring in outline]
         return rings
