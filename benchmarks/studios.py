@@ -1,17 +1,18 @@
-"""Studios whose brush, machine, paper and paint are not as their files say paint a word, and do what `compare` advises.
+"""Studios with brush, machine, paper and paint unlike their files paint a word and do what compare advises.
 
     studios.py [--count 60] [--only K] [--processes 2] [--keep FOLDER] [--sheets 3]
 
-Of each studio, at random by its number: a brush up to 20 % off in lag and in width, a tilt of up to 2 mm over the sheet,
-up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (always alike), paint that lasts for 100 to
-300 mm; every sheet is laid anew, each stroke once more 0.1 mm elsewhere, the camera held another way. The paint is that
-of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the first
-the brush learns from it (`calibrate --plan --prior`), the cell gets the table that `compare` prints, the brush is
-dipped before each stroke where paint is missing; after the second the same, and `convert --corrections`.
+Of each studio, at random by its number: a brush up to 20 % off in lag and in width, a tilt of up to 2 mm over the
+sheet, up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (always alike), paint that lasts for
+100 to 300 mm; every sheet is laid anew, each stroke once more 0.1 mm elsewhere, the camera held another way. The paint
+is that of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the
+first the brush learns from it (`calibrate --plan --prior --machine axes,tilt,backlash`), `compare` with this brush
+writes the cell (`--mended-cell`), and the brush is dipped before each stroke, not before every other one, where paint
+is missing; after the second strokes are led elsewhere (`convert --corrections`).
 
-Printed: overlap of real paint with the drawing; of the repeatable part of the gap (to what a studio where all is
-as it should be paints) how much is closed; strokes that became worse; whether `compare` names the largest cause
-where it takes away more than half of what is lost. --sheets 1: attribution alone.
+Printed: overlap of real paint with the drawing; of the gap that repeats (to what a studio paints that knows its brush,
+and where all else is as it should be) how much is closed; strokes that became worse; whether `compare` names the
+largest cause where it takes away more than half of what is lost. --sheets 1: attribution alone.
 """
 
 from __future__ import annotations
@@ -57,9 +58,6 @@ WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" vi
 <path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/></g></svg>"""
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005
-import os
-TABLE = os.environ.get("TABLE", "compare")
-MORE = os.environ.get("MORE", "")
 CAUSES = ("place of the sheet", "machine", "height and tilt of the paper", "brush", "each stroke's own place")
 CAUSES += ("missing paint",)
 MOVES = ("place of the sheet", "each stroke's own place")  # of them nothing is painted otherwise
@@ -123,8 +121,15 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
     (folder / "word.svg").write_text(WORD)
     (folder / "cell-0.toml").write_text(write_cell(find_cell()))
     drawn = None
-    result = {"number": number, "overlap": [], "gap": [], "gap_wanted": [], "strokes": [], "cell": [], "brush": []}
-    table, corrections, strokes_a_load = "", "", STROKES_A_LOAD
+    result = {
+        "number": number,
+        "overlap": [],
+        "gap": [],
+        "gap_wanted": [],
+        "strokes": [],
+        "brush": [],
+    }
+    corrections, strokes_a_load = "", STROKES_A_LOAD
     for sheet in range(sheets):
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
         flags = f"--brush {brush} --quiet"
@@ -134,9 +139,16 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         if sheet == 0:
             amiss, rng = random_studio(number, plan)
             drawn = all_wanted(folder)
-            perfect = studio.swept(plan, studio.Amiss())
-            result["amiss"] = {k: str(v) for k, v in vars(amiss).items() if k != "own"}
-        told = _core.Plan("", "", plan.sheet_mm, [told_pass(one, find_cell(folder / cell)) for one in plan.passes])
+            # what a studio paints that knows its brush, and where all else is as it should be
+            save_brush(studio.known_brush(lag=amiss.lag, half=amiss.half), folder / "true.json")
+            run("convert word.svg plan-true.json --brush true.json --quiet", folder)
+            ideal = studio.Amiss(lag=amiss.lag, half=amiss.half)
+            perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
+            result["truth"] = truth_of(amiss)
+            result["lasts_mm"] = amiss.lasts_mm
+        told = _core.Plan(
+            "", "", plan.sheet_mm, [told_pass(one, find_cell(folder / cell)) for one in plan.passes]
+        )
         swept = studio.swept(told, amiss, strokes_a_load)
         always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)
         seed = 100 * number + sheet
@@ -145,7 +157,9 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         result["overlap"].append(over(all_of(real), drawn))
         result["gap"].append(1 - over(all_of(always), all_of(perfect)))
         result["gap_wanted"].append(over(all_of(perfect), drawn) - over(all_of(always), drawn))
-        result["strokes"].append({name: over(always[name], perfect[name]) if name in always else 0.0 for name in perfect})
+        result["strokes"].append(
+            {name: over(always[name], perfect[name]) if name in always else 0.0 for name in perfect}
+        )
         page = job_page(plan)
         photo = studio.photographed(plan, real, "word", camera(rng, page.size_mm), seed)
         (folder / f"photo-{sheet}.jpg").write_bytes(photo)
@@ -154,44 +168,64 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
             result["lost"] = over(all_of(perfect), drawn) - result["overlap"][0]
         if sheet and sheet == sheets - 1:
             break
-        text = run(f"compare photo-{sheet}.jpg word.svg --cell {cell} {flags} {led} -o seen-{sheet}.json", folder)
+        text = run(
+            f"compare photo-{sheet}.jpg word.svg --cell {cell} {flags} {led} -o seen-{sheet}.json "
+            f"--mended-cell cell-{sheet + 1}.toml",
+            folder,
+        )
         (folder / f"seen-{sheet}.txt").write_text(text)
         seen = json.loads((folder / f"seen-{sheet}.json").read_text())
         if sheet == 0:
             result["named"] = seen["faults"] and seen["faults"]["mend_first"]
-            result["said"] = seen["faults"] and {row["cause"]: row["gain"] for row in seen["faults"]["causes"]}
+            result["said"] = seen["faults"] and {
+                row["cause"]: row["gain"] for row in seen["faults"]["causes"]
+            }
             result["sheet"] = [*here.shift, here.turn]
-            result["numbers"] = seen["faults"] and {row["name"]: row["value"] for row in seen["faults"]["numbers"]}
+            result["numbers"] = seen["faults"] and {
+                row["name"]: [row["value"], row["half_95"]] for row in seen["faults"]["numbers"]
+            }
         if sheets == 1:
             break
-        strokes_a_load, corrections = follow(seen, text, sheet, folder, strokes_a_load)
+        strokes_a_load, corrections = follow(seen, sheet, folder, strokes_a_load)
         result["brush"].append(brush_off(find_brush(folder / f"mine-{sheet + 1}.json"), amiss))
     result["seconds"] = time.process_time() - began
     return result
 
 
-def follow(seen: dict, text: str, sheet: int, folder: Path, strokes_a_load: int) -> tuple[int, str]:
+def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[int, str]:
     """Does what is advised: files for the next sheet; strokes that a load is for, and the file of corrections."""
     faults = seen["faults"] or {"causes": []}
     missing = [row for row in faults["causes"] if row["cause"] == "missing paint"]
     if missing and missing[0]["gain_95"][0] > SURE_GAIN:
         strokes_a_load = 1
-    mine, cell = (folder / f"{name}" for name in (f"mine-{sheet}.json", f"cell-{sheet}.toml"))
-    now_mine, now_cell = folder / f"mine-{sheet + 1}.json", folder / f"cell-{sheet + 1}.toml"
-    now_cell.write_text(cell.read_text())
     if sheet:
-        now_mine.write_bytes(mine.read_bytes())
+        for name in ("mine", "cell"):
+            suffix = "json" if name == "mine" else "toml"
+            before = folder / f"{name}-{sheet}.{suffix}"
+            (folder / f"{name}-{sheet + 1}.{suffix}").write_bytes(before.read_bytes())
         return strokes_a_load, f"seen-{sheet}.json"
-    words = f"calibrate photo-{sheet}.jpg --plan plan-{sheet}.json --prior {mine.name} -o {now_mine.name} {MORE}"
-    learnt = run(words, folder)
-    (folder / f"learnt-{sheet}.txt").write_text(learnt)
-    if TABLE == "calibrate":
-        text = learnt
-    if "[machine]" in text:
-        table = text[text.index("[machine]") :]
-        table = table[: (table + "\n\n").index("\n\n")]
-        now_cell.write_text(cell.read_text() + "\n" + table + "\n")
+    words = f"calibrate photo-{sheet}.jpg --plan plan-{sheet}.json --prior mine-{sheet}.json -o mine-{sheet + 1}.json"
+    try:
+        (folder / f"learnt-{sheet}.txt").write_text(run(f"{words} --machine axes,tilt,backlash", folder))
+    except RuntimeError as refusal:  # nothing is learnt: the cell stays as compare mended it
+        (folder / f"learnt-{sheet}.txt").write_text(str(refusal))
+        (folder / f"mine-{sheet + 1}.json").write_bytes((folder / f"mine-{sheet}.json").read_bytes())
+        return strokes_a_load, ""
+    words = (
+        f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
+    )
+    told = run(f"{words} --quiet --mended-cell cell-{sheet + 1}.toml", folder)
+    (folder / f"mended-{sheet}.txt").write_text(told)
     return strokes_a_load, ""
+
+
+def truth_of(amiss) -> dict[str, float]:
+    """By the names that compare has for its numbers."""
+    pairs = {"scale": amiss.scale, "backlash": amiss.backlash, "tilt": amiss.tilt, "lean": amiss.lean}
+    found = {
+        f"{name} in {axis}": float(pair[k]) for name, pair in pairs.items() for k, axis in enumerate("xy")
+    }
+    return found | {"lag": float(amiss.lag) - 1, "width": float(amiss.half) - 1}
 
 
 def brush_off(brush, amiss) -> list[float]:
@@ -219,8 +253,12 @@ def gains_of(swept, told, amiss, seed: int, drawn, overlap: float) -> dict[str, 
 
 def report(rows: list[dict]) -> None:
     if (sheets := len(rows[0]["overlap"])) > 1:
-        overlap, gap, by_wanted = (np.array([row[key] for row in rows]) for key in ("overlap", "gap", "gap_wanted"))
-        print("\nsheet  overlap with wanted: mean, 5th percentile   gap to what should be (repeatable): mean, closed")
+        overlap, gap, by_wanted = (
+            np.array([row[key] for row in rows]) for key in ("overlap", "gap", "gap_wanted")
+        )
+        print(
+            "\nsheet  overlap with wanted: mean, 5th percentile   gap to what should be (repeatable): mean, closed"
+        )
         for k in range(sheets):
             closed = 1 - gap[:, k].sum() / gap[:, 0].sum()
             less = 1 - by_wanted[:, k].sum() / by_wanted[:, 0].sum()
@@ -232,21 +270,38 @@ def report(rows: list[dict]) -> None:
             )
         for k in range(1, sheets):
             for before in range(k):
-                pairs = [(one[k][name], one[before][name]) for one in (r["strokes"] for r in rows) for name in one[0]]
+                pairs = [
+                    (one[k][name], one[before][name])
+                    for one in (r["strokes"] for r in rows)
+                    for name in one[0]
+                ]
                 worse = [b - a for a, b in pairs if a < b]
                 print(
-                    f"strokes worse on sheet {k + 1} than on sheet {before + 1}: {len(worse)} of {len(pairs)}, by more than "
-                    f"0.01 {sum(each > 0.01 for each in worse)}, by {max(worse, default=0):.3f} at most"
+                    f"strokes worse on sheet {k + 1} than on sheet {before + 1}: {len(worse)} of {len(pairs)}, by "
+                    f"more than 0.01 {sum(each > 0.01 for each in worse)}, by {max(worse, default=0):.3f} at most"
                 )
+    seen = [row for row in rows if row["numbers"]]
+    print("\nnumbers of the first sheet: off (rms), within their 95 % intervals")
+    for name in rows[0]["truth"]:
+        off = np.array(
+            [[row["numbers"][name][0] - row["truth"][name], row["numbers"][name][1]] for row in seen]
+        )
+        within = int(np.sum(np.abs(off[:, 0]) <= off[:, 1]))
+        print(f"  {name}: {np.sqrt(np.mean(off[:, 0] ** 2)):.4f}, {within} of {len(seen)}")
     ruled = [row for row in rows if max(row["gains"].values()) > 0.5 * row["lost"]]
     rightly = [row for row in ruled if row["named"] == max(row["gains"], key=row["gains"].get)]
     most = [row for row in rows if row["named"] == max(row["gains"], key=row["gains"].get)]
-    print(f"\nlargest cause named first where it makes up more than half: {len(rightly)} of {len(ruled)}; else and there: "
-          f"{len(most)} of {len(rows)}")
+    print(
+        f"\nlargest cause named first where it makes up more than half: {len(rightly)} of {len(ruled)}; of all "
+        f"studios: {len(most)} of {len(rows)}"
+    )
     for row in rows:
         if row not in most:
             said = row["said"] or {}
-            words = ", ".join(f"{cause} {gain:.3f} (said {said.get(cause, np.nan):.3f})" for cause, gain in row["gains"].items())
+            words = ", ".join(
+                f"{cause} {gain:.3f} (said {said.get(cause, np.nan):.3f})"
+                for cause, gain in row["gains"].items()
+            )
             print(f"  {row['number']}: named {row['named']}; lost {row['lost']:.3f}: {words}")
     print(f"{np.mean([row['seconds'] for row in rows]):.1f} s of processor time a studio")
 

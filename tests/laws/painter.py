@@ -19,7 +19,7 @@ BRISTLES = (
     ((0.1, 0.5), 1.25),
     ((0.5, 1.0), 1.5),
 )  # from where to where across a brush, in half widths, and how many times as long paint lasts there
-POSES = 260  # per stroke once it is cut for the stepping: every 0.3 mm or so
+POSES = 260  # at least, per stroke once it is cut for the stepping: every 0.3 mm or so
 CLOSE = (
     420  # once more where the footprint turns: no point of it goes farther than 0.5 mm from one to the next
 )
@@ -149,7 +149,8 @@ def swept(brush, strokes, height, vertices=33, lasts=None):
     """For each stroke the region that the brush paints on paper of this height; None where it does not reach it.
 
     lasts: of each stroke after how much way its paint begins to run out."""
-    plans = np.array([_stepped(poses, height) for _, poses in strokes])
+    count = max(POSES, *(len(poses) + 4 for _, poses in strokes))
+    plans = np.array([_stepped(poses, height, count) for _, poses in strokes])
     laws = [brush.law("lag")] * len(strokes)
     contacts = oracle.step_all(plans, laws, 20, "rope")
     longest = (brush.widest_per_half + brush.front_per_half) * brush.law("half_width")(brush.deepest)
@@ -162,18 +163,18 @@ def swept(brush, strokes, height, vertices=33, lasts=None):
     ]
 
 
-def _stepped(poses, height):
-    """POSES poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
+def _stepped(poses, height, count):
+    """So many poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
     poses = np.vstack([poses[:1], poses, poses[-1:]])
     poses[0, 2] = poses[-1, 2] = 1.0
     poses[:, 2] -= height
     size = np.hypot(*np.diff(poses[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(poses[:, 2]))
     at = np.concatenate([[0.0], np.cumsum(size)])
-    places = np.union1d(np.linspace(0, at[-1], POSES - len(at) + 2), at)
-    while len(places) < POSES:  # where places fell together: halve the widest gap
+    places = np.union1d(np.linspace(0, at[-1], count - len(at) + 2), at)
+    while len(places) < count:  # where places fell together: halve the widest gap
         k = int(np.argmax(np.diff(places)))
         places = np.insert(places, k + 1, 0.5 * (places[k] + places[k + 1]))
-    return np.column_stack([np.interp(places[:POSES], at, poses[:, i]) for i in range(3)])
+    return np.column_stack([np.interp(places[:count], at, poses[:, i]) for i in range(3)])
 
 
 def _closer(plan, contact, longest):

@@ -21,9 +21,10 @@ LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.ar
 WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
 
 
-def known_brush(sure=0.08):
-    """The brush as its file has it: each number known to a share `sure` of it (standard deviation)."""
-    laws = MarkLaws(LAG.tolist(), GAP.tolist(), HALF.tolist(), WIDEST, FRONT)
+def known_brush(sure=0.08, lag=1.0, half=1.0):
+    """The brush as its file has it, lag and half width so many times as large: each number known to a share `sure` of
+    it (standard deviation)."""
+    laws = MarkLaws((lag * LAG).tolist(), GAP.tolist(), (half * HALF).tolist(), WIDEST, FRONT)
     numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
     brush = brush_of(laws, "mine", (0.0, DEEPEST), np.diag((sure * numbers) ** 2))
     brush.max_speed_mm_s = 25.0
@@ -32,9 +33,9 @@ def known_brush(sure=0.08):
 
 @dataclass(frozen=True)
 class Amiss:
-    """What is: lag and half width times so much; scale - 1, skew (from the work zero, the sheet's
-    corner), lean, backlash of the machine; the paper higher at the sheet's middle, tilted about it; the sheet's place; own: by stroke, always alike; random_mm: sigma; lasts_mm: the
-    way that a load of paint lasts."""
+    """What is: lag and half width times so much; scale - 1, skew (from the work zero, the sheet's corner), lean,
+    backlash of the machine; the paper higher at the sheet's middle, tilted about it; the sheet's place; own: by stroke,
+    always alike; random_mm: sigma; lasts_mm: the way that a load of paint lasts."""
 
     lag: float = 1.0
     half: float = 1.0

@@ -71,9 +71,11 @@ class Faults:
     first: str | None
 
 
-def whose_fault(plan, brush, strokes: list[Wanted], seen_of: Comparison) -> Faults | None:
-    """plan: as it was told; strokes: those that were compared. None where too few edges are seen, or where no
-    brush has the numbers that would explain them."""
+def whose_fault(
+    plan, brush, strokes: list[Wanted], seen_of: Comparison, learned: bool = False
+) -> Faults | None:
+    """plan: as it was told; strokes: those that were compared; learned: whether the brush was made from them. None
+    where too few edges are seen, or where no brush has the numbers that would explain them."""
     painting = [stroke for stroke in strokes if stroke.predicted]
     if len(painting) < FEW_STROKES:
         return None
@@ -87,7 +89,7 @@ def whose_fault(plan, brush, strokes: list[Wanted], seen_of: Comparison) -> Faul
         if stroke.stroke not in largest
     ]
     names = [stroke.stroke for stroke in strokes]
-    model = FaultModel(plan, brush, tuple(names), middle)
+    model = FaultModel(plan, brush, tuple(names), middle, learned)
     try:
         fit = _fit(model, names, seen_of, beside)
     except Error:
