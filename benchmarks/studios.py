@@ -40,6 +40,7 @@ from brushsvg import _core, find_brush
 from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
 from brushsvg.evaluation.report import wanted_rings
+from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.distortion import told_pass
 from brushsvg.painted.job_page import job_page
@@ -146,9 +147,9 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
             result["truth"] = truth_of(amiss)
             result["lasts_mm"] = amiss.lasts_mm
-        told = _core.Plan(
-            "", "", plan.sheet_mm, [told_pass(one, find_cell(folder / cell)) for one in plan.passes]
-        )
+        machine = find_cell(folder / cell)
+        passes = [told_pass(with_chords(one) if machine.machine else one, machine) for one in plan.passes]
+        told = _core.Plan("", "", plan.sheet_mm, passes)
         swept = studio.swept(told, amiss, strokes_a_load)
         always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)
         seed = 100 * number + sheet
@@ -311,7 +312,9 @@ def main_() -> None:
     parser.add_argument("--count", type=int, default=60)
     parser.add_argument("--only", type=int, nargs="*", help="these studios alone")
     parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--keep", type=Path, help="a folder for photographs and figures")
+    parser.add_argument(
+        "--keep", type=Path, help="a folder for photographs and figures; what is there is not done again"
+    )
     parser.add_argument("--sheets", type=int, choices=(1, 2, 3), default=3, help="1: attribution alone")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as made, multiprocessing.Pool(args.processes) as pool:
@@ -329,6 +332,9 @@ def main_() -> None:
 
 
 def paint_one(number: int, folder: Path, sheets: int) -> dict:
+    done = folder / str(number) / "result.json"
+    if done.exists():
+        return json.loads(done.read_text())
     return paint_a_studio(number, folder / str(number), sheets)
 
 
