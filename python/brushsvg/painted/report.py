@@ -6,11 +6,14 @@ import json
 import math
 from dataclasses import asdict
 
+import numpy as np
+
 from ..machine.cell import Machine
 from .comparison import BLOT_MM, Compared, Comparison
 from .corrections import FORMAT, Correction
 from .fault_report import in_json, in_words
 from .faults import Faults
+from .next_time import aside_mm
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing")
@@ -99,6 +102,7 @@ def as_json(title: str, found: Comparison, corrections: dict[str, Correction], f
                 "overlap_predicted": one.overlap_predicted,
                 "found": one.placed.found,
                 "shift_mm": list(one.placed.shift_mm) if one.placed.found else None,
+                "aside_mm": float(np.hypot(*aside_mm(one, found))) if one.placed.found else None,
                 "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
                 "wider_mm": one.placed.wider_mm if one.placed.found else None,
                 "missing": one.missing,

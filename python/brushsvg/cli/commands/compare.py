@@ -8,7 +8,7 @@ from ...errors import Error, Notice
 from ...evaluation import report as figures
 from ...files import read_bytes
 from ...machine.cell_file import parse_cell, write_cell
-from ...painted.corrections import corrected, refuse_corrected
+from ...painted.corrections import aside_before_mm, corrected, refuse_corrected
 from ...pipeline import prediction
 from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import corrections_of, settled, typed
@@ -24,7 +24,7 @@ def compare_files(args) -> None:
     from ...painted.faults import whose_fault
     from ...painted.job_page import job_page
     from ...painted.mended_cell import mended
-    from ...painted.next_time import next_corrections
+    from ...painted.next_time import farther, next_corrections
     from ...painted.picture import comparison_png
     from ...painted.report import as_json, as_text
 
@@ -53,7 +53,8 @@ def compare_files(args) -> None:
     learned = has_learned(work.brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = whose_fault(told, work.brush, strokes, found, learned)
     corrections, too_far = next_corrections(found, work.plan, before)
-    warn(args.photos[0], [*found.notices, *too_far])
+    beyond = farther(found, aside_before_mm(args.corrections)) if args.corrections else []
+    warn(args.photos[0], [*found.notices, *too_far, *beyond])
     cell = work.options.cell
     machine = mended(faults, found.middle_mm, cell.machine) if faults else None
     title = work.title or "untitled"
