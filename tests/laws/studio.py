@@ -170,5 +170,10 @@ def overlap(regions, wanted):
 
 
 def as_region(rings):
-    rings = [Polygon(ring).buffer(0) for ring in rings]
-    return unary_union([ring for ring in rings])
+    """Outer rings counter-clockwise, holes clockwise."""
+    shapes = [Polygon(ring) for ring in rings]
+    outer, holes = (
+        unary_union([shape.buffer(0) for shape in shapes if shape.exterior.is_ccw == side])
+        for side in (True, False)
+    )
+    return outer.difference(holes)
