@@ -13,7 +13,13 @@ import numpy as np
 import oracle
 import shapely
 
-POSES = 260  # per stroke once it is cut for the stepping: every 0.3 mm or so
+BRISTLES = (
+    ((-1.0, -0.5), 1.1),
+    ((-0.5, 0.1), 1.4),
+    ((0.1, 0.5), 1.25),
+    ((0.5, 1.0), 1.5),
+)  # from where to where across a brush, in half widths, and how many times as long paint lasts there
+POSES = 260  # at least, per stroke once it is cut for the stepping: every 0.3 mm or so
 CLOSE = (
     420  # once more where the footprint turns: no point of it goes farther than 0.5 mm from one to the next
 )
@@ -139,32 +145,36 @@ def paint(rng, brush, strokes, faults, regions=None):
     return sheet
 
 
-def swept(brush, strokes, height, vertices=33):
-    """For each stroke the region that the brush paints on paper of this height; None where it does not reach it."""
-    plans = np.array([_stepped(poses, height) for _, poses in strokes])
+def swept(brush, strokes, height, vertices=33, lasts=None):
+    """For each stroke the region that the brush paints on paper of this height; None where it does not reach it.
+
+    lasts: of each stroke after how much way its paint begins to run out."""
+    count = max(POSES, *(len(poses) + 4 for _, poses in strokes))
+    plans = np.array([_stepped(poses, height, count) for _, poses in strokes])
     laws = [brush.law("lag")] * len(strokes)
     contacts = oracle.step_all(plans, laws, 20, "rope")
     longest = (brush.widest_per_half + brush.front_per_half) * brush.law("half_width")(brush.deepest)
     plans = np.array([_closer(*both, longest) for both in zip(plans, contacts, strict=True)])
     contacts = oracle.step_all(plans, laws, 20, "rope")
+    lasts = np.full(len(strokes), np.inf) if lasts is None else lasts
     return [
-        _painted(brush, plan, contact, vertices) if _down(plan, contact).any() else None
-        for plan, contact in zip(plans, contacts, strict=True)
+        _painted(brush, plan, contact, vertices, left) if _down(plan, contact).any() else None
+        for plan, contact, left in zip(plans, contacts, lasts, strict=True)
     ]
 
 
-def _stepped(poses, height):
-    """POSES poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
+def _stepped(poses, height, count):
+    """So many poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
     poses = np.vstack([poses[:1], poses, poses[-1:]])
     poses[0, 2] = poses[-1, 2] = 1.0
     poses[:, 2] -= height
     size = np.hypot(*np.diff(poses[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(poses[:, 2]))
     at = np.concatenate([[0.0], np.cumsum(size)])
-    places = np.union1d(np.linspace(0, at[-1], POSES - len(at) + 2), at)
-    while len(places) < POSES:  # where places fell together: halve the widest gap
+    places = np.union1d(np.linspace(0, at[-1], count - len(at) + 2), at)
+    while len(places) < count:  # where places fell together: halve the widest gap
         k = int(np.argmax(np.diff(places)))
         places = np.insert(places, k + 1, 0.5 * (places[k] + places[k + 1]))
-    return np.column_stack([np.interp(places[:POSES], at, poses[:, i]) for i in range(3)])
+    return np.column_stack([np.interp(places[:count], at, poses[:, i]) for i in range(3)])
 
 
 def _closer(plan, contact, longest):
@@ -183,7 +193,7 @@ def _down(plan, contact):
     return ~np.isnan(contact[:, 0]) & (plan[:, 2] <= 0)
 
 
-def _painted(brush, plan, contact, vertices):
+def _painted(brush, plan, contact, vertices, lasts=np.inf):
     down = _down(plan, contact)
     tcp, contact, depth = plan[down, :2], contact[down], -plan[down, 2]
     lever = tcp - contact
@@ -209,7 +219,20 @@ def _painted(brush, plan, contact, vertices):
     outlines = []
     for p, axis, b, shape in zip(contact, u, gap, shapes, strict=True):
         outlines.append(p - b * axis + shape @ np.array([axis, [-axis[1], axis[0]]]))
-    return oracle.swept(outlines, True)
+    come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(tcp, axis=0).T))])
+    if come[-1] <= lasts:
+        return oracle.swept(outlines, True)
+    wet = max(2, int(np.searchsorted(come, lasts)))
+    parts = [oracle.swept(outlines[:wet], True)]
+    for (low, high), longer in BRISTLES:  # some bristles hold their paint for longer
+        last = min(max(wet + 1, int(np.searchsorted(come, longer * lasts))), len(come))
+        strips = []
+        for k in range(wet - 1, last):
+            shape = shapes[k] * [1.0, 0.0] + np.clip(shapes[k] * [0.0, 1.0], low * half[k], high * half[k])
+            axis = u[k]
+            strips.append(contact[k] - gap[k] * axis + shape @ np.array([axis, [-axis[1], axis[0]]]))
+        parts.append(oracle.swept(strips, True))
+    return shapely.union_all(parts)
 
 
 def _rings(region):

@@ -21,9 +21,10 @@ LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.ar
 WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
 
 
-def known_brush(sure=0.08):
-    """The brush as its file has it: each number known to a share `sure` of it (standard deviation)."""
-    laws = MarkLaws(LAG.tolist(), GAP.tolist(), HALF.tolist(), WIDEST, FRONT)
+def known_brush(sure=0.08, lag=1.0, half=1.0):
+    """The brush as its file has it, lag and half width so many times as large: each number known to a share `sure` of
+    it (standard deviation)."""
+    laws = MarkLaws((lag * LAG).tolist(), GAP.tolist(), (half * HALF).tolist(), WIDEST, FRONT)
     numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
     brush = brush_of(laws, "mine", (0.0, DEEPEST), np.diag((sure * numbers) ** 2))
     brush.max_speed_mm_s = 25.0
@@ -32,8 +33,9 @@ def known_brush(sure=0.08):
 
 @dataclass(frozen=True)
 class Amiss:
-    """What is: lag and half width times so much; scale - 1, skew, lean, backlash of the machine; the paper higher at
-    the sheet's middle, tilted about it; the sheet's place; own: by stroke, always alike; random_mm: sigma."""
+    """What is: lag and half width times so much; scale - 1, skew (from the work zero, the sheet's corner), lean,
+    backlash of the machine; the paper higher at the sheet's middle, tilted about it; the sheet's place; own: by stroke,
+    always alike; random_mm: sigma; lasts_mm: the way that a load of paint lasts."""
 
     lag: float = 1.0
     half: float = 1.0
@@ -47,6 +49,7 @@ class Amiss:
     turn: float = 0.0
     own: dict = field(default_factory=dict)
     random_mm: float = 0.0
+    lasts_mm: float = np.inf
 
     def mended(self, cause):
         """The same without what one cause, by the name that compare has for it, does."""
@@ -57,6 +60,7 @@ class Amiss:
             "height and tilt of the paper": ("height", "tilt"),
             "brush": ("lag", "half"),
             "each stroke's own place": ("own", "random_mm"),
+            "missing paint": ("lasts_mm",),
         }[cause]
         return replace(self, **{key: getattr(good, key) for key in keys})
 
@@ -110,24 +114,38 @@ def ran(plan, amiss):
             last = here
         at = place - middle
         z = poses[:, 2] - amiss.height - at @ amiss.tilt
-        at = at + at * amiss.scale + np.outer(at[:, 1], [amiss.skew, 0.0])
+        at = place + place * amiss.scale + np.outer(place[:, 1], [amiss.skew, 0.0])
         at += np.outer(np.maximum(-z, 0), amiss.lean)
-        out.append((one.stroke, np.column_stack([at + middle, z])))
+        out.append((one.stroke, np.column_stack([at, z])))
     return out
 
 
-def painted(plan, amiss, seed=0):
+def painted(plan, amiss, seed=0, strokes_a_load=1):
     """By stroke its region on the sheet."""
-    rng = np.random.default_rng(seed)
+    return laid(swept(plan, amiss, strokes_a_load), plan, amiss, seed)
+
+
+def swept(plan, amiss, strokes_a_load=1):
+    """By stroke its region, as the machine of such a studio paints it without anything of its own or at random."""
     brush = painter.TrueBrush(DEEPEST, amiss.lag * LAG, GAP, amiss.half * HALF, WIDEST, FRONT)
-    ways = ran(plan, amiss)
+    ways, lasts, come = ran(plan, amiss), [], 0.0
+    for k, (_, poses) in enumerate(ways):
+        come = come if k % strokes_a_load else 0.0
+        lasts.append(max(amiss.lasts_mm - come, 2.0))
+        come += float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
+    regions = painter.swept(brush, ways, 0.0, lasts=lasts)
+    return {name: region for (name, _), region in zip(ways, regions, strict=True) if region is not None}
+
+
+def laid(regions, plan, amiss, seed):
+    """Where these lie on a sheet."""
+    rng = np.random.default_rng(seed)
     middle = tuple(0.5 * np.array(plan.sheet_mm))
     out = {}
-    for (name, _), region in zip(ways, painter.swept(brush, ways, 0.0), strict=True):
-        if region is not None:
-            aside = amiss.own.get(name, np.zeros(2)) + rng.normal(0, amiss.random_mm, 2)
-            region = affinity.rotate(affinity.translate(region, *aside), amiss.turn, middle)
-            out[name] = affinity.translate(region, *amiss.shift)
+    for name, region in regions.items():
+        aside = amiss.own.get(name, np.zeros(2)) + rng.normal(0, amiss.random_mm, 2)
+        region = affinity.rotate(affinity.translate(region, *aside), amiss.turn, middle)
+        out[name] = affinity.translate(region, *amiss.shift)
     return out
 
 
@@ -152,5 +170,10 @@ def overlap(regions, wanted):
 
 
 def as_region(rings):
-    rings = [Polygon(ring).buffer(0) for ring in rings]
-    return unary_union([ring for ring in rings])
+    """Outer rings counter-clockwise, holes clockwise."""
+    shapes = [Polygon(ring) for ring in rings]
+    outer, holes = (
+        unary_union([shape.buffer(0) for shape in shapes if shape.exterior.is_ccw == side])
+        for side in (True, False)
+    )
+    return outer.difference(holes)

@@ -13,6 +13,7 @@ if not hasattr(core, "fit_marks"):
 
 from brushsvg.brush.library import save_brush  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
+from brushsvg.machine.cell_file import read_cell  # noqa: E402
 from brushsvg.pipeline.json_files import read_plan  # noqa: E402
 
 pytestmark = pytest.mark.long
@@ -70,18 +71,22 @@ ONE = {
         ),
         {},
     ),
+    "missing paint": (studio.Amiss(lasts_mm=38.0), {}),
 }
 
 
 @pytest.mark.parametrize("cause", ONE)
 def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     amiss, numbers = ONE[cause]
-    found = compared(job, amiss, 1)
+    folder, _ = job
+    found = compared(job, amiss, 1, "--mended-cell", str(folder / "mended.toml"))
     assert found["mend_first"] == cause, found["causes"]
     rows = {row["name"]: row for row in found["numbers"]}
     for name, truth in numbers.items():
         row = rows[name]
         assert abs(row["value"] - truth) < max(2 * row["half_95"], 0.12 * abs(truth)), (name, truth, row)
+    if cause == "machine":
+        assert read_cell(folder / "mended.toml").machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job
     wanted = studio.painted(plan, studio.Amiss())

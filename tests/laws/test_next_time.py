@@ -135,6 +135,26 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
     assert in_json(capsys, "check", tmp_path / "b.ngc", drawing, "--corrections", found)[0] == 1
 
 
+def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
+    """A stroke that the machine leads elsewhere on the second sheet, and no other."""
+    studio = Studio(tmp_path, 7)
+    first = studio.compared(studio.photographed(studio.plan()))
+    plan = studio.plan("--corrections", first)
+    studio.own["bar"] = studio.own["bar"] + np.array([0.9, -1.2])
+    photo = studio.photographed(plan)
+    out = tmp_path / "second.json"
+    words = ("compare", photo, tmp_path / "five.svg", "--corrections", first, "-o", out)
+    status, _, told = in_json(capsys, *words)
+    assert status == 0 and is_told(told, "stroke-farther", "bar"), told
+    before, now = (
+        {row["stroke"]: row["aside_mm"] for row in json.loads(path.read_text())["strokes"]}
+        for path in (first, out)
+    )
+    farther = {name for name in now if now[name] > before[name] + 0.1}
+    assert {notice.where for _, notice in told if notice.code == "stroke-farther"} == farther
+    assert now["bar"] > 0.8 and len(farther) < 4, (before, now)
+
+
 def test_corrections_are_taken_back_once(tmp_path, capsys):
     """A corrected plan does not say where its strokes should be painted: again, they would go twice as far."""
     studio = Studio(tmp_path, 6)

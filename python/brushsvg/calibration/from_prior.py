@@ -288,6 +288,11 @@ def _reshaped(brush, made, longer: float) -> _core.FootprintTable:
     return _core.FootprintTable(list(map(reshaped, table.dragged)), list(map(reshaped, table.pressed)))
 
 
+def has_learned(brush: _core.Brush, photos: list[str]) -> bool:
+    """photos: sha256 of each: whether the brush was updated by one of them."""
+    return bool(set(photos) & set(_learned(brush)["photos"]))
+
+
 def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
     """photos: sha256 of each."""
     if known := set(photos) & set(_learned(brush)["photos"]):

@@ -12,6 +12,7 @@ from .distortion import true_mm
 from .pass_way import on_way
 
 STEP_MM = 0.4
+STRAIGHT = 1e-7  # sine of the turn of two moves that are one
 
 
 def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float = np.inf) -> list:
@@ -36,14 +37,32 @@ def with_play(passes, backlash_mm) -> list:
     out, behind, last = [], np.zeros(2), None
     for a_pass in passes:
         poses = in_steps(np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3))
-        run = poses.copy()
-        for row, place in enumerate(poses[:, :2]):
-            if last is not None:
-                behind = np.clip(behind + place - last, -half, half)
-            last = place
-            run[row, :2] -= behind
-        out.append(on_way(a_pass, run, []))
+        moves = np.diff(poses[:, :2], axis=0, prepend=poses[:1, :2] if last is None else last[None])
+        last = poses[-1, :2]
+        stays = np.column_stack([_behind(moves[:, k], half[k], behind[k]) for k in (0, 1)])
+        run = poses - np.column_stack([stays, np.zeros(len(poses))])
+        behind = stays[-1]
+        out.append(on_way(a_pass, run[_turns(poses, stays)], []))
     return out
+
+
+def _behind(moves: np.ndarray, half: float, at: float) -> list[float]:
+    """By how much one axis stays behind after each move, mm."""
+    found = []
+    for move in moves.tolist():
+        at = min(max(at + move, -half), half)
+        found.append(at)
+    return found
+
+
+def _turns(poses: np.ndarray, stays: np.ndarray) -> np.ndarray:
+    """Rows that a straight move does not pass anyway."""
+    run = np.column_stack([poses[:, :2] - stays, poses[:, 2]])
+    step = np.diff(run, axis=0)
+    length = np.maximum(np.linalg.norm(step, axis=1), 1e-12)
+    way = step / length[:, None]
+    straight = np.linalg.norm(np.diff(way, axis=0), axis=1) < STRAIGHT
+    return np.concatenate([[True], ~straight, [True]])
 
 
 def in_steps(poses: np.ndarray) -> np.ndarray:

@@ -102,6 +102,18 @@ def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
     return found
 
 
+def aside_before_mm(path: str | os.PathLike) -> dict[str, float]:
+    """By stroke how far it lay aside on the sheet that these corrections are of; without those of which the file does
+    not say it. Error as for read_corrections."""
+    rows = json_fields.objects(json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes")
+    said = {row.get("stroke"): row.get("aside_mm") for row in rows}
+    return {
+        name: float(mm)
+        for name, mm in said.items()
+        if isinstance(mm, int | float) and not isinstance(mm, bool)
+    }
+
+
 def _read(row: dict, where: str) -> Correction:
     (said,) = json_fields.objects([row["correction"]], f"{where}.correction")
     stroke, at = row.get("stroke"), f"{where}.correction"

@@ -8,12 +8,18 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
+from ..brush.confidence import law_band
 from ..brush.perturbed import with_factors
 from ..geometry.rotation import rotation
 from ..machine.as_run import as_run
 from ..machine.cell import Machine
 
 SHEET, MACHINE, PAPER, BRUSH = "place of the sheet", "machine", "height and tilt of the paper", "brush"
+OTHER_OF_MAKE, OTHER_BENT = (
+    0.15,
+    0.1,
+)  # of a law, standard deviation between brushes of one make; how it bends
+SUREST = 0.005  # of a law: on paper as it lies no brush is surer
 ROUGHLY_MM = 0.1  # between rows of a mark: its area changes by less than 0.05 %
 
 
@@ -31,13 +37,16 @@ class Number:
 
 @dataclass(frozen=True)
 class FaultModel:
-    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's, all numbers are about
-    the middle of the marks."""
+    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's; turn, height and
+    tilt are about the middle of the marks, scale and skew about the work zero, which is the sheet's corner. learned:
+    the brush was made from these marks and its laws are as sure as its file says; else it may be another of its
+    make."""
 
     plan: object
     brush: object
     names: tuple[str, ...]
     middle_mm: np.ndarray
+    learned: bool = False
 
     @cached_property
     def _depths_mm(self) -> tuple[float, float]:
@@ -52,6 +61,7 @@ class FaultModel:
         deepest = max(float(-np.array(one.poses_mm)[:, 2].min()) for one in self.plan.passes)
         at = self.brush.lag(deepest)
         wide = self.brush.half_width(deepest)
+        sure = {law: self._sure_of(law) for law in ("lag", "half_width")} if self.learned else {}
         lag, width = min(0.1, 0.15 / max(at, 0.5)), min(0.1, 0.1 / max(wide, 0.5))
         return (
             Number(SHEET, "shift in x", "mm", 2.0, 0.1),
@@ -67,11 +77,20 @@ class FaultModel:
             Number(PAPER, "height", "mm", 0.3, 0.1),
             Number(PAPER, "tilt in x", "mm per mm", 1.0 / half[0], 0.1 / half[0]),
             Number(PAPER, "tilt in y", "mm per mm", 1.0 / half[1], 0.1 / half[1]),
-            Number(BRUSH, "lag", "of it", 0.15, lag),
-            Number(BRUSH, "lag, deepest against usual", "of it", 0.1, lag),
-            Number(BRUSH, "width", "of it", 0.15, width),
-            Number(BRUSH, "width, deepest against usual", "of it", 0.1, width),
+            Number(BRUSH, "lag", "of it", sure.get("lag", OTHER_OF_MAKE), lag),
+            Number(BRUSH, "lag, deepest against usual", "of it", sure.get("lag", OTHER_BENT), lag),
+            Number(BRUSH, "width", "of it", sure.get("half_width", OTHER_OF_MAKE), width),
+            Number(BRUSH, "width, deepest against usual", "of it", sure.get("half_width", OTHER_BENT), width),
         )
+
+    def _sure_of(self, law: str) -> float:
+        """Standard deviation of a law at the usual depth, as a share of it."""
+        usual = self._depths_mm[0]
+        band = law_band(self.brush, law, np.array([usual]))
+        if band is None:
+            return OTHER_OF_MAKE
+        share = float(band[0][0]) / _core.deviations_of_95() / max(getattr(self.brush, law)(usual), 1e-6)
+        return min(max(share, SUREST), OTHER_OF_MAKE)
 
     def rings(self, amiss: np.ndarray) -> dict[str, list[np.ndarray]]:
         """By stroke, on the sheet; strokes that would not be painted are left out."""
@@ -98,7 +117,6 @@ class FaultModel:
         }
         brush = with_factors(self.brush, factors)
         marks = _core.simulate(_core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM)
-        off = np.array([[scale[0], skew], [0.0, scale[1]]]) @ middle - middle
         lie = rotation(turn)
         rings = {}
         for mark in marks.passes:
@@ -106,5 +124,5 @@ class FaultModel:
             alone.passes = [mark]
             _core.trace_outlines(alone, brush)
             outline = alone.passes[0].outline_mm
-            rings[mark.stroke] = [(np.array(ring) - off - middle) @ lie + middle + shift for ring in outline]
+            rings[mark.stroke] = [(np.array(ring) - middle) @ lie + middle + shift for ring in outline]
         return rings

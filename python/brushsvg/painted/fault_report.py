@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from ..machine.cell import Machine
 from .fault_model import BRUSH, MACHINE, PAPER, SHEET
 from .faults import DRY, OWN, Faults, Found, Share
+from .mended_cell import as_table
 
 MEND = {
     SHEET: "teach the paper anew, or lay the sheet where it was taught",
-    MACHINE: "give the cell the table below, or mend the machine",
-    PAPER: "give the cell the table below, or level the paper",
+    MACHINE: "give convert the cell of --mended-cell, or mend the machine",
+    PAPER: "give convert the cell of --mended-cell, or level the paper",
     BRUSH: "update the brush: calibrate --plan --prior",
     OWN: "correct each stroke: convert --corrections; several sheets tell what of it repeats (compare --sheets)",
     DRY: "let the brush fetch paint earlier: [paint] of the cell",
 }
-SURE = 1.0  # half intervals from 0, from where on a number goes into a cell
 
 
 def told(share: Share) -> str:
     return f"{share.cause}: {share.gain:+.3f} ({share.low:+.3f} to {share.high:+.3f})"
 
 
-def in_words(faults: Faults | None, middle_mm) -> list[str]:
+def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
+    """machine: of the cell, as the next job should be told it."""
     if faults is None:
         sentence = (
             "What the difference is made of is not told: too few strokes, or too few edges that lie free."
@@ -53,11 +53,11 @@ def in_words(faults: Faults | None, middle_mm) -> list[str]:
     else:
         gain = next(share.gain for share in faults.shares if share.cause == faults.first)
         lines.append(f"Mend first: {faults.first}, which gains {gain:.3f}: {MEND[faults.first]}.")
-    if table := cell_table(faults, middle_mm):
+    if machine:
         lines += [
             "",
-            "For the cell, of what is certain (backlash is not undone, it needs a mechanic):",
-            *table,
+            "The cell's table for the next job: what is certain, and what it undid before (backlash needs a mechanic):",
+            *as_table(machine),
         ]
     return lines
 
@@ -67,27 +67,6 @@ def _number(one: Found) -> str:
     digits = 5 if small else 3
     value = f"{one.value:+.{digits}f} +- {one.half:.{digits}f} {one.number.unit}".rstrip()
     return f"{one.number.cause}: {one.number.name} {value}"
-
-
-def cell_table(faults: Faults, middle_mm) -> list[str]:
-    """The lines of a cell's table [machine] that undoes what is certain; none where nothing is."""
-    sure = {
-        one.number.name: one.value if abs(one.value) > SURE * one.half else 0.0
-        for one in faults.found
-        if one.number.cause in (MACHINE, PAPER)
-    }
-    lean, tilt = (np.array([sure[f"{name} in {axis}"] for axis in "xy"]) for name in ("lean", "tilt"))
-    scale = np.array([sure[f"scale in {axis}"] for axis in "xy"])
-    lines = []
-    if lean.any():
-        lines.append(f"lean_mm_per_mm = [{lean[0]:.5f}, {lean[1]:.5f}]")
-    if scale.any() or sure["skew"]:
-        lines.append(f"scale = [{1 + scale[0]:.5f}, {1 + scale[1]:.5f}]")
-        lines.append(f"skew = {sure['skew']:.5f}")
-    if tilt.any() or sure["height"]:
-        lines.append(f"height_mm = {sure['height'] - tilt @ np.asarray(middle_mm):.3f}")
-        lines.append(f"tilt_mm_per_mm = [{tilt[0]:.5f}, {tilt[1]:.5f}]")
-    return ["[machine]", *lines] if lines else []
 
 
 def in_json(faults: Faults | None) -> dict | None:

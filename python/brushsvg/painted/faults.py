@@ -32,6 +32,7 @@ TUNING = 1.345  # Huber's
 DRAWS = 200
 FINE_PX_PER_MM = 8.0
 ALIKE = 0.3  # share of a cause's doubt that is left once another is known: below, they are hard to tell apart
+BESIDE_MM = 0.04  # so far a model lies beside the paint all round by its own doubt
 DOUBT_MM = 0.05  # less of it matters to nobody
 
 
@@ -70,9 +71,11 @@ class Faults:
     first: str | None
 
 
-def whose_fault(plan, brush, strokes: list[Wanted], seen_of: Comparison) -> Faults | None:
-    """plan: as it was told; strokes: those that were compared. None where too few edges are seen, or where no
-    brush has the numbers that would explain them."""
+def whose_fault(
+    plan, brush, strokes: list[Wanted], seen_of: Comparison, learned: bool = False
+) -> Faults | None:
+    """plan: as it was told; strokes: those that were compared; learned: whether the brush was made from them. None
+    where too few edges are seen, or where no brush has the numbers that would explain them."""
     painting = [stroke for stroke in strokes if stroke.predicted]
     if len(painting) < FEW_STROKES:
         return None
@@ -86,7 +89,7 @@ def whose_fault(plan, brush, strokes: list[Wanted], seen_of: Comparison) -> Faul
         if stroke.stroke not in largest
     ]
     names = [stroke.stroke for stroke in strokes]
-    model = FaultModel(plan, brush, tuple(names), middle)
+    model = FaultModel(plan, brush, tuple(names), middle, learned)
     try:
         fit = _fit(model, names, seen_of, beside)
     except Error:
@@ -231,29 +234,21 @@ def _by_edges(outward: np.ndarray, outline: Outline) -> float:
 
 
 def _missing_paint(model, names, amiss, own, found: Comparison, whole) -> Share:
-    """Paint that is missing inside of marks, as they lie; from one stroke to the other it differs: drawn anew."""
+    """Paint that is missing inside of marks, as they lie: more than a model misses that lies beside them."""
     rings = _rings(model, names, amiss, own)
     canvas = found.canvas
     target = canvas.filled(whole) > 0.5
     painted = found.painted > LEVEL
-    missing, sizes = np.zeros_like(painted), []
+    missing = np.zeros_like(painted)
     for each in rings:
         inner = canvas.filled(each) > 0.5 if each else np.zeros_like(painted)
-        hole = inner & ~painted & target
-        missing |= hole
-        sizes.append(float(hole.sum()))
+        missing |= inner & ~painted & target
     overlap = _overlap(painted, target)
-    # a model that lies beside the paint by its own doubt is no missing paint
-    edge = (
-        0.04
-        * float(sum(np.hypot(*np.diff(r, axis=0).T).sum() for e in rings for r in e))
-        * canvas.px_per_mm**2
-    )
-    gain = (_overlap(painted | missing, target) - overlap) * max(0.0, 1 - edge / max(sum(sizes), 1e-9))
-    draw = np.random.default_rng(2).integers(0, len(sizes), (DRAWS, len(sizes)))
-    ratio = np.array(sizes)[draw].sum(axis=1) / max(sum(sizes), 1e-9)
-    low, high = np.quantile(ratio, (0.025, 0.975))
-    return Share(DRY, gain, float(gain * low), float(gain * high))
+    gain = _overlap(painted | missing, target) - overlap
+    around = float(sum(np.hypot(*np.diff(ring, axis=0).T).sum() for each in rings for ring in each))
+    doubt = BESIDE_MM * around * canvas.px_per_mm**2 / max(float(missing.sum()), 1.0)
+    gain, low, high = (gain * max(0.0, 1 - times * doubt) for times in (1.0, 2.0, 0.0))
+    return Share(DRY, gain, low, high if gain else 0.0)
 
 
 def _overlap(one: np.ndarray, other: np.ndarray) -> float:

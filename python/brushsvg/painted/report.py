@@ -6,16 +6,21 @@ import json
 import math
 from dataclasses import asdict
 
+import numpy as np
+
+from ..machine.cell import Machine
 from .comparison import BLOT_MM, Compared, Comparison
 from .corrections import FORMAT, Correction
 from .fault_report import in_json, in_words
 from .faults import Faults
+from .next_time import aside_mm
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing")
 
 
-def as_text(title: str, found: Comparison, faults: Faults | None) -> str:
+def as_text(title: str, found: Comparison, faults: Faults | None, machine: Machine | None = None) -> str:
+    """machine: of the cell, as the next job should be told it."""
     rows = [HEAD, *(_row(stroke) for stroke in found.strokes)]
     widths = [max(len(row[k]) for row in rows) for k in range(len(HEAD))]
     table = [
@@ -48,7 +53,7 @@ def as_text(title: str, found: Comparison, faults: Faults | None) -> str:
         "Wanted, predicted: overlap of the stroke's paint with them, intersection over union. x, y, off: displacement",
         "from the prediction in mm; turn in degrees; wider: of each edge, in mm; missing: share of the mark, where it",
         "lies, without paint; -: not to be told from its neighbours.",
-        *in_words(faults, found.middle_mm),
+        *in_words(faults, machine),
     ]
     return "\n".join(lines) + "\n"
 
@@ -97,6 +102,7 @@ def as_json(title: str, found: Comparison, corrections: dict[str, Correction], f
                 "overlap_predicted": one.overlap_predicted,
                 "found": one.placed.found,
                 "shift_mm": list(one.placed.shift_mm) if one.placed.found else None,
+                "aside_mm": float(np.hypot(*aside_mm(one, found))) if one.placed.found else None,
                 "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
                 "wider_mm": one.placed.wider_mm if one.placed.found else None,
                 "missing": one.missing,

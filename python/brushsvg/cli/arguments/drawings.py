@@ -130,6 +130,11 @@ def add_compare(commands) -> None:
     compare.add_argument("-o", metavar="FILE", dest="output", help="also write the figures (.json .txt)")
     compare.add_argument("--picture", metavar="FILE", help="also draw paint, wanted and predicted (.png)")
     compare.add_argument(
+        "--mended-cell",
+        metavar="FILE",
+        help="also write the cell whose table [machine] undoes what is certain, besides what it undid (.toml)",
+    )
+    compare.add_argument(
         "--at-least",
         metavar="OVERLAP",
         type=values.share,
@@ -147,12 +152,17 @@ def add_compare(commands) -> None:
 
 def _check_compare(args) -> None:
     check_drawing(args)
-    for flag, value in (("picture", args.picture), ("at-least", args.at_least)):
+    for flag, value in (
+        ("picture", args.picture),
+        ("mended-cell", args.mended_cell),
+        ("at-least", args.at_least),
+    ):
         if args.sheets and value is not None:
             args.parser.error(f"--{flag} is for one sheet, not for --sheets")
     read = [*((path, PHOTOS) for path in args.photos), (args.input, DRAWINGS), (args.brush, None)]
     read.append((args.corrections, (".json",)))
-    check_files(args, read, [(args.output, (".json", ".txt")), (args.picture, (".png",))])
+    written = [(args.output, (".json", ".txt")), (args.picture, (".png",)), (args.mended_cell, (".toml",))]
+    check_files(args, read, written)
 
 
 def add_simulate_photo(commands) -> None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from ...errors import Error
+from dataclasses import replace
+
+from ...errors import Error, Notice
 from ...evaluation import report as figures
 from ...files import read_bytes
-from ...painted.corrections import corrected, refuse_corrected
+from ...machine.cell_file import parse_cell, write_cell
+from ...painted.corrections import aside_before_mm, corrected, refuse_corrected
 from ...pipeline import prediction
 from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import corrections_of, settled, typed
@@ -14,14 +17,18 @@ from ..steps.prepared import prepare
 
 
 def compare_files(args) -> None:
+    import hashlib
+
+    from ...calibration.from_prior import has_learned
     from ...painted.comparison import Wanted, compare_photos
     from ...painted.faults import whose_fault
     from ...painted.job_page import job_page
-    from ...painted.next_time import next_corrections
+    from ...painted.mended_cell import mended
+    from ...painted.next_time import farther, next_corrections
     from ...painted.picture import comparison_png
     from ...painted.report import as_json, as_text
 
-    check_places(args.output, args.picture)
+    check_places(args.output, args.picture, args.mended_cell)
     work = prepare(settled(typed(args, corrections=None), args.input))
     before = corrections_of(args.corrections)
     warn(args.input, work.notices)
@@ -40,23 +47,36 @@ def compare_files(args) -> None:
         return
     with about(args.photos[0]):
         stage("reading the photographs")
-        found = compare_photos(page, strokes, [(path, read_bytes(path)) for path in args.photos])
+        photos = [(path, read_bytes(path)) for path in args.photos]
+        found = compare_photos(page, strokes, photos)
     stage("looking for what is amiss")
-    faults = whose_fault(told, work.brush, strokes, found)
+    learned = has_learned(work.brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
+    faults = whose_fault(told, work.brush, strokes, found, learned)
     corrections, too_far = next_corrections(found, work.plan, before)
-    warn(args.photos[0], [*found.notices, *too_far])
+    beyond = farther(found, aside_before_mm(args.corrections)) if args.corrections else []
+    warn(args.photos[0], [*found.notices, *too_far, *beyond])
+    cell = work.options.cell
+    machine = mended(faults, found.middle_mm, cell.machine) if faults else None
     title = work.title or "untitled"
     files = {}
     as_figures = as_json(title, found, corrections, faults)
     if args.output:
         files[args.output] = (
-            as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults)
+            as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults, machine)
         )
     if args.picture:
         files[args.picture] = comparison_png(page, strokes, found, title, faults)
+    if args.mended_cell:
+        with about(args.mended_cell):
+            files[args.mended_cell] = _cell_text(replace(cell, machine=machine or cell.machine))
+        if machine is None:
+            sentence = (
+                "nothing is certain to be amiss of the machine or the paper's height: the cell is as it was"
+            )
+            warn(args.mended_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files)
-    tell(as_figures if args.json else as_text(title, found, faults))
+    tell(as_figures if args.json else as_text(title, found, faults, machine))
     reached = found.overlap_wanted if found.overlap_wanted is not None else found.overlap_predicted
     if args.at_least is not None and reached < args.at_least:
         raise RefusedError(
@@ -67,6 +87,13 @@ def compare_files(args) -> None:
                 ).notice()
             ],
         )
+
+
+def _cell_text(cell) -> str:
+    """Error where a number of its machine is beyond what a cell may have."""
+    text = write_cell(cell)
+    parse_cell(text)
+    return text
 
 
 def _repeats(args, work, page, plan, strokes) -> None:

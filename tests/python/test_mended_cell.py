@@ -1,0 +1,110 @@
+"""What `compare` finds amiss, besides what the cell undid, goes into the next cell; how sure a brush is beforehand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+core = pytest.importorskip("brushsvg._core")
+
+from brushsvg import find_brush  # noqa: E402
+from brushsvg.machine.cell import Machine  # noqa: E402
+from brushsvg.machine.distortion import told_mm, true_mm  # noqa: E402
+from brushsvg.painted.fault_model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
+from brushsvg.painted.mended_cell import mended  # noqa: E402
+from brushsvg.painted.next_time import next_corrections  # noqa: E402
+from brushsvg.painted.placing import Placed  # noqa: E402
+
+MIDDLE = np.array([70.0, 40.0])
+TRUE = Machine((0.1, -0.05), (1.01, 0.992), 0.004, -0.3, (0.006, -0.008))
+UNDONE = Machine((0.0, 0.0), (1.004, 0.998), -0.002, 0.2, (0.002, 0.003))
+LEANING = Machine((0.06, 0.02), (1.004, 0.998), -0.002, TRUE.height_mm, TRUE.tilt_mm_per_mm)
+
+
+def found(beyond: Machine, half=1e-6):
+    """Faults as compare has them: tilt about the middle of the marks."""
+    height = beyond.height_mm + np.dot(beyond.tilt_mm_per_mm, MIDDLE)
+    values = {
+        (MACHINE, "scale in x"): beyond.scale[0] - 1,
+        (MACHINE, "scale in y"): beyond.scale[1] - 1,
+        (MACHINE, "skew"): beyond.skew,
+        (MACHINE, "lean in x"): beyond.lean_mm_per_mm[0],
+        (MACHINE, "lean in y"): beyond.lean_mm_per_mm[1],
+        (MACHINE, "backlash in x"): 0.4,
+        (PAPER, "height"): height,
+        (PAPER, "tilt in x"): beyond.tilt_mm_per_mm[0],
+        (PAPER, "tilt in y"): beyond.tilt_mm_per_mm[1],
+        (BRUSH, "lag"): 0.1,
+    }
+    rows = [
+        SimpleNamespace(number=SimpleNamespace(cause=cause, name=name), value=value, half=half)
+        for (cause, name), value in values.items()
+    ]
+    return SimpleNamespace(found=rows)
+
+
+def places(count=40):
+    rng = np.random.default_rng(1)
+    return np.column_stack([rng.uniform(0, 150, count), rng.uniform(0, 90, count), rng.uniform(-6, 0, count)])
+
+
+@pytest.mark.parametrize("undone", [UNDONE, LEANING])
+def test_what_was_undone_before_stays_undone(undone):
+    """Where the painted job went is asked of the true machine; what is amiss beyond the cell, of least squares."""
+    wanted = places(400)
+    went = true_mm(told_mm(wanted, undone), TRUE)
+    depth = np.maximum(-went[:, 2], 0)
+    x, y, ones = wanted[:, 0], wanted[:, 1], np.ones(len(wanted))
+    to_x = np.linalg.lstsq(np.column_stack([x, y, depth]), went[:, 0], rcond=None)[0]
+    to_y = np.linalg.lstsq(np.column_stack([y, depth]), went[:, 1], rcond=None)[0]
+    to_z = np.linalg.lstsq(np.column_stack([ones, x, y]), wanted[:, 2] - went[:, 2], rcond=None)[0]
+    beyond = Machine((to_x[2], to_y[1]), (to_x[0], to_y[0]), to_x[1], to_z[0], (to_z[1], to_z[2]))
+    now = mended(found(beyond), MIDDLE, undone)
+    off = true_mm(told_mm(wanted, now), TRUE) - wanted
+    assert np.abs(off).max() < 0.01, np.abs(off).max(axis=0)
+    before = true_mm(told_mm(wanted, undone), TRUE) - wanted
+    assert np.abs(before).max() > 0.3
+
+
+def test_without_a_table_what_is_found_is_the_table():
+    now = mended(found(TRUE), MIDDLE, None)
+    assert (now.scale, now.skew, now.lean_mm_per_mm) == (TRUE.scale, TRUE.skew, TRUE.lean_mm_per_mm)
+    assert now.height_mm == pytest.approx(TRUE.height_mm) and now.tilt_mm_per_mm == TRUE.tilt_mm_per_mm
+
+
+def test_what_is_not_certain_changes_nothing():
+    assert mended(found(TRUE, half=10.0), MIDDLE, UNDONE) is None
+
+
+def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
+    brush = find_brush("round-6")
+    one = core.Pass(stroke="s", poses_mm=np.array([[0, 0, 0], [20, 0, -4.0], [40, 0, 0]]), speed_mm_s=20.0)
+    plan = core.Plan("round-6", "", (100.0, 60.0), [one])
+    free, held = (
+        {n.name: n.sigma for n in FaultModel(plan, brush, ("s",), MIDDLE, learned).numbers}
+        for learned in (False, True)
+    )
+    share = brush.lag.rmse_mm / core.deviations_of_95() / brush.lag(4.0)
+    assert held["lag"] == pytest.approx(share) and held["lag"] < 0.5 * free["lag"] == 0.075
+    assert held["tilt in x"] == free["tilt in x"]
+
+
+@pytest.mark.parametrize(("aside_mm", "share"), [(0.15, 0.5), (0.2, 0.5), (0.25, 0.68), (1.0, 0.8)])
+def test_what_is_hardly_more_than_chance_is_taken_back_by_half(aside_mm, share):
+    rows = [
+        SimpleNamespace(
+            stroke=f"s{k}",
+            placed=Placed((aside_mm * (-1) ** k, 0.0), 0.0, 0.0, True),
+            middle_mm=(20.0 * k, 30.0),
+            missing=0.0,
+        )
+        for k in range(4)
+    ]
+    compared = SimpleNamespace(
+        strokes=rows, common=Placed((0.0, 0.0), 0.0, 0.0, True), middle_mm=MIDDLE, spread_mm=aside_mm
+    )
+    passes = [SimpleNamespace(stroke=row.stroke, poses_mm=np.array([[0.0, 0.0, 0.0]])) for row in rows]
+    made, told = next_corrections(compared, SimpleNamespace(passes=passes), ())
+    assert not told
+    for k, row in enumerate(rows):
+        assert made[row.stroke].shift_mm == pytest.approx((-share * aside_mm * (-1) ** k, 0.0))

@@ -1,0 +1,47 @@
+"""Axes that stay behind where they turn back: the way on the paper, in no more poses than it has bends."""
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString
+
+core = pytest.importorskip("brushsvg._core")
+
+from brushsvg.machine.as_run import with_play  # noqa: E402
+
+
+def ways_in_small_steps(passes, backlash):
+    """By the rule alone: the slide moves once the play is crossed."""
+    half, slide, last, out = 0.5 * np.array(backlash), None, None, []
+    for poses in passes:
+        rows = []
+        for a, b in zip(np.vstack([poses[:1], poses])[:-1], poses, strict=True):
+            for share in np.linspace(0, 1, max(2, int(np.hypot(*(b - a)[:2]) / 0.01)))[1:]:
+                place = a + share * (b - a)
+                if slide is None:
+                    slide = place[:2].copy()
+                slide = np.clip(slide, place[:2] - half, place[:2] + half)
+                rows.append([*slide, place[2]])
+        last = rows
+        out.append(np.array(last))
+    return out
+
+
+def test_the_way_is_that_of_small_steps_with_few_poses():
+    rng = np.random.default_rng(3)
+    passes = [
+        np.column_stack([rng.uniform(0, 60, (6, 2)), [0.0, -2.0, -4.0, -3.0, -1.0, 0.0]]) for _ in range(3)
+    ]
+    told = [core.Pass(stroke=f"s{k}", poses_mm=poses, speed_mm_s=20.0) for k, poses in enumerate(passes)]
+    run = with_play(told, (0.8, 0.5))
+    for one, wanted in zip(run, ways_in_small_steps(passes, (0.8, 0.5)), strict=True):
+        poses = np.array(one.poses_mm)
+        assert LineString(poses[:, :2]).hausdorff_distance(LineString(wanted[:, :2])) < 0.2
+        assert np.allclose(poses[-1], wanted[-1], atol=1e-9)
+        depth = np.interp(
+            LineString(wanted[:, :2]).length / 2,
+            np.concatenate([[0], np.cumsum(np.hypot(*np.diff(wanted[:, :2], axis=0).T))]),
+            wanted[:, 2],
+        )
+        come = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
+        assert np.interp(come[-1] / 2, come, poses[:, 2]) == pytest.approx(depth, abs=0.1)
+        assert len(poses) < 6 * 8  # of 0.4 mm each they would be several hundred
