@@ -64,18 +64,28 @@ the pass, followed on their circles.)")
         .def_readwrite("sigma", &Prior::sigma);
     py::class_<MarkLaws>(m, "MarkLaws", "Laws as coefficients (ascending powers of depth), and a drop's shape.")
         .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
-                         double widest_per_half, double front_per_half, bool round_tail) {
-                 return MarkLaws{std::move(lag),  std::move(tip_gap), std::move(half_width),
-                                 widest_per_half, front_per_half,     round_tail};
+                         double widest_per_half, double front_per_half, bool round_tail,
+                         std::vector<double> widest_by_depth, std::vector<double> front_by_depth) {
+                 return MarkLaws{std::move(lag),
+                                 std::move(tip_gap),
+                                 std::move(half_width),
+                                 widest_per_half,
+                                 front_per_half,
+                                 round_tail,
+                                 std::move(widest_by_depth),
+                                 std::move(front_by_depth)};
              }),
              py::arg("lag"), py::arg("tip_gap"), py::arg("half_width"), py::arg("widest_per_half") = 1.8,
-             py::arg("front_per_half") = 1.0, py::arg("round_tail") = false)
+             py::arg("front_per_half") = 1.0, py::arg("round_tail") = false,
+             py::arg("widest_by_depth") = std::vector<double>{}, py::arg("front_by_depth") = std::vector<double>{})
         .def_property_readonly("lag", frozen_copy(&MarkLaws::lag))
         .def_property_readonly("tip_gap", frozen_copy(&MarkLaws::tip_gap))
         .def_property_readonly("half_width", frozen_copy(&MarkLaws::half_width))
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
         .def_readonly("front_per_half", &MarkLaws::front_per_half)
-        .def_readonly("round_tail", &MarkLaws::round_tail);
+        .def_readonly("round_tail", &MarkLaws::round_tail)
+        .def_property_readonly("widest_by_depth", frozen_copy(&MarkLaws::widest_by_depth))
+        .def_property_readonly("front_by_depth", frozen_copy(&MarkLaws::front_by_depth));
     py::class_<LawPrior>(m, "LawPrior", R"(Laws that are known beforehand: laws is the mean.
 
 rows (k, n): each, over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and
@@ -104,6 +114,7 @@ machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to 
         .def_readwrite("lag_terms", &MarkOptions::lag_terms)
         .def_readwrite("tip_gap_terms", &MarkOptions::tip_gap_terms)
         .def_readwrite("half_width_terms", &MarkOptions::half_width_terms)
+        .def_readwrite("departing", &MarkOptions::departing)
         .def_readwrite("widest_per_half", &MarkOptions::widest_per_half)
         .def_readwrite("front_per_half", &MarkOptions::front_per_half)
         .def_readwrite("round_tail", &MarkOptions::round_tail)

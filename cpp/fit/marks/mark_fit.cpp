@@ -7,6 +7,7 @@
 
 #include "brushsvg/error.hpp"
 #include "identifiability.hpp"
+#include "lack_of_fit.hpp"
 #include "mark_problem.hpp"
 #include "multistart.hpp"
 #include "noise_covariance.hpp"
@@ -178,6 +179,8 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     else
         out.converged = solve(fit, from, marks, options);
     if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
+    const std::vector<std::string> remarks = doubts(fit);  // of the family: what departs from it is open without priors
+    if (options.departing && !options.laws && !options.noise_mm) out.converged = depart(fit, marks, options);
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
     const MatrixXd whole = to * covariance_at_touch(fit) * to.transpose();
@@ -218,7 +221,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     // repeats divide squares, of which the loss lets through the slope's share
     out.effective_samples =
         std::min(out.samples, (out.samples - aside - slim) * fit.weighing.slope / fit.weighing.repeats);
-    out.remarks = doubts(fit);
+    out.remarks = remarks;
     return out;
 }
 

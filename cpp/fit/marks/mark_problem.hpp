@@ -27,8 +27,13 @@ class MarkProblem {
     double loss() const;
     /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
     bool solve(int most_iterations, double tolerance);
+    /// Laws are known beforehand so far: each of these rows makes a standard normal number of the shared unknowns.
+    void expect(const MatrixXd& rows);
     /// Adds the information of the priors, over every shared unknown and then both displacements of every mark.
     void add_known(MatrixXd& to) const;
+
+    /// Gradient of the priors over the same unknowns; of those of expect() and of LawPrior none.
+    VectorXd known_gradient() const;
 
     MarkModel model;
     Weighing weighing;

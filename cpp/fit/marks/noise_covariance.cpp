@@ -57,8 +57,8 @@ void add(MatrixXd& to, const MatrixXd& square, Index mark, Index shared) {
     to.block(own, own, 2, 2) += square.bottomRightCorner(2, 2);
 }
 
-/// Inverse of the loss's second derivatives, priors included.
-MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
+/// The loss's second derivatives, without priors.
+MatrixXd slope_of(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
     const Index g = at.shared.size(), all = g + 2 * at.model.marks();
     MatrixXd slope = MatrixXd::Zero(all, all);
     const double weight = weighing.slope / (weighing.noise_mm * weighing.noise_mm * weighing.repeats);
@@ -66,6 +66,13 @@ MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, co
         const MatrixXd& by = marks[std::size_t(i)].by;
         add(slope, weight * (by.transpose() * by), i, g);
     }
+    return slope;
+}
+
+/// Inverse of the loss's second derivatives, priors included.
+MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
+    const Index all = at.shared.size() + 2 * at.model.marks();
+    MatrixXd slope = slope_of(at, marks, weighing);
     at.add_known(slope);
     // in units of the unknowns' own sizes, or a polynomial's powers would drown each other
     const VectorXd unit = slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
@@ -176,6 +183,23 @@ Weighing weighed(const MarkProblem& at) {
         whole = least;
     }
     out.repeats = whole / out.slope;
+    return out;
+}
+
+MarksLoss marks_loss(const MarkProblem& at) {
+    const Weighing& weighing = at.weighing;
+    std::vector<Seen> marks = look(at);
+    leave_out_wild(marks, weighing);
+    const Index g = at.shared.size();
+    MarksLoss out{VectorXd::Zero(g + 2 * at.model.marks()), slope_of(at, marks, weighing)};
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        const Seen& mark = marks[std::size_t(i)];
+        const VectorXd psi =
+            (mark.distance_mm / weighing.noise_mm).unaryExpr([&](double z) { return cost(weighing.loss, z).psi; });
+        const VectorXd pull = mark.by.transpose() * psi / (weighing.noise_mm * weighing.repeats);
+        out.gradient.head(g) += pull.head(g);
+        out.gradient.segment<2>(g + 2 * i) = pull.tail<2>();
+    }
     return out;
 }
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
+from numpy.polynomial.polynomial import polymul, polyval
 
 from .. import _core
 from ..brush import footprint_shapes
@@ -22,6 +22,7 @@ from .stray_marks import MOST, OUTLYING, Stray, strays
 
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
+LEAST_RATIO = 0.1  # of widest section and front to the half width, as the fit has it
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
@@ -117,6 +118,8 @@ def calibrate_marks(
             calibrated_mm=(0.0, painted.deepest_mm),
             source=f"Fitted to {count}.",
             half_interval_95=found.half_interval_95,
+            floor=found.floor,
+            floor_slope=found.floor_slope,
         )
         setattr(brush, law, known)
     _refuse_undetermined(brush, fit)
@@ -178,7 +181,8 @@ def _all_fitted(fit) -> np.ndarray:
 def height_at(fit) -> int:
     """Where in a fit's covariance the height of the paper stands; shift x and y and turn follow."""
     laws = fit.laws
-    return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + 2
+    ratios = len(laws.widest_by_depth or [0]) + len(laws.front_by_depth or [0])
+    return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
 
 
 def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
@@ -309,16 +313,11 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     """A brush with these laws, drops for footprints, and intervals where the covariance of a fit is given."""
     brush = _core.Brush()
     brush.name, brush.kind, brush.depth_range_mm = name, "round", tuple(depth_range_mm)
-    half = np.array(laws.half_width)
-    lag, gap, widest = laws.lag, laws.tip_gap, (laws.widest_per_half * half).tolist()
-    for law, coefficients in (
-        ("lag", lag),
-        ("tip_gap", gap),
-        ("tip_to_widest", widest),
-        ("half_width", half.tolist()),
-    ):
-        setattr(brush, law, _core.Profile(coefficients))
     least, deepest = depth_range_mm
+    brush.lag, brush.tip_gap = _core.Profile(laws.lag), _core.Profile(laws.tip_gap)
+    brush.half_width = _core.Profile(laws.half_width)
+    widest = polymul(widest_ratio(laws), laws.half_width)
+    brush.tip_to_widest = _core.Profile(widest.tolist(), **_floor(laws, deepest))
     brush.paint_depth_mm = (least + deepest) / 2
     depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
     brush.footprints = _core.FootprintTable([_outline(brush, depth, laws) for depth in depths])
@@ -333,28 +332,46 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
         half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
-            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place]))
+            floor = _floor(laws, deepest) if law == "tip_to_widest" else {}
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place], **floor))
     return brush
 
 
 def over_brush(laws, covariance: np.ndarray) -> np.ndarray:
     """From the fit's unknowns to a brush's coefficients; x_w = ratio h."""
     lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
-    rows = lag + gap + 1 + 2 * (half + 1)
+    ratio, own = widest_ratio(laws), np.array(laws.half_width)
+    rows = lag + gap + 1 + half + len(ratio) + half + 1
     to = np.zeros((rows, len(covariance)))
     to[:lag, :lag] = np.eye(lag)
     to[lag + 1 : lag + 1 + gap, lag : lag + gap] = np.eye(gap)
-    widest, width, source = lag + gap + 2, lag + gap + 2 + half + 1, slice(lag + gap, lag + gap + half)
-    to[widest : widest + half, source] = laws.widest_per_half * np.eye(half)
-    to[widest : widest + half, lag + gap + half] = laws.half_width[1:]
-    to[width : width + half, source] = np.eye(half)
+    widest, width = lag + gap + 1, lag + gap + 1 + half + len(ratio) + 1
+    for power in range(half):
+        to[widest + 1 + power : widest + 1 + power + len(ratio), lag + gap + power] = ratio
+    for power in range(len(ratio)):
+        to[widest + power : widest + power + half + 1, lag + gap + half + power] = own
+    to[width : width + half, lag + gap : lag + gap + half] = np.eye(half)
     return to @ covariance @ to.T
+
+
+def widest_ratio(laws) -> np.ndarray:
+    """Of the widest section's place to the half width, ascending powers of depth."""
+    return np.array(laws.widest_by_depth or [laws.widest_per_half])
+
+
+def _floor(laws, deepest: float) -> dict[str, float]:
+    """Of the widest section, where its ratio would fall below the least that a footprint has."""
+    depths = np.linspace(0.0, deepest, 41)
+    if polyval(depths, widest_ratio(laws)).min() >= LEAST_RATIO:
+        return {}
+    return {"floor": 0.0, "floor_slope": LEAST_RATIO * float(polyval(deepest, laws.half_width)) / deepest}
 
 
 def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     half = brush.half_width(depth)
     shape = footprint_shapes.egg if laws.round_tail else footprint_shapes.drop
-    return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), laws.front_per_half * half))
+    front = max(LEAST_RATIO, polyval(depth, laws.front_by_depth or [laws.front_per_half]))
+    return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), front * half))
 
 
 def _scale(fit, painted: Painted) -> SheetScale | None:
