@@ -66,14 +66,9 @@ the pass, followed on their circles.)")
         .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
                          double widest_per_half, double front_per_half, bool round_tail,
                          std::vector<double> widest_by_depth, std::vector<double> front_by_depth) {
-                 return MarkLaws{std::move(lag),
-                                 std::move(tip_gap),
-                                 std::move(half_width),
-                                 widest_per_half,
-                                 front_per_half,
-                                 round_tail,
-                                 std::move(widest_by_depth),
-                                 std::move(front_by_depth)};
+                 return MarkLaws{
+                     std::move(lag), std::move(tip_gap), std::move(half_width),      widest_per_half,
+                     front_per_half, round_tail,         std::move(widest_by_depth), std::move(front_by_depth)};
              }),
              py::arg("lag"), py::arg("tip_gap"), py::arg("half_width"), py::arg("widest_per_half") = 1.8,
              py::arg("front_per_half") = 1.0, py::arg("round_tail") = false,

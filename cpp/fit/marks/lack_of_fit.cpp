@@ -3,25 +3,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <cstdio>
 
+#include "brushsvg/student_t.hpp"
 #include "meanwhile.hpp"
 #include "noise_covariance.hpp"
 
 namespace brushsvg::fit {
 namespace {
 
-constexpr int kLaws = 5;        // lag, tip gap, half width, both ratios of the footprint
-constexpr int kMore = 3;        // numbers more of each law
-constexpr double kOpen = 3.0;   // share of a law that it may depart by where nothing is known
-constexpr int kRounds = 2, kSweeps = 4;
+constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
+constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // numbers more of each law
+constexpr double kFreedom = 3.0;  // how far a law departs is found from as many further numbers of it
+constexpr double kAsked =
+    1.0;  // log of the likelihood that departing must be worth: less comes by chance in the family
+// A brush one of whose laws departs departs in the other lengths, too, if the marks say so or not: without it a floor
+// in the lag was taken for a tip gap, and the lag for sure.
+constexpr int kLengths = 3;  // lag, tip gap, half width
+constexpr double kLeastOfMost = 0.25;
+constexpr double kOpen = 3.0;    // share of a law that it may depart by where nothing is known
+constexpr double kSmooth = 0.7;  // the k-th further polynomial is as much smaller as (numbers / k) to this power
+constexpr int kSweeps = 4;
 
-/// What a law may depart by, as shares of it.
+/// What a law may depart by, as shares of it; 0 first.
 std::vector<double> shares() {
-    const char* least = std::getenv("MISFIT_LEAST");
-    std::vector<double> out;
-    for (double share = least ? std::atof(least) : 0.002; share < 0.6; share *= 1.5) out.push_back(share);
+    std::vector<double> out{0.0};
+    for (double share = 0.003; share < 1.0; share *= 1.5) out.push_back(share);
     return out;
 }
 
@@ -53,7 +59,7 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
         const auto [known, all] = terms[std::size_t(law)];
         for (int k = known; k < all; ++k) {
             out.law.push_back(law);
-            size.push_back(whole[std::size_t(law)] * std::pow(double(known) / k, 1.5));  // smooth ones fall so
+            size.push_back(whole[std::size_t(law)] * std::pow(double(known) / k, kSmooth));  // smooth ones fall so
         }
     }
     out.size = Eigen::Map<VectorXd>(size.data(), Index(size.size()));
@@ -94,14 +100,12 @@ std::array<double, kLaws> likeliest(const MarkProblem& at, const Departures& dep
             MatrixXd::Identity(sd.size(), sd.size()) + MatrixXd(sd.asDiagonal() * tells * sd.asDiagonal());
         const Eigen::LDLT<MatrixXd> factor(both);
         const VectorXd drawn = sd.cwiseProduct(pull);
-        return 0.5 * drawn.dot(factor.solve(drawn)) -
-               0.5 * factor.vectorD().cwiseMax(1e-12).array().log().sum();
+        return 0.5 * drawn.dot(factor.solve(drawn)) - 0.5 * factor.vectorD().cwiseMax(1e-12).array().log().sum();
     };
     const std::vector<double> tried = shares();
     std::array<double, kLaws> out;
     out.fill(tried.front());
     double best = evidence(out);
-    const double none = best;
     for (int sweep = 0; sweep < kSweeps; ++sweep)
         for (int law = 0; law < kLaws; ++law)
             for (const double share : tried) {
@@ -112,44 +116,61 @@ std::array<double, kLaws> likeliest(const MarkProblem& at, const Departures& dep
                 best = now_there;
                 out = other;
             }
-    if (std::getenv("MISFIT_SAY"))
-        std::fprintf(stderr, "gain %.1f shares %.3f %.3f %.3f %.3f %.3f noise %.3f repeats %.1f\n", best - none, out[0], out[1],
-                     out[2], out[3], out[4], at.weighing.noise_mm, at.weighing.repeats);
+    if (!(best > kAsked)) {
+        out.fill(0.0);
+        return out;
+    }
+    const double most = *std::max_element(out.begin(), out.begin() + kLengths);
+    for (int law = 0; law < kLengths; ++law) {
+        double& share = out[std::size_t(law)];
+        share = std::max(share, kLeastOfMost * most);
+    }
+    return out;
+}
+
+/// How many numbers each law has where it may depart.
+MarkOptions wider(const MarkOptions& options, const std::array<double, kLaws>& share) {
+    MarkOptions out = options;
+    const std::array<int*, kLaws> terms{&out.lag_terms, &out.tip_gap_terms, &out.half_width_terms, &out.widest_terms,
+                                        &out.front_terms};
+    for (std::size_t law = 0; law < kLaws; ++law)
+        if (share[law] > 0.0) *terms[law] += kMore[law];
+    out.lag_terms = std::min(out.lag_terms, kMostTerms);
     return out;
 }
 
 }  // namespace
 
-bool depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    const Layout from = fit.model.layout();
-    MarkOptions wider = options;
-    wider.lag_terms = std::min(kMostTerms, from.lag + kMore);
-    wider.tip_gap_terms = from.gap + kMore - 1;
-    wider.half_width_terms = from.half + kMore;
-    wider.widest_terms = wider.front_terms = 1 + kMore;
-    MarkProblem out(marks, wider);
-    const Layout& to = out.model.layout();
-    const MarkLaws laws = fit.model.laws(fit.shared);
-    const Index sheet = from.size() - from.height();
-    out.shared = out.model.unknowns(laws);
+MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    MarkProblem out(marks, options);
+    const Index sheet = fit.shared.size() - fit.model.layout().height();
+    out.shared = out.model.unknowns(fit.model.laws(fit.shared));
     out.shared.tail(sheet) = fit.shared.tail(sheet);
     out.own = fit.own;
     out.says = fit.says;
     out.weighing = fit.weighing;
     out.iterations = fit.iterations;
-    const Departures departures = departures_of(out.model, from, laws, options.deepest_mm);
-    bool converged = false;
-    for (int round = 0; round < kRounds; ++round) {
-        out.expect(MatrixXd(0, to.size()));
-        const std::array<double, kLaws> share = likeliest(out, departures);
-        VectorXd sure = departures.size.cwiseInverse();
-        for (Index i = 0; i < sure.size(); ++i) sure[i] /= share[std::size_t(departures.law[std::size_t(i)])];
-        out.expect(sure.asDiagonal() * departures.rows);
-        converged = out.solve(options.most_iterations, round + 1 < kRounds ? 1e-4 : 1e-6);
-        out.weighing = weighed(out);
-    }
-    fit = out;
-    return converged;
+    return out;
+}
+
+double unsurer(const MarkProblem& fit) {
+    if (!fit.is_departing()) return 1.0;
+    return std::pow(deviations_of_95(kFreedom) / deviations_of_95(std::nullopt), 2);
+}
+
+bool depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    std::array<double, kLaws> share;
+    share.fill(1.0);
+    const MarkProblem open = with_terms(fit, marks, wider(options, share));
+    const Layout from = MarkModel::layout_of(options);
+    const MarkLaws laws = fit.model.laws(fit.shared);
+    share = likeliest(open, departures_of(open.model, from, laws, options.deepest_mm));
+    fit = with_terms(fit, marks, wider(options, share));
+    const Departures departures = departures_of(fit.model, from, laws, options.deepest_mm);
+    VectorXd sure = departures.size.cwiseInverse();
+    for (Index i = 0; i < sure.size(); ++i) sure[i] /= share[std::size_t(departures.law[std::size_t(i)])];
+    fit.expect(sure.asDiagonal() * departures.rows);
+    return sure.size() > 0;
 }
 
 }  // namespace brushsvg::fit

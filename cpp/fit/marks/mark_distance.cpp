@@ -193,7 +193,8 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
         out[layout_.half_at() + j] = -step * per_half;
     }
     const double half_nu = now.drop.half * nu;
-    ratio_by(now.depth, now.widest_ratio, -edge.by_widest * half_nu, out.segment(layout_.widest(), layout_.widest_terms));
+    ratio_by(now.depth, now.widest_ratio, -edge.by_widest * half_nu,
+             out.segment(layout_.widest(), layout_.widest_terms));
     ratio_by(now.depth, now.front_ratio, -edge.by_front * half_nu, out.segment(layout_.front(), layout_.front_terms));
     const double longer = edge.by_widest * now.widest_slope + edge.by_front * now.front_slope;
     const double deeper = now.half_slope * per_half - now.gap_slope * nu + longer * half_nu;

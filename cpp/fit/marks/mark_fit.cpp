@@ -128,11 +128,13 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
     at.leave_slim_aside();
 }
 
-/// Whether it converged. How sure the distances are is found on the way, wild ones lose their say.
+/// Whether it converged. How sure the distances are is found on the way, wild ones lose their say, and laws depart from
+/// their numbers. As the noise is taken for more as long as they do not, that is asked twice.
 bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
            const MarkOptions& options) {
     start(at, from, marks, options);
-    bool converged = false;
+    const bool may_depart = options.departing && !options.laws;
+    bool converged = false, departs = false;
     constexpr double kLast = 1e-7;
     for (const auto& [loss, tolerance] :
          {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-5}, std::pair{Loss::tukey, kLast}}) {
@@ -141,6 +143,12 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
         at.weighing = weighed(at);
         if (loss == Loss::cauchy) at.find_displaced();
         if (tolerance > kLast) at.leave_slim_aside();
+        if (loss == Loss::tukey && tolerance > kLast && may_depart) departs = depart(at, marks, options);
+    }
+    if (departs) {
+        depart(at, marks, options);
+        converged = at.solve(options.most_iterations, kLast);
+        at.weighing = weighed(at);
     }
     return converged;
 }
@@ -179,11 +187,9 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     else
         out.converged = solve(fit, from, marks, options);
     if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
-    const std::vector<std::string> remarks = doubts(fit);  // of the family: what departs from it is open without priors
-    if (options.departing && !options.laws && !options.noise_mm) out.converged = depart(fit, marks, options);
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
-    const MatrixXd whole = to * covariance_at_touch(fit) * to.transpose();
+    const MatrixXd whole = unsurer(fit) * to * covariance_at_touch(fit) * to.transpose();
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());
@@ -221,7 +227,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     // repeats divide squares, of which the loss lets through the slope's share
     out.effective_samples =
         std::min(out.samples, (out.samples - aside - slim) * fit.weighing.slope / fit.weighing.repeats);
-    out.remarks = remarks;
+    out.remarks = doubts(with_terms(fit, marks, options));  // what departs from them is open but for its prior
     return out;
 }
 

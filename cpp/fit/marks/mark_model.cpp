@@ -130,12 +130,13 @@ void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
 
 }  // namespace
 
+Layout MarkModel::layout_of(const MarkOptions& options) {
+    return {options.lag_terms,    options.tip_gap_terms, options.half_width_terms,
+            options.widest_terms, options.front_terms,   has_machine(options) ? kMachine : 0};
+}
+
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
-    : layout_{options.lag_terms,    options.tip_gap_terms, options.half_width_terms,
-              options.widest_terms, options.front_terms,   has_machine(options) ? kMachine : 0},
-      deepest_(options.deepest_mm),
-      coarse_(coarse),
-      round_tail_(options.round_tail) {
+    : layout_(layout_of(options)), deepest_(options.deepest_mm), coarse_(coarse), round_tail_(options.round_tail) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
     const MatrixXd sums = MatrixXd::Ones(layout_.half, layout_.half).triangularView<Eigen::Lower>();

@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Where each unknown stands that all marks share. The lag stands as control values on [0, deepest] [mm], the tip gap
-/// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm], the
-/// ratios of the footprint as factors of the Legendre polynomials over [0, deepest].
+/// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm],
+/// the ratios of the footprint as factors of the Legendre polynomials over [0, deepest].
 struct Layout {
     int lag, gap, half;
     int widest_terms, front_terms;
@@ -40,12 +40,15 @@ class MarkModel {
     /// coarse: so many times as far apart as they should be are the instants at which the brush is looked at.
     MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
+    static Layout layout_of(const MarkOptions& options);
     const Layout& layout() const { return layout_; }
     Index marks() const { return Index(painted_.size()); }
     const std::string& stroke(Index mark) const { return painted_[std::size_t(mark)].stroke; }
     Index points(Index mark) const { return painted_[std::size_t(mark)].point_mm.rows(); }
     Index ring_begin(Index mark, std::size_t ring) const { return painted_[std::size_t(mark)].rings[ring]; }
     std::size_t rings(Index mark) const { return painted_[std::size_t(mark)].rings.size() - 1; }
+    /// How deep a mark's stroke is pressed [mm].
+    double deepest(Index mark) const { return -painted_[std::size_t(mark)].poses_mm.col(2).minCoeff(); }
     std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
 
     /// The shared unknowns of laws, wherever they lie; at their least values or above; and back.

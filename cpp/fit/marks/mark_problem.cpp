@@ -151,6 +151,7 @@ void MarkProblem::hold_shape(bool hold) {
 
 void MarkProblem::expect(const MatrixXd& rows) {
     law_rows_ = rows;
+    departs_ = rows.rows() > 0;
     law_mean_ = VectorXd::Zero(shared.size());
 }
 

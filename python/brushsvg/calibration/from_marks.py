@@ -153,7 +153,8 @@ def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float)
         )
         for mark in marks
     ]
-    return _all_fitted(_core.fit_marks(wider, fit.laws, options)) - _all_fitted(fit)
+    moved = _core.fit_marks(wider, fit.laws, options)
+    return _all_fitted(moved, fit, options.deepest_mm) - _all_fitted(fit, fit, options.deepest_mm)
 
 
 def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
@@ -165,12 +166,19 @@ def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
     return moved
 
 
-def _all_fitted(fit) -> np.ndarray:
-    laws = fit.laws
-    shape = [laws.widest_per_half, laws.front_per_half]
-    sheet = [fit.height_mm, *fit.shift_mm, fit.turn_rad]
-    all_fitted = np.concatenate([laws.lag, laws.tip_gap[1:], laws.half_width[1:], shape, sheet])
-    if len(fit.covariance) == len(all_fitted):
+def _all_fitted(fit, like, deepest_mm: float) -> np.ndarray:
+    """In the order of the covariance of `like`, with as many numbers a law."""
+    laws, other = fit.laws, like.laws
+    numbers = [
+        _nearest(laws.lag, len(other.lag), 0, deepest_mm),
+        _nearest(laws.tip_gap, len(other.tip_gap), 1, deepest_mm),
+        _nearest(laws.half_width, len(other.half_width), 1, deepest_mm),
+        _nearest(widest_ratio(laws), len(widest_ratio(other)), 0, deepest_mm),
+        _nearest(front_ratio(laws), len(front_ratio(other)), 0, deepest_mm),
+        [fit.height_mm, *fit.shift_mm, fit.turn_rad],
+    ]
+    all_fitted = np.concatenate(numbers)
+    if len(like.covariance) == len(all_fitted):
         return all_fitted
     one = fit.machine
     return np.concatenate(
@@ -178,10 +186,20 @@ def _all_fitted(fit) -> np.ndarray:
     )
 
 
+def _nearest(coefficients, terms: int, first: int, deepest_mm: float) -> np.ndarray:
+    """Coefficients from the power `first` on of the law with so many terms that is nearest over the depths."""
+    if len(coefficients) <= terms:
+        return np.pad(coefficients, (0, terms - len(coefficients)))[first:]
+    share = np.linspace(0.0, 1.0, 41)[1:]
+    powers = np.vander(share, terms, increasing=True)[:, first:]
+    found = np.linalg.lstsq(powers, polyval(share * deepest_mm, coefficients), rcond=None)[0]
+    return found / deepest_mm ** np.arange(first, terms)
+
+
 def height_at(fit) -> int:
     """Where in a fit's covariance the height of the paper stands; shift x and y and turn follow."""
     laws = fit.laws
-    ratios = len(laws.widest_by_depth or [0]) + len(laws.front_by_depth or [0])
+    ratios = len(widest_ratio(laws)) + len(front_ratio(laws))
     return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
 
 
@@ -359,6 +377,11 @@ def widest_ratio(laws) -> np.ndarray:
     return np.array(laws.widest_by_depth or [laws.widest_per_half])
 
 
+def front_ratio(laws) -> np.ndarray:
+    """Of the footprint's length in front of that to the half width, ascending powers of depth."""
+    return np.array(laws.front_by_depth or [laws.front_per_half])
+
+
 def _floor(laws, deepest: float) -> dict[str, float]:
     """Of the widest section, where its ratio would fall below the least that a footprint has."""
     depths = np.linspace(0.0, deepest, 41)
@@ -370,7 +393,7 @@ def _floor(laws, deepest: float) -> dict[str, float]:
 def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     half = brush.half_width(depth)
     shape = footprint_shapes.egg if laws.round_tail else footprint_shapes.drop
-    front = max(LEAST_RATIO, polyval(depth, laws.front_by_depth or [laws.front_per_half]))
+    front = max(LEAST_RATIO, polyval(depth, front_ratio(laws)))
     return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), front * half))
 
 
