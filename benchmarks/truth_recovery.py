@@ -58,7 +58,9 @@ def strokes_of(rng, brush, sheet_mm: tuple[float, float] | None):
         return painter.chart_strokes(brush.deepest)
     lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
     depths = np.linspace(0, brush.deepest, 21)[1:]
-    known = [np.polynomial.polynomial.polyfit(depths, brush.law(law)(depths), 3) for law in ("lag", "half_width")]
+    known = [
+        np.polynomial.polynomial.polyfit(depths, brush.law(law)(depths), 3) for law in ("lag", "half_width")
+    ]
     known[1][0] = 0.0
     laws = _core.MarkLaws(list(lag * known[0]), [0.0, 0.4], list(width * known[1]), 1.8, 1.0)
     made = chart(brush_of(laws, "known roughly", (0.0, brush.deepest)), sheet_mm)
@@ -69,7 +71,9 @@ def brush_for(rng, seed: int, outside: str | None):
     if outside is None:
         return painter.random_brush(rng)
     if outside == "round-6":
-        return painter.round_6(json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text()))
+        return painter.round_6(
+            json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
+        )
     shapes = list(painter.SHAPES)
     return painter.random_stranger(rng, shapes[seed % len(shapes)] if outside == "all" else outside)
 
@@ -161,9 +165,11 @@ def main():
     )
     arguments.add_argument("--outside", choices=["all", "round-6", *painter.SHAPES])
     arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
-    arguments.add_argument("--family", action="store_true", help="laws that do not depart from their few numbers")
+    arguments.add_argument(
+        "--family", action="store_true", help="laws that do not depart from their few numbers"
+    )
     args = arguments.parse_args()
-    one = functools.partial(
+    recovered = functools.partial(
         recover,
         sheet_mm=args.sheet,
         outside=args.outside,
@@ -172,9 +178,7 @@ def main():
     )
     found = []
     with multiprocessing.Pool(args.processes) as pool:
-        for one in pool.imap_unordered(
-            one, range(args.seed, args.seed + args.brushes)
-        ):
+        for one in pool.imap_unordered(one, range(args.seed, args.seed + args.brushes)):
             found.append(one)
             if len(found) % 20 == 0:
                 print(summary(sorted(found, key=lambda f: f["seed"])), flush=True)

@@ -103,7 +103,7 @@ is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlas
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
 widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
 and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
-machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.)")
+machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit nothing, say what to expect of such edges.)")
         .def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
         .def_readwrite("lag_terms", &MarkOptions::lag_terms)
@@ -136,7 +136,7 @@ machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to 
     py::class_<MarkFit>(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-front_per_half, height, shift x and y, turn; where any of the machine was asked for lean x and y, scale x and y, skew,
+front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn; where any of the machine was asked for lean x and y, scale x and y, skew,
 tilt x and y, backlash x and y.)")
         .def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))

@@ -108,7 +108,9 @@ class Stranger(TrueBrush):
 def outline_of(half, widest, front, vertices=33):
     """Drops (n, vertices, 2) from half widths, widest sections and fronts (n,)."""
     angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
-    half, widest, front = (np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front))
+    half, widest, front = (
+        np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front)
+    )
     ahead = np.stack([widest + front * np.cos(angle), half * np.sin(angle)], axis=2)
     return np.concatenate([np.zeros((len(half), 1, 2)), ahead], axis=1)
 
@@ -187,14 +189,18 @@ def random_stranger(rng, shape):
         across = curves["half_width"](depth)
         return outline_of(across, curves["tip_to_widest"](depth), front * across)
 
-    steep = max(curves["tip_to_widest"](d) / curves["half_width"](d) for d in np.linspace(0.1, 1, 10) * deepest)
+    steep = max(
+        curves["tip_to_widest"](d) / curves["half_width"](d) for d in np.linspace(0.1, 1, 10) * deepest
+    )
     return Stranger(deepest, None, None, None, float(steep), front, shape=outlines, curves=curves)
 
 
 def round_6(own):
     """The shipped brush, from its file: its laws and its outlines as they stand."""
     curves = {
-        name: oracle.Law(own[name]["coefficients"], own[name].get("floor", -np.inf), own[name].get("floor_slope", 0.0))
+        name: oracle.Law(
+            own[name]["coefficients"], own[name].get("floor", -np.inf), own[name].get("floor_slope", 0.0)
+        )
         for name in ("lag", "tip_gap", "tip_to_widest", "half_width")
     }
     dragged = [(each["depth_mm"], np.array(each["outline_mm"])) for each in own["footprints"]["dragged"]]

@@ -135,11 +135,12 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     start(at, from, marks, options);
     const bool may_depart = options.departing && !options.laws;
     bool converged = false, departs = false;
-    constexpr double kLast = 1e-7;
+    // numbers that only their prior holds move on for long, by far less than their intervals
+    constexpr double kLast = 1e-7, kDeparting = 1e-5;
     for (const auto& [loss, tolerance] :
          {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-5}, std::pair{Loss::tukey, kLast}}) {
         at.weighing.loss = loss;
-        converged = at.solve(options.most_iterations, tolerance);
+        converged = at.solve(options.most_iterations, departs ? kDeparting : tolerance);
         at.weighing = weighed(at);
         if (loss == Loss::cauchy) at.find_displaced();
         if (tolerance > kLast) at.leave_slim_aside();
@@ -147,7 +148,7 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     }
     if (departs) {
         depart(at, marks, options);
-        converged = at.solve(options.most_iterations, kLast);
+        converged = at.solve(options.most_iterations, kDeparting);
         at.weighing = weighed(at);
     }
     return converged;
