@@ -178,7 +178,7 @@ def main():
     )
     found = []
     with multiprocessing.Pool(args.processes) as pool:
-        for one in pool.imap_unordered(one, range(args.seed, args.seed + args.brushes)):
+        for one in pool.imap_unordered(recovered, range(args.seed, args.seed + args.brushes)):
             found.append(one)
             if len(found) % 20 == 0:
                 print(summary(sorted(found, key=lambda f: f["seed"])), flush=True)

@@ -136,7 +136,7 @@ bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     const bool may_depart = options.departing && !options.laws;
     bool converged = false, departs = false;
     // numbers that only their prior holds move on for long, by far less than their intervals
-    constexpr double kLast = 1e-7, kDeparting = 1e-5;
+    constexpr double kLast = 1e-7, kDeparting = 1e-4;
     for (const auto& [loss, tolerance] :
          {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-5}, std::pair{Loss::tukey, kLast}}) {
         at.weighing.loss = loss;
