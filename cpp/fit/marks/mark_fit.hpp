@@ -90,7 +90,8 @@ struct MarkMiss {
 struct MarkFit {
     MarkLaws laws;
     /// Over lag, tip_gap and half_width (their constant, 0, left out), widest_per_half, front_per_half, height, shift x
-    /// and y, turn: in this order, in the laws' own coefficients. Where any of the machine was asked for, lean x and y,
+    /// and y, turn: in this order, in the laws' own coefficients; those of widest_by_depth and front_by_depth in place
+    /// of the ratios where these change with depth. Where any of the machine was asked for, lean x and y,
     /// scale x and y, skew, tilt x and y, backlash x and y follow.
     std::vector<std::vector<double>> covariance;
     double height_mm = 0.0, turn_rad = 0.0;
