@@ -161,7 +161,8 @@ def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
     """The same where edges lie the farther out the wider a mark is, by edge_mm at the greatest depth: more paint runs
     farther. The fit would take edges that all lie as far out for a paper that lies higher; these are wider marks."""
     half = np.array(fit.laws.half_width)
-    moved, end = np.zeros(len(fit.covariance)), height_at(fit) - 2  # the shape's two stand in between
+    shape = len(widest_ratio(fit.laws)) + len(front_ratio(fit.laws))
+    moved, end = np.zeros(len(fit.covariance)), height_at(fit) - shape
     moved[end - len(half) + 1 : end] = half[1:] * edge_mm / polyval(deepest_mm, half)
     return moved
 
