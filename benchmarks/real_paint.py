@@ -214,6 +214,7 @@ def fit_ours(strokes, name, machine=()):
     options.placement_mm, options.turn_rad, options.displacement_mm = 5.0, 0.0, 1.5
     options.widest_per_half = _core.Prior(1.0, 0.4)
     options.round_tail, options.spacing_mm = True, 2.0
+    options.departing = False  # its figures are those of the few numbers
     machine_found.ask_for(options, machine)
     return _core.fit_marks(painted, None, options), options
 

@@ -1,6 +1,6 @@
 """Random brushes paint a calibration sheet, and the fit is asked which brush it was.
 
-    truth_recovery.py [--brushes 300] [--seed 1] [--processes 2] [--sheet a4]
+    truth_recovery.py [--brushes 300] [--seed 1] [--processes 2] [--sheet a4] [--outside all]
 
 With --sheet the strokes are those of `brushsvg chart` on such a sheet, laid out by somebody who knows lag and width of
 the brush to 15 %; without it they are 22 at five depths.
@@ -8,12 +8,17 @@ the brush to 15 %; without it they are 22 at five depths.
 The sheet is painted by the slow stepping simulator of tests/laws, not by the library, with noise on its edges, marks
 and sheet displaced and turned, and paper at a wrong height. Printed: how often the 95 % intervals hold the truth, for
 the values of each law at five depths, pooled and each; and how far the lag is off over the range.
+
+With --outside the laws are none of the fit's polynomials: saturating, kinked, power, logistic, floored or wiggling,
+with random numbers; `all` takes them in turn. round-6 is the shipped brush, the same each time.
+--noise 0 paints clean edges; --family fits without departures from the family.
 """
 
 from __future__ import annotations
 
 import argparse
 import functools
+import json
 import multiprocessing
 import sys
 import time
@@ -24,13 +29,16 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "laws"))
 import painter
 
+import brushsvg
 from brushsvg import _core
+from brushsvg.brush.confidence import half_interval_mm, places
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.from_marks import brush_of
+from brushsvg.calibration.from_marks import brush_of, height_at
 from brushsvg.cli.arguments import values
 
 KNOWN_TO = 0.15
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest
+LAWS = {"lag": SHARES, "tip_gap": (1.0,), "half_width": SHARES, "tip_to_widest": (0.6, 1.0)}
 
 
 def options_for(brush, faults) -> _core.MarkOptions:
@@ -49,36 +57,64 @@ def strokes_of(rng, brush, sheet_mm: tuple[float, float] | None):
     if sheet_mm is None:
         return painter.chart_strokes(brush.deepest)
     lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
-    laws = _core.MarkLaws(list(lag * brush.lag), [0.0, 0.4], list(width * brush.half_width), 1.8, 1.0)
+    depths = np.linspace(0, brush.deepest, 21)[1:]
+    known = [
+        np.polynomial.polynomial.polyfit(depths, brush.law(law)(depths), 3) for law in ("lag", "half_width")
+    ]
+    known[1][0] = 0.0
+    laws = _core.MarkLaws(list(lag * known[0]), [0.0, 0.4], list(width * known[1]), 1.8, 1.0)
     made = chart(brush_of(laws, "known roughly", (0.0, brush.deepest)), sheet_mm)
     return [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
 
 
-def recover(seed: int, sheet_mm: tuple[float, float] | None = None) -> dict:
-    """One brush: error over standard deviation of each value, and the lag's largest relative error."""
+def brush_for(rng, seed: int, outside: str | None):
+    if outside is None:
+        return painter.random_brush(rng)
+    if outside == "round-6":
+        return painter.round_6(
+            json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
+        )
+    shapes = list(painter.SHAPES)
+    return painter.random_stranger(rng, shapes[seed % len(shapes)] if outside == "all" else outside)
+
+
+def true_value(brush, law: str, depth: float) -> float:
+    if law == "tip_to_widest" and not isinstance(brush, painter.Stranger):
+        return brush.widest_per_half * brush.law("half_width")(depth)
+    return float(brush.law(law)(depth))
+
+
+def recover(
+    seed: int,
+    sheet_mm: tuple[float, float] | None = None,
+    outside: str | None = None,
+    noise: float | None = None,
+    departing: bool = True,
+) -> dict:
+    """One brush: error and standard deviation of each value, and the lag's largest relative error."""
     rng = np.random.default_rng(seed)
-    brush, faults = painter.random_brush(rng), painter.Faults()
+    brush, faults = brush_for(rng, seed, outside), painter.Faults()
+    if noise is not None:
+        faults.noise = noise
     sheet = painter.paint(rng, brush, strokes_of(rng, brush, sheet_mm), faults)
     marks = [_core.PaintedMark(*mark) for mark in sheet.marks]
+    options = options_for(brush, faults)
+    options.departing = departing
     begin = time.perf_counter()
-    fit = _core.fit_marks(marks, None, options_for(brush, faults))
+    fit = _core.fit_marks(marks, None, options)
     took = time.perf_counter() - begin
     covariance = np.array(fit.covariance)
-    out, first = {}, 0
-    for law, skip in (("lag", 0), ("tip_gap", 1), ("half_width", 1)):
-        found = np.array(getattr(fit.laws, law))
-        count = len(found) - skip
-        block = covariance[first : first + count, first : first + count]
-        first += count
-        for share in SHARES if law != "tip_gap" else (1.0,):
-            powers = (share * brush.deepest) ** np.arange(skip, len(found))
-            truth = brush.law(law)(share * brush.deepest)
-            error = powers @ found[skip:] - truth
-            out[f"{law} at {share:g}"] = (error, np.sqrt(powers @ block @ powers))
-    for k, name in enumerate(("widest_per_half", "front_per_half")):
-        error = getattr(fit.laws, name) - getattr(brush, name)
-        out[name] = (error, np.sqrt(covariance[first + k, first + k]))
-    out["height"] = (fit.height_mm - sheet.height, np.sqrt(covariance[first + 2, first + 2]))
+    found = brush_of(fit.laws, "found", (0.0, brush.deepest), covariance)
+    out = {}
+    for law, shares in LAWS.items():
+        at = places(found)[law]
+        depths = np.array(shares) * brush.deepest
+        half = half_interval_mm(np.array(found.covariance)[at, at], depths, None)
+        for share, depth, interval in zip(shares, depths, half, strict=True):
+            error = getattr(found, law)(depth) - true_value(brush, law, depth)
+            out[f"{law} at {share:g}"] = (error, interval / 1.96)
+    height = height_at(fit)
+    out["height"] = (fit.height_mm - sheet.height, np.sqrt(covariance[height, height]))
     depths = np.linspace(0.15, 1, 18) * brush.deepest
     lag = np.polynomial.polynomial.polyval(depths, fit.laws.lag)
     worst = float(np.max(np.abs(lag / brush.law("lag")(depths) - 1)))
@@ -127,12 +163,22 @@ def main():
     arguments.add_argument(
         "--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it"
     )
+    arguments.add_argument("--outside", choices=["all", "round-6", *painter.SHAPES])
+    arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
+    arguments.add_argument(
+        "--family", action="store_true", help="laws that do not depart from their few numbers"
+    )
     args = arguments.parse_args()
+    recovered = functools.partial(
+        recover,
+        sheet_mm=args.sheet,
+        outside=args.outside,
+        noise=args.noise,
+        departing=not args.family,
+    )
     found = []
     with multiprocessing.Pool(args.processes) as pool:
-        for one in pool.imap_unordered(
-            functools.partial(recover, sheet_mm=args.sheet), range(args.seed, args.seed + args.brushes)
-        ):
+        for one in pool.imap_unordered(recovered, range(args.seed, args.seed + args.brushes)):
             found.append(one)
             if len(found) % 20 == 0:
                 print(summary(sorted(found, key=lambda f: f["seed"])), flush=True)

@@ -27,7 +27,8 @@ template <>
 inline constexpr auto members<brushsvg::fit::MarkLaws> =
     std::tuple(&brushsvg::fit::MarkLaws::lag, &brushsvg::fit::MarkLaws::tip_gap, &brushsvg::fit::MarkLaws::half_width,
                &brushsvg::fit::MarkLaws::widest_per_half, &brushsvg::fit::MarkLaws::front_per_half,
-               &brushsvg::fit::MarkLaws::round_tail);
+               &brushsvg::fit::MarkLaws::round_tail, &brushsvg::fit::MarkLaws::widest_by_depth,
+               &brushsvg::fit::MarkLaws::front_by_depth);
 
 template <>
 inline constexpr auto members<brushsvg::fit::LawPrior> =
@@ -41,7 +42,7 @@ inline constexpr auto members<brushsvg::fit::Machine> =
 template <>
 inline constexpr auto members<brushsvg::fit::MarkOptions> =
     std::tuple(&brushsvg::fit::MarkOptions::deepest_mm, &brushsvg::fit::MarkOptions::lag_terms,
-               &brushsvg::fit::MarkOptions::tip_gap_terms, &brushsvg::fit::MarkOptions::half_width_terms,
+               &brushsvg::fit::MarkOptions::tip_gap_terms, &brushsvg::fit::MarkOptions::half_width_terms, &brushsvg::fit::MarkOptions::departing,
                &brushsvg::fit::MarkOptions::widest_per_half, &brushsvg::fit::MarkOptions::front_per_half,
                &brushsvg::fit::MarkOptions::laws, &brushsvg::fit::MarkOptions::round_tail,
                &brushsvg::fit::MarkOptions::height_mm, &brushsvg::fit::MarkOptions::placement_mm,
@@ -151,18 +152,23 @@ the pass, followed on their circles.)");
                                    "Laws as coefficients (ascending powers of depth), and a drop's shape.");
     mark_laws
         .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
-                         double widest_per_half, double front_per_half, bool round_tail) {
-                 return MarkLaws{std::move(lag),  std::move(tip_gap), std::move(half_width),
-                                 widest_per_half, front_per_half,     round_tail};
+                         double widest_per_half, double front_per_half, bool round_tail,
+                         std::vector<double> widest_by_depth, std::vector<double> front_by_depth) {
+                 return MarkLaws{
+                     std::move(lag), std::move(tip_gap), std::move(half_width),      widest_per_half,
+                     front_per_half, round_tail,         std::move(widest_by_depth), std::move(front_by_depth)};
              }),
              py::arg("lag"), py::arg("tip_gap"), py::arg("half_width"), py::arg("widest_per_half") = 1.8,
-             py::arg("front_per_half") = 1.0, py::arg("round_tail") = false)
+             py::arg("front_per_half") = 1.0, py::arg("round_tail") = false,
+             py::arg("widest_by_depth") = std::vector<double>{}, py::arg("front_by_depth") = std::vector<double>{})
         .def_property_readonly("lag", frozen_copy(&MarkLaws::lag))
         .def_property_readonly("tip_gap", frozen_copy(&MarkLaws::tip_gap))
         .def_property_readonly("half_width", frozen_copy(&MarkLaws::half_width))
         .def_readonly("widest_per_half", &MarkLaws::widest_per_half)
         .def_readonly("front_per_half", &MarkLaws::front_per_half)
         .def_readonly("round_tail", &MarkLaws::round_tail)
+        .def_property_readonly("widest_by_depth", frozen_copy(&MarkLaws::widest_by_depth))
+        .def_property_readonly("front_by_depth", frozen_copy(&MarkLaws::front_by_depth))
         .def("__repr__", [](const MarkLaws& v) {
             return "<MarkLaws: lag of " + counted(v.lag.size(), "term") + ", tip gap of " +
                    std::to_string(v.tip_gap.size()) + ", half width of " + std::to_string(v.half_width.size()) + ">";
@@ -198,12 +204,14 @@ is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlas
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
 widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
 and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
-machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.)");
+machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
+nothing, say what to expect of such edges.)");
     mark_options.def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
         .def_readwrite("lag_terms", &MarkOptions::lag_terms)
         .def_readwrite("tip_gap_terms", &MarkOptions::tip_gap_terms)
         .def_readwrite("half_width_terms", &MarkOptions::half_width_terms)
+        .def_readwrite("departing", &MarkOptions::departing)
         .def_readwrite("widest_per_half", &MarkOptions::widest_per_half)
         .def_readwrite("front_per_half", &MarkOptions::front_per_half)
         .def_readwrite("round_tail", &MarkOptions::round_tail)
@@ -240,8 +248,8 @@ machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to 
     py::class_<MarkFit> mark_fit(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-front_per_half, height, shift x and y, turn; where any of the machine was asked for lean x and y, scale x and y, skew,
-tilt x and y, backlash x and y.)");
+front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
+where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y.)");
     mark_fit.def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)

@@ -293,18 +293,8 @@ def step_all(plans, laws, steps, method="article", epsilon=1e-9):
     TCP, nothing more; it knows no angle and converges in first order.
     """
     plans = np.asarray(plans, float)
-    width = max(len(law.coefficients) for law in laws)
-    coefficients = np.array([np.pad(law.coefficients, (0, width - len(law.coefficients))) for law in laws]).T[
-        ::-1
-    ]
-    floor, floor_slope = np.array([law.floor for law in laws]), np.array([law.floor_slope for law in laws])
     cuts = _cuts_at_kinks(plans, laws)
-
-    def radius(depth):
-        value = coefficients[0]
-        for c in coefficients[1:]:
-            value = value * depth + c
-        return np.maximum(value, floor + floor_slope * depth)
+    radius = laws[0] if all(law is laws[0] for law in laws) else _all_at_once(laws)
 
     tcp, depth = plans[:, 0, 0] + 1j * plans[:, 0, 1], -plans[:, 0, 2]
     contact, down = tcp.copy(), depth >= 0
@@ -338,6 +328,23 @@ def step_all(plans, laws, steps, method="article", epsilon=1e-9):
                     tcp = new
             result[down, k + 1, 0], result[down, k + 1, 1] = contact.real[down], contact.imag[down]
     return result
+
+
+def _all_at_once(laws):
+    """Of m polynomials with floors: depths (m,) -> values (m,)."""
+    width = max(len(law.coefficients) for law in laws)
+    coefficients = np.array([np.pad(law.coefficients, (0, width - len(law.coefficients))) for law in laws]).T[
+        ::-1
+    ]
+    floor, floor_slope = np.array([law.floor for law in laws]), np.array([law.floor_slope for law in laws])
+
+    def radius(depth):
+        value = coefficients[0]
+        for c in coefficients[1:]:
+            value = value * depth + c
+        return np.maximum(value, floor + floor_slope * depth)
+
+    return radius
 
 
 def _cuts_at_kinks(plans, laws):

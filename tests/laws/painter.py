@@ -87,6 +87,136 @@ def random_brush(rng):
     )
 
 
+@dataclass
+class Curve:
+    """A law of any shape: depth -> value. bends: depths where its slope jumps."""
+
+    value: Callable
+    bends: tuple = ()
+
+    def __call__(self, depth):
+        return self.value(np.maximum(depth, 0.0))
+
+    def kinks(self):
+        return list(self.bends)
+
+
+@dataclass
+class Stranger(TrueBrush):
+    """A brush whose laws are no polynomials: curves by name, tip_to_widest among them; front: over the half width."""
+
+    curves: dict = field(default_factory=dict)
+
+    def law(self, name):
+        return self.curves[name]
+
+
+def outline_of(half, widest, front, vertices=33):
+    """Drops (n, vertices, 2) from half widths, widest sections and fronts (n,)."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
+    half, widest, front = (
+        np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front)
+    )
+    ahead = np.stack([widest + front * np.cos(angle), half * np.sin(angle)], axis=2)
+    return np.concatenate([np.zeros((len(half), 1, 2)), ahead], axis=1)
+
+
+def _saturating(rng):
+    rate = rng.uniform(1.5, 4.0)
+    return lambda t: (1 - np.exp(-rate * t)) / (1 - np.exp(-rate)), ()
+
+
+def _kinked(rng):
+    at, rise = rng.uniform(0.3, 0.7), rng.uniform(0.2, 0.8)
+    return lambda t: np.where(t < at, rise * t / at, rise + (1 - rise) * (t - at) / (1 - at)), (at,)
+
+
+def _power(rng):
+    power = rng.choice([rng.uniform(0.6, 0.85), rng.uniform(1.3, 2.5)])
+    return lambda t: t**power, ()
+
+
+def _logistic(rng):
+    steep, middle = rng.uniform(5, 10), rng.uniform(0.35, 0.65)
+    low, high = (1 / (1 + np.exp(-steep * (t - middle))) for t in (0.0, 1.0))
+    return lambda t: (1 / (1 + np.exp(-steep * (t - middle))) - low) / (high - low), ()
+
+
+def _floored(rng):
+    at = rng.uniform(0.15, 0.4)
+    return lambda t: np.maximum(t - at, 0.0) / (1 - at), (at,)
+
+
+def _wiggling(rng):
+    waves, phase = rng.uniform(1.0, 2.0), rng.uniform(0, 2 * np.pi)
+    size = rng.uniform(0.3, 0.9) / (2 * np.pi * waves)  # it never falls
+
+    def value(t):
+        return t + size * (np.sin(2 * np.pi * waves * t + phase) - np.sin(phase))
+
+    return lambda t: value(t) / value(1.0), ()
+
+
+SHAPES = {
+    "saturating": _saturating,
+    "kinked": _kinked,
+    "power": _power,
+    "logistic": _logistic,
+    "floored": _floored,
+    "wiggling": _wiggling,
+}
+
+
+def random_stranger(rng, shape):
+    """As large as random_brush, each law by a shape of its own of this kind. Half width, tip gap and widest section
+    are 0 at the touch: half of them rises straight."""
+    deepest = rng.uniform(4, 10)
+    first, last, half = rng.uniform(1, 4), rng.uniform(6, 14), rng.uniform(1.2, 4.0)
+    gap, widest = rng.uniform(0.2, 0.6) * deepest, rng.normal(1.8, 0.25) * half
+
+    def curve(begin, end, straight):
+        rise, bends = SHAPES[shape](rng)
+
+        def value(depth):
+            t = np.asarray(depth / deepest)
+            return begin + (end - begin) * (straight * t + (1 - straight) * rise(t))
+
+        return Curve(value, tuple(deepest * at for at in bends))
+
+    curves = {
+        "lag": curve(first, last, 0.0),
+        "tip_gap": curve(0.0, gap, rng.uniform(0.5, 0.8)),
+        "half_width": curve(0.0, half, rng.uniform(0.4, 0.7)),
+        "tip_to_widest": curve(0.0, widest, rng.uniform(0.4, 0.7)),
+    }
+    front = rng.normal(1.0, 0.15)
+
+    def outlines(depth):
+        across = curves["half_width"](depth)
+        return outline_of(across, curves["tip_to_widest"](depth), front * across)
+
+    steep = max(
+        curves["tip_to_widest"](d) / curves["half_width"](d) for d in np.linspace(0.1, 1, 10) * deepest
+    )
+    return Stranger(deepest, None, None, None, float(steep), front, shape=outlines, curves=curves)
+
+
+def round_6(own):
+    """The shipped brush, from its file: its laws and its outlines as they stand."""
+    curves = {
+        name: oracle.Law(
+            own[name]["coefficients"], own[name].get("floor", -np.inf), own[name].get("floor_slope", 0.0)
+        )
+        for name in ("lag", "tip_gap", "tip_to_widest", "half_width")
+    }
+    dragged = [(each["depth_mm"], np.array(each["outline_mm"])) for each in own["footprints"]["dragged"]]
+
+    def outlines(depth):
+        return np.array([oracle.footprint_at(dragged, [], max(d, 1e-3), 1.0) for d in depth])
+
+    return Stranger(own["depth_range_mm"][1], None, None, None, 2.0, 1.0, shape=outlines, curves=curves)
+
+
 def chart_strokes(deepest, depths=5):
     """[(id, poses (n, 3))]: at each depth a straight stroke, a right angle, an arc and a reversal; and two ramps."""
     out, place = [], 0

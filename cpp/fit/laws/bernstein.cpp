@@ -22,4 +22,16 @@ MatrixXd powers_from_controls(int degree, double lo, double hi) {
     return shift * unit;
 }
 
+MatrixXd powers_from_legendre(int degree, double hi) {
+    MatrixXd out = MatrixXd::Zero(degree + 1, degree + 1);
+    out(0, 0) = 1.0;
+    for (int k = 0; k < degree; ++k) {  // (k + 1) P' = (2 k + 1) t P - k P_before, t = 2 d / hi - 1
+        Eigen::VectorXd next = -(2.0 * k + 1.0) * out.col(k);
+        next.tail(degree) += (2.0 * k + 1.0) * (2.0 / hi) * out.col(k).head(degree);
+        if (k) next -= double(k) * out.col(k - 1);
+        out.col(k + 1) = next / (k + 1.0);
+    }
+    return out;
+}
+
 }  // namespace brushsvg::fit

@@ -8,4 +8,7 @@ namespace brushsvg::fit {
 /// is above 0 where they are, and rises where they do.
 Eigen::MatrixXd powers_from_controls(int degree, double lo, double hi);
 
+/// Coefficients (ascending) from factors of the Legendre polynomials over [0, hi], each 1 at hi.
+Eigen::MatrixXd powers_from_legendre(int degree, double hi);
+
 }  // namespace brushsvg::fit

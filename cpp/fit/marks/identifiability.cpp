@@ -60,8 +60,8 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
     size.head(at.lag).setConstant(lag);
     size.segment(at.gap_at(), at.gap).setConstant(std::max(half, std::abs(shared.segment(at.gap_at(), at.gap).sum())));
     size.segment(at.half_at(), at.half).setConstant(half);
-    size[at.widest()] = std::max(1.0, shared[at.widest()]);
-    size[at.front()] = std::max(1.0, shared[at.front()]);
+    size.segment(at.widest(), at.widest_terms).setConstant(std::max(1.0, shared[at.widest()]));
+    size.segment(at.front(), at.front_terms).setConstant(std::max(1.0, shared[at.front()]));
     size[at.height()] = 1.0;
     still = size.asDiagonal() * still * size.asDiagonal();
     moving = size.asDiagonal() * moving * size.asDiagonal();
@@ -69,7 +69,7 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
     const std::vector<Group> groups{{"lag", 0, at.lag},
                                     {"tip_gap", at.gap_at(), at.gap},
                                     {"half_width", at.half_at(), at.half},
-                                    {"the footprint's shape", at.widest(), 2},
+                                    {"the footprint's shape", at.widest(), at.height() - at.widest()},
                                     {"the height of the paper", at.height(), 1}};
     std::vector<std::string> out;
     const auto say = [&](const std::string& sentence) {

@@ -180,7 +180,7 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
         normal.transpose() * (now.contact_by + (edge.x - now.gap) * heading_by + edge.y * left_by);
     out.head(layout_.lag) = -moved.head(layout_.lag);
     // x and y of the edge per half width
-    const double along = edge.by_widest * shared[layout_.widest()] + edge.by_front * shared[layout_.front()];
+    const double along = edge.by_widest * now.widest_ratio + edge.by_front * now.front_ratio;
     const double per_half = along * nu + edge.by_half * nl;
     double power = 1.0;
     for (int j = 0; j < layout_.gap; ++j) {
@@ -192,12 +192,29 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
         for (Index i = half_powers_.rows(); i-- > 0;) step = step * now.depth + half_powers_(i, j);
         out[layout_.half_at() + j] = -step * per_half;
     }
-    out[layout_.widest()] = -edge.by_widest * now.drop.half * nu;
-    out[layout_.front()] = -edge.by_front * now.drop.half * nu;
-    const double deeper = now.half_slope * per_half - now.gap_slope * nu;
+    const double half_nu = now.drop.half * nu;
+    ratio_by(now.depth, now.widest_ratio, -edge.by_widest * half_nu,
+             out.segment(layout_.widest(), layout_.widest_terms));
+    ratio_by(now.depth, now.front_ratio, -edge.by_front * half_nu, out.segment(layout_.front(), layout_.front_terms));
+    const double longer = edge.by_widest * now.widest_slope + edge.by_front * now.front_slope;
+    const double deeper = now.half_slope * per_half - now.gap_slope * nu + longer * half_nu;
     out[layout_.height()] = -moved[kMostTerms] - now.depth_by[0] * deeper;
     for (int i = 0; i < layout_.machine_numbers; ++i)
         out[layout_.machine() + i] = -moved[kMostTerms + 1 + i] - now.depth_by[1 + i] * deeper;
+}
+
+void MarkModel::ratio_by(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const {
+    out.setZero();
+    if (out.size() > 1 && ratio <= kLeastRatio) return;
+    // P_k at depth, of the Legendre polynomials over [0, deepest]
+    const double t = 2.0 * depth / deepest_ - 1.0;
+    double before = 0.0, now = 1.0;
+    for (Index k = 0; k < out.size(); ++k) {
+        out[k] = rate * now;
+        const double next = ((2.0 * double(k) + 1.0) * t * now - double(k) * before) / (double(k) + 1.0);
+        before = now;
+        now = next;
+    }
 }
 
 Ring MarkModel::placed(Index mark, const double* shared, const double* displacement) const {

@@ -7,6 +7,7 @@
 
 #include "brushsvg/error.hpp"
 #include "identifiability.hpp"
+#include "lack_of_fit.hpp"
 #include "mark_problem.hpp"
 #include "multistart.hpp"
 #include "noise_covariance.hpp"
@@ -127,19 +128,28 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
     at.leave_slim_aside();
 }
 
-/// Whether it converged. How sure the distances are is found on the way, wild ones lose their say.
+/// Whether it converged. How sure the distances are is found on the way, wild ones lose their say, and laws depart from
+/// their numbers. As the noise is taken for more as long as they do not, that is asked twice.
 bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
            const MarkOptions& options) {
     start(at, from, marks, options);
-    bool converged = false;
-    constexpr double kLast = 1e-7;
+    const bool may_depart = options.departing && !options.laws;
+    bool converged = false, departs = false;
+    // numbers that only their prior holds move on for long, by far less than their intervals
+    constexpr double kLast = 1e-7, kDeparting = 1e-4;
     for (const auto& [loss, tolerance] :
          {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-5}, std::pair{Loss::tukey, kLast}}) {
         at.weighing.loss = loss;
-        converged = at.solve(options.most_iterations, tolerance);
+        converged = at.solve(options.most_iterations, departs ? kDeparting : tolerance);
         at.weighing = weighed(at);
         if (loss == Loss::cauchy) at.find_displaced();
         if (tolerance > kLast) at.leave_slim_aside();
+        if (loss == Loss::tukey && tolerance > kLast && may_depart) departs = depart(at, marks, options);
+    }
+    if (departs) {
+        depart(at, marks, options);
+        converged = at.solve(options.most_iterations, kDeparting);
+        at.weighing = weighed(at);
     }
     return converged;
 }
@@ -180,7 +190,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
-    const MatrixXd whole = to * covariance_at_touch(fit) * to.transpose();
+    const MatrixXd whole = unsurer(fit) * to * covariance_at_touch(fit) * to.transpose();
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());
@@ -218,7 +228,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     // repeats divide squares, of which the loss lets through the slope's share
     out.effective_samples =
         std::min(out.samples, (out.samples - aside - slim) * fit.weighing.slope / fit.weighing.repeats);
-    out.remarks = doubts(fit);
+    out.remarks = doubts(with_terms(fit, marks, options));  // what departs from them is open but for its prior
     return out;
 }
 

@@ -32,6 +32,9 @@ struct MarkLaws {
     std::vector<double> lag, tip_gap, half_width;
     double widest_per_half = 1.8, front_per_half = 1.0;
     bool round_tail = false;
+    /// Where the ratios change with depth: polynomials (ascending powers of depth), of which those above are the means
+    /// over [0, deepest]; empty where they do not. No less than kLeastRatio at any depth.
+    std::vector<double> widest_by_depth, front_by_depth;
 };
 
 /// How a machine takes the tool elsewhere than it was told. Told (x, y) from MarkFit::centre_mm and a depth d it goes
@@ -54,6 +57,9 @@ struct MarkOptions {
     double deepest_mm = 10.0;  ///< the laws are to hold on [0, deepest]
     /// Numbers per law, at most four: r = c0 + ..., b and h through 0; h never falls.
     int lag_terms = 4, tip_gap_terms = 1, half_width_terms = 2;
+    int widest_terms = 1, front_terms = 1;  ///< of the ratios
+    /// Laws may depart from these numbers as far as the marks ask for it, and the intervals hold by how much they may.
+    bool departing = true;
     Prior widest_per_half{1.8, 0.5};  ///< the shape that the project assumes of round brushes, and round-6's spread
     Prior front_per_half{1.0, 0.3};
     std::optional<LawPrior> laws;  ///< beside the priors of the shape; none: nothing is known of them
@@ -84,7 +90,8 @@ struct MarkMiss {
 struct MarkFit {
     MarkLaws laws;
     /// Over lag, tip_gap and half_width (their constant, 0, left out), widest_per_half, front_per_half, height, shift x
-    /// and y, turn: in this order, in the laws' own coefficients. Where any of the machine was asked for, lean x and y,
+    /// and y, turn: in this order, in the laws' own coefficients; those of widest_by_depth and front_by_depth in place
+    /// of the ratios where these change with depth. Where any of the machine was asked for, lean x and y,
     /// scale x and y, skew, tilt x and y, backlash x and y follow.
     std::vector<std::vector<double>> covariance;
     double height_mm = 0.0, turn_rad = 0.0;

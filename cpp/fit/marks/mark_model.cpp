@@ -68,6 +68,24 @@ Ring travel_of(const Poses& poses, const PaintedMark* before) {
     return out;
 }
 
+/// A law with so many coefficients: 0 for what it lacks, or the nearest one on [0, deepest]. first: its least power.
+VectorXd of_terms(const std::vector<double>& c, Index terms, Index first, double deepest) {
+    constexpr int kDepths = 41;
+    const Index size = Index(c.size());
+    VectorXd out = VectorXd::Zero(terms);
+    for (Index i = 0; i < std::min(terms, size); ++i) out[i] = c[std::size_t(i)];
+    if (size <= terms) return out;
+    MatrixXd powers(kDepths, terms - first);
+    VectorXd value = VectorXd::Zero(kDepths);
+    for (int k = 0; k < kDepths; ++k) {
+        const double d = deepest * (k + 1) / kDepths;
+        for (Index i = first; i < terms; ++i) powers(k, i - first) = std::pow(d, double(i));
+        for (Index i = size; i-- > 0;) value[k] = value[k] * d + c[std::size_t(i)];
+    }
+    out.tail(terms - first) = powers.colPivHouseholderQr().solve(value);
+    return out;
+}
+
 bool has_machine(const MarkOptions& options) {
     return options.lean_mm_per_mm > 0.0 || options.axes > 0.0 || options.tilt_mm_per_mm > 0.0 ||
            options.backlash_mm > 0.0;
@@ -112,11 +130,13 @@ void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
 
 }  // namespace
 
+Layout MarkModel::layout_of(const MarkOptions& options) {
+    return {options.lag_terms,    options.tip_gap_terms, options.half_width_terms,
+            options.widest_terms, options.front_terms,   has_machine(options) ? kMachine : 0};
+}
+
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
-    : layout_{options.lag_terms, options.tip_gap_terms, options.half_width_terms, has_machine(options) ? kMachine : 0},
-      deepest_(options.deepest_mm),
-      coarse_(coarse),
-      round_tail_(options.round_tail) {
+    : layout_(layout_of(options)), deepest_(options.deepest_mm), coarse_(coarse), round_tail_(options.round_tail) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
     const MatrixXd sums = MatrixXd::Ones(layout_.half, layout_.half).triangularView<Eigen::Lower>();
@@ -176,21 +196,23 @@ void MarkModel::refuse_endless() const {
 }
 
 VectorXd MarkModel::unbounded(const MarkLaws& laws) const {
-    const auto padded = [](const std::vector<double>& c, Index size) {
-        VectorXd out = VectorXd::Zero(size);
-        for (Index i = 0; i < std::min(size, Index(c.size())); ++i) out[i] = c[std::size_t(i)];
-        return out;
-    };
     VectorXd x = VectorXd::Zero(layout_.size());
-    x.head(layout_.lag) = lag_powers_.colPivHouseholderQr().solve(padded(laws.lag, layout_.lag));
-    const VectorXd gap = padded(laws.tip_gap, layout_.gap + 1);
+    x.head(layout_.lag) = lag_powers_.colPivHouseholderQr().solve(of_terms(laws.lag, layout_.lag, 0, deepest_));
+    const VectorXd gap = of_terms(laws.tip_gap, layout_.gap + 1, 1, deepest_);
     for (int k = 0; k < layout_.gap; ++k) x[layout_.gap_at() + k] = gap[k + 1] * std::pow(deepest_, k + 1);
     x.segment(layout_.half_at(), layout_.half) =
         half_powers_.bottomRows(layout_.half)
             .colPivHouseholderQr()
-            .solve(padded(laws.half_width, layout_.half + 1).tail(layout_.half));
-    x[layout_.widest()] = laws.widest_per_half;
-    x[layout_.front()] = laws.front_per_half;
+            .solve(of_terms(laws.half_width, layout_.half + 1, 1, deepest_).tail(layout_.half));
+    for (const auto& [by_depth, mean, first, terms] :
+         {std::tuple{&laws.widest_by_depth, laws.widest_per_half, layout_.widest(), layout_.widest_terms},
+          std::tuple{&laws.front_by_depth, laws.front_per_half, layout_.front(), layout_.front_terms}}) {
+        if (!by_depth->empty())
+            x.segment(first, terms) = powers_from_legendre(terms - 1, deepest_)
+                                          .colPivHouseholderQr()
+                                          .solve(of_terms(*by_depth, terms, 0, deepest_));
+        x[first] = mean;
+    }
     return x;
 }
 
@@ -208,6 +230,31 @@ MatrixXd MarkModel::to_coefficients() const {
     for (int k = 0; k < layout_.gap; ++k)
         out(layout_.gap_at() + k, layout_.gap_at() + k) = std::pow(deepest_, -(k + 1));
     out.block(layout_.half_at(), layout_.half_at(), layout_.half, layout_.half) = half_powers_.bottomRows(layout_.half);
+    for (const auto& [first, terms] :
+         {std::pair{layout_.widest(), layout_.widest_terms}, std::pair{layout_.front(), layout_.front_terms}})
+        out.block(first, first, terms, terms) = powers_from_legendre(terms - 1, deepest_);
+    return out;
+}
+
+MatrixXd MarkModel::departures(const Layout& from) const {
+    const MatrixXd to = to_coefficients();
+    std::vector<Eigen::RowVectorXd> rows;
+    const auto put = [&](int first, int terms, int known, double size) {
+        const MatrixXd block = powers_from_legendre(terms - 1, deepest_)
+                                   .colPivHouseholderQr()
+                                   .solve(MatrixXd(size * to.block(first, first, terms, terms)));
+        for (int k = known; k < terms; ++k) {
+            rows.emplace_back(Eigen::RowVectorXd::Zero(layout_.size()));
+            rows.back().segment(first, terms) = block.row(k);
+        }
+    };
+    put(0, layout_.lag, from.lag, 1.0);
+    put(layout_.gap_at(), layout_.gap, from.gap, deepest_);  // both go through 0: of their rise per depth
+    put(layout_.half_at(), layout_.half, from.half, deepest_);
+    put(layout_.widest(), layout_.widest_terms, from.widest_terms, 1.0);
+    put(layout_.front(), layout_.front_terms, from.front_terms, 1.0);
+    MatrixXd out(Index(rows.size()), layout_.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) out.row(Index(i)) = rows[i];
     return out;
 }
 
@@ -222,6 +269,11 @@ MarkLaws MarkModel::laws(const VectorXd& shared) const {
     }
     out.widest_per_half = shared[layout_.widest()];
     out.front_per_half = shared[layout_.front()];
+    const auto by_depth = [&](int first, int terms) {
+        return terms > 1 ? std::vector<double>(c.data() + first, c.data() + first + terms) : std::vector<double>{};
+    };
+    out.widest_by_depth = by_depth(layout_.widest(), layout_.widest_terms);
+    out.front_by_depth = by_depth(layout_.front(), layout_.front_terms);
     out.round_tail = round_tail_;
     return out;
 }

@@ -18,18 +18,20 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Where each unknown stands that all marks share. The lag stands as control values on [0, deepest] [mm], the tip gap
-/// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm].
+/// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm],
+/// the ratios of the footprint as factors of the Legendre polynomials over [0, deepest].
 struct Layout {
     int lag, gap, half;
+    int widest_terms, front_terms;
     int machine_numbers;  ///< kMachine or none
     int gap_at() const { return lag; }
     int half_at() const { return lag + gap; }
     int widest() const { return half_at() + half; }
-    int front() const { return widest() + 1; }
-    int height() const { return widest() + 2; }
-    int shift() const { return widest() + 3; }
-    int turn() const { return widest() + 5; }
-    int machine() const { return widest() + 6; }
+    int front() const { return widest() + widest_terms; }
+    int height() const { return front() + front_terms; }
+    int shift() const { return height() + 1; }
+    int turn() const { return height() + 3; }
+    int machine() const { return height() + 4; }
     int size() const { return machine() + machine_numbers; }
 };
 
@@ -38,12 +40,15 @@ class MarkModel {
     /// coarse: so many times as far apart as they should be are the instants at which the brush is looked at.
     MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
+    static Layout layout_of(const MarkOptions& options);
     const Layout& layout() const { return layout_; }
     Index marks() const { return Index(painted_.size()); }
     const std::string& stroke(Index mark) const { return painted_[std::size_t(mark)].stroke; }
     Index points(Index mark) const { return painted_[std::size_t(mark)].point_mm.rows(); }
     Index ring_begin(Index mark, std::size_t ring) const { return painted_[std::size_t(mark)].rings[ring]; }
     std::size_t rings(Index mark) const { return painted_[std::size_t(mark)].rings.size() - 1; }
+    /// How deep a mark's stroke is pressed [mm].
+    double deepest(Index mark) const { return -painted_[std::size_t(mark)].poses_mm.col(2).minCoeff(); }
     std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
 
     /// The shared unknowns of laws, wherever they lie; at their least values or above; and back.
@@ -52,6 +57,9 @@ class MarkModel {
     MarkLaws laws(const VectorXd& shared) const;
     /// d(what MarkFit::covariance is about) / d(shared unknowns).
     MatrixXd to_coefficients() const;
+    /// Rows over the shared unknowns: by how much each law departs [mm] from one of so many numbers, as factors of
+    /// polynomials that these do not hold, of which each is 1 at the deepest.
+    MatrixXd departures(const Layout& from) const;
     /// Least value of each shared unknown; the lag stays above 0, the half width rises.
     VectorXd least() const;
     /// What the machine is at these unknowns.
@@ -99,6 +107,9 @@ class MarkModel {
     /// Derivatives of a distance by the laws' unknowns and the height.
     void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal, const VectorXd& shared,
                  Eigen::Ref<Eigen::RowVectorXd> out) const;
+
+    /// rate times the derivatives of a ratio by its unknowns.
+    void ratio_by(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     std::vector<Painted> painted_;
     mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it

@@ -145,8 +145,14 @@ void MarkProblem::hold_shape(bool hold) {
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = priors_[i].sigma == 0.0;
     if (!hold) return;
     const Layout& at = model.layout();
-    held_[std::size_t(at.widest())] = held_[std::size_t(at.front())] = true;
+    std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
     std::fill(held_.begin() + at.machine(), held_.end(), true);
+}
+
+void MarkProblem::expect(const MatrixXd& rows) {
+    law_rows_ = rows;
+    departs_ = rows.rows() > 0;
+    law_mean_ = VectorXd::Zero(shared.size());
 }
 
 double MarkProblem::loss() const {
@@ -256,6 +262,19 @@ void MarkProblem::add_known(MatrixXd& to) const {
     if (law_rows_.rows() == 0) return;
     const Index g = shared.size();
     to.topLeftCorner(g, g) += law_rows_.transpose() * law_rows_;
+}
+
+VectorXd MarkProblem::known_gradient() const {
+    const Index g = shared.size();
+    VectorXd out = VectorXd::Zero(g + 2 * model.marks());
+    for (Index i = 0; i < g; ++i) {
+        const Prior& prior = priors_[std::size_t(i)];
+        if (prior.sigma > 0.0) out[i] = (shared[i] - prior.value) / (prior.sigma * prior.sigma);
+    }
+    if (displacement_mm_ > 0.0)
+        for (Index i = 0; i < model.marks(); ++i)
+            out.segment<2>(g + 2 * i) = own[std::size_t(i)] / (displacement_mm_ * displacement_mm_);
+    return out;
 }
 
 }  // namespace brushsvg::fit

@@ -27,8 +27,15 @@ class MarkProblem {
     double loss() const;
     /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
     bool solve(int most_iterations, double tolerance);
+    /// Laws depart from their numbers by no more than is expected: each of these rows makes a standard normal number of
+    /// the shared unknowns.
+    void expect(const MatrixXd& rows);
+    bool is_departing() const { return departs_; }
     /// Adds the information of the priors, over every shared unknown and then both displacements of every mark.
     void add_known(MatrixXd& to) const;
+
+    /// Gradient of the priors over the same unknowns; of those of expect() and of LawPrior none.
+    VectorXd known_gradient() const;
 
     MarkModel model;
     Weighing weighing;
@@ -46,6 +53,7 @@ class MarkProblem {
     MatrixXd law_rows_;  ///< of LawPrior, over the shared unknowns; none where nothing is known
     VectorXd law_mean_;
     std::vector<bool> held_;
+    bool departs_ = false;
 };
 
 }  // namespace brushsvg::fit

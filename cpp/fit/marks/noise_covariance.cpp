@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -57,8 +58,8 @@ void add(MatrixXd& to, const MatrixXd& square, Index mark, Index shared) {
     to.block(own, own, 2, 2) += square.bottomRightCorner(2, 2);
 }
 
-/// Inverse of the loss's second derivatives, priors included.
-MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
+/// The loss's second derivatives, without priors.
+MatrixXd slope_of(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
     const Index g = at.shared.size(), all = g + 2 * at.model.marks();
     MatrixXd slope = MatrixXd::Zero(all, all);
     const double weight = weighing.slope / (weighing.noise_mm * weighing.noise_mm * weighing.repeats);
@@ -66,6 +67,13 @@ MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, co
         const MatrixXd& by = marks[std::size_t(i)].by;
         add(slope, weight * (by.transpose() * by), i, g);
     }
+    return slope;
+}
+
+/// Inverse of the loss's second derivatives, priors included.
+MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
+    const Index all = at.shared.size() + 2 * at.model.marks();
+    MatrixXd slope = slope_of(at, marks, weighing);
     at.add_known(slope);
     // in units of the unknowns' own sizes, or a polynomial's powers would drown each other
     const VectorXd unit = slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
@@ -82,6 +90,51 @@ MatrixXd part_of(const MatrixXd& inverse, Index mark, Index shared) {
     out << inverse.topLeftCorner(shared, shared), inverse.block(0, own, shared, 2), inverse.block(own, 0, 2, shared),
         inverse.block(own, own, 2, 2);
     return out;
+}
+
+/// By how much each mark alone moves the shared unknowns (g, marks), against all others.
+MatrixXd pulls(const MarkProblem& at, const std::vector<Seen>& marks, const MatrixXd& inverse) {
+    const Weighing& weighing = at.weighing;
+    const Index g = at.shared.size();
+    MatrixXd out(g, at.model.marks());
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        const Seen& mark = marks[std::size_t(i)];
+        const VectorXd psi =
+            (mark.distance_mm / weighing.noise_mm).unaryExpr([&](double z) { return cost(weighing.loss, z).psi; });
+        const VectorXd pull = mark.by.transpose() * psi / (weighing.noise_mm * weighing.repeats);
+        out.col(i) = inverse.topLeftCorner(g, g) * pull.head(g) + inverse.block(0, g + 2 * i, g, 2) * pull.tail<2>();
+    }
+    return out;
+}
+
+/// The covariance raised in directions in which groups pull farther apart than their noise makes as many of them.
+MatrixXd raised(const MatrixXd& covariance, const MatrixXd& pulls) {
+    const Index g = covariance.rows(), groups = pulls.cols();
+    const VectorXd unit = covariance.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(unit.asDiagonal() * covariance * unit.asDiagonal());
+    const VectorXd root = eigen.eigenvalues().cwiseMax(1e-9 * eigen.eigenvalues()[g - 1]).cwiseSqrt();
+    const MatrixXd whitened =
+        root.cwiseInverse().asDiagonal() * (eigen.eigenvectors().transpose() * (unit.asDiagonal() * pulls));
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> apart(whitened * whitened.transpose());
+    const double by_chance = std::pow(1.0 + std::sqrt(double(g) / double(groups)), 2);  // of white noise the largest
+    const VectorXd more = apart.eigenvalues().unaryExpr([&](double v) { return v > by_chance ? v - 1.0 : 0.0; });
+    const MatrixXd back =
+        unit.cwiseInverse().asDiagonal() * (eigen.eigenvectors() * (root.asDiagonal() * apart.eigenvectors()));
+    return covariance + back * more.asDiagonal() * back.transpose();
+}
+
+/// With what is common to a mark, and to all of a depth, beyond the noise.
+MatrixXd with_misfit(const MatrixXd& covariance, const MatrixXd& pulls, const MarkProblem& at) {
+    constexpr double kSameDepth = 0.02;  // of the deepest
+    std::vector<double> depths;
+    for (Index i = 0; i < pulls.cols(); ++i) depths.push_back(at.model.deepest(i));
+    const double most = *std::max_element(depths.begin(), depths.end());
+    std::map<long, Index> group;
+    for (const double d : depths) group.try_emplace(std::lround(d / (kSameDepth * most)), Index(group.size()));
+    MatrixXd by_depth = MatrixXd::Zero(pulls.rows(), Index(group.size()));
+    for (Index i = 0; i < pulls.cols(); ++i)
+        by_depth.col(group[std::lround(depths[std::size_t(i)] / (kSameDepth * most))]) += pulls.col(i);
+    return raised(raised(covariance, pulls), by_depth);
 }
 
 /// Sum over points of one closed outline, per number of points in between; and how many pairs with a say that are.
@@ -179,6 +232,23 @@ Weighing weighed(const MarkProblem& at) {
     return out;
 }
 
+MarksLoss marks_loss(const MarkProblem& at) {
+    const Weighing& weighing = at.weighing;
+    std::vector<Seen> marks = look(at);
+    leave_out_wild(marks, weighing);
+    const Index g = at.shared.size();
+    MarksLoss out{VectorXd::Zero(g + 2 * at.model.marks()), slope_of(at, marks, weighing)};
+    for (Index i = 0; i < at.model.marks(); ++i) {
+        const Seen& mark = marks[std::size_t(i)];
+        const VectorXd psi =
+            (mark.distance_mm / weighing.noise_mm).unaryExpr([&](double z) { return cost(weighing.loss, z).psi; });
+        const VectorXd pull = mark.by.transpose() * psi / (weighing.noise_mm * weighing.repeats);
+        out.gradient.head(g) += pull.head(g);
+        out.gradient.segment<2>(g + 2 * i) = pull.tail<2>();
+    }
+    return out;
+}
+
 MatrixXd covariance(const MarkProblem& at) {
     const Weighing& weighing = at.weighing;
     std::vector<Seen> marks = look(at);
@@ -204,7 +274,8 @@ MatrixXd covariance(const MarkProblem& at) {
     spread /= std::pow(weighing.noise_mm * weighing.repeats, 2);
     at.add_known(spread);
     const MatrixXd inverse = inverse_slope(at, marks, weighing);
-    return inverse.topRows(g) * spread * inverse.leftCols(g);
+    const MatrixXd out = inverse.topRows(g) * spread * inverse.leftCols(g);
+    return with_misfit(out, pulls(at, marks, inverse), at);
 }
 
 }  // namespace brushsvg::fit

@@ -9,6 +9,13 @@ namespace brushsvg::fit {
 /// to what the fit makes of it) along its k-th diagonal, in the mean: that is added again.
 Weighing weighed(const MarkProblem& at);
 
+/// The marks' loss beside the solution, over the shared unknowns and then both displacements of every mark.
+struct MarksLoss {
+    VectorXd gradient;
+    MatrixXd slope;  ///< second derivatives
+};
+MarksLoss marks_loss(const MarkProblem& at);
+
 /// Of the shared unknowns, priors included: A^-1 (M + P) A^-1 with A the slope of the loss, M the sum of
 /// J_i c(|i - k|) J_k^T over points i, k of one outline, c the weighing's autocovariance, and P from the priors.
 MatrixXd covariance(const MarkProblem& at);

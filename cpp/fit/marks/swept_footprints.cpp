@@ -36,6 +36,11 @@ double slope_at_depth(const std::vector<double>& c, double d) {
     for (std::size_t i = c.size(); i-- > 1;) y = y * d + double(i) * c[i];
     return y;
 }
+void ratio_at_depth(const std::vector<double>& c, double constant, double d, double& ratio, double& slope) {
+    ratio = c.empty() ? constant : at_depth(c, d);
+    slope = c.empty() || ratio <= kLeastRatio ? 0.0 : slope_at_depth(c, d);
+    ratio = std::max(kLeastRatio, ratio);
+}
 
 template <int N>
 void put(const Vec2<ceres::Jet<double, N>>& from, Eigen::Vector2d& value, ByLag& by) {
@@ -175,7 +180,9 @@ void Footprints::walk(const std::vector<T>& lag, const Way& way, const std::vect
         now.gap_slope = slope_at_depth(laws.tip_gap, d);
         const double half = at_depth(laws.half_width, d) + kLeastHalfMm;
         now.half_slope = slope_at_depth(laws.half_width, d);
-        now.drop = {laws.widest_per_half * half, half, laws.front_per_half * half, laws.round_tail};
+        ratio_at_depth(laws.widest_by_depth, laws.widest_per_half, d, now.widest_ratio, now.widest_slope);
+        ratio_at_depth(laws.front_by_depth, laws.front_per_half, d, now.front_ratio, now.front_slope);
+        now.drop = {now.widest_ratio * half, half, now.front_ratio * half, laws.round_tail};
     });
     // before the first motion there is no heading: the first one that follows
     std::size_t open = 0;

@@ -11,8 +11,9 @@
 // The footprints of one pass at close instants, and what of their union is near. Inside fit_marks.
 namespace brushsvg::fit {
 
-constexpr int kMostTerms = 4;          // numbers of a law
+constexpr int kMostTerms = 7;          // numbers of a law
 constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its derivatives
+constexpr double kLeastRatio = 0.1;    // of widest section and front to the half width
 constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
 
 constexpr int kWays = kMostTerms + 1 + kMachine;  // the lag's unknowns, the height of the paper, the machine
@@ -26,7 +27,8 @@ struct Instant {
     Drop drop;
     double place;  ///< poses, fractional in between
     double gap, depth, half_slope, gap_slope;
-    Eigen::Matrix<double, 1, 1 + kMachine> depth_by;  ///< by the height and the machine
+    double widest_ratio, widest_slope, front_ratio, front_slope;  ///< to the half width; slopes 0 at the least ratio
+    Eigen::Matrix<double, 1, 1 + kMachine> depth_by;              ///< by the height and the machine
     ByLag contact_by, heading_by;
     bool heading_known;
     double loose_lever_mm;  ///< from where a loose brush touches to the TCP, along which it points; taut: infinite

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
+from numpy.polynomial.polynomial import polymul, polyval
 
 from .. import _core
 from ..array_values import ArrayValue
@@ -23,6 +23,7 @@ from .stray_marks import MOST, OUTLYING, Stray, strays
 
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
 OUTLINES = 10
+LEAST_RATIO = 0.1  # of widest section and front to the half width, as the fit has it
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
 TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
@@ -121,6 +122,8 @@ def calibrate_marks(
             calibrated_mm=(0.0, painted.deepest_mm),
             source=f"Fitted to {count}.",
             half_interval_95=found.half_interval_95,
+            floor=found.floor,
+            floor_slope=found.floor_slope,
         )
         setattr(brush, law, known)
     _refuse_undetermined(brush, fit)
@@ -154,24 +157,33 @@ def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float)
         )
         for mark in marks
     ]
-    return _all_fitted(_core.fit_marks(wider, fit.laws, options)) - _all_fitted(fit)
+    moved = _core.fit_marks(wider, fit.laws, options)
+    return _all_fitted(moved, fit, options.deepest_mm) - _all_fitted(fit, fit, options.deepest_mm)
 
 
 def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
     """The same where edges lie the farther out the wider a mark is, by edge_mm at the greatest depth: more paint runs
     farther. The fit would take edges that all lie as far out for a paper that lies higher; these are wider marks."""
     half = np.array(fit.laws.half_width)
-    moved, end = np.zeros(len(fit.covariance)), height_at(fit) - 2  # the shape's two stand in between
+    shape = len(widest_ratio(fit.laws)) + len(front_ratio(fit.laws))
+    moved, end = np.zeros(len(fit.covariance)), height_at(fit) - shape
     moved[end - len(half) + 1 : end] = half[1:] * edge_mm / polyval(deepest_mm, half)
     return moved
 
 
-def _all_fitted(fit) -> np.ndarray:
-    laws = fit.laws
-    shape = [laws.widest_per_half, laws.front_per_half]
-    sheet = [fit.height_mm, *fit.shift_mm, fit.turn_rad]
-    all_fitted = np.concatenate([laws.lag, laws.tip_gap[1:], laws.half_width[1:], shape, sheet])
-    if len(fit.covariance) == len(all_fitted):
+def _all_fitted(fit, like, deepest_mm: float) -> np.ndarray:
+    """In the order of the covariance of `like`, with as many numbers a law."""
+    laws, other = fit.laws, like.laws
+    numbers = [
+        _nearest(laws.lag, len(other.lag), 0, deepest_mm),
+        _nearest(laws.tip_gap, len(other.tip_gap), 1, deepest_mm),
+        _nearest(laws.half_width, len(other.half_width), 1, deepest_mm),
+        _nearest(widest_ratio(laws), len(widest_ratio(other)), 0, deepest_mm),
+        _nearest(front_ratio(laws), len(front_ratio(other)), 0, deepest_mm),
+        [fit.height_mm, *fit.shift_mm, fit.turn_rad],
+    ]
+    all_fitted = np.concatenate(numbers)
+    if len(like.covariance) == len(all_fitted):
         return all_fitted
     one = fit.machine
     return np.concatenate(
@@ -179,10 +191,21 @@ def _all_fitted(fit) -> np.ndarray:
     )
 
 
+def _nearest(coefficients, terms: int, first: int, deepest_mm: float) -> np.ndarray:
+    """Coefficients from the power `first` on of the law with so many terms that is nearest over the depths."""
+    if len(coefficients) <= terms:
+        return np.pad(coefficients, (0, terms - len(coefficients)))[first:]
+    share = np.linspace(0.0, 1.0, 41)[1:]
+    powers = np.vander(share, terms, increasing=True)[:, first:]
+    found = np.linalg.lstsq(powers, polyval(share * deepest_mm, coefficients), rcond=None)[0]
+    return found / deepest_mm ** np.arange(first, terms)
+
+
 def height_at(fit) -> int:
     """Where in a fit's covariance the height of the paper stands; shift x and y and turn follow."""
     laws = fit.laws
-    return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + 2
+    ratios = len(widest_ratio(laws)) + len(front_ratio(laws))
+    return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
 
 
 def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
@@ -313,16 +336,11 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     """A brush with these laws, drops for footprints, and intervals where the covariance of a fit is given."""
     brush = _core.Brush()
     brush.name, brush.kind, brush.depth_range_mm = name, "round", tuple(depth_range_mm)
-    half = np.array(laws.half_width)
-    lag, gap, widest = laws.lag, laws.tip_gap, (laws.widest_per_half * half).tolist()
-    for law, coefficients in (
-        ("lag", lag),
-        ("tip_gap", gap),
-        ("tip_to_widest", widest),
-        ("half_width", half.tolist()),
-    ):
-        setattr(brush, law, _core.Profile(coefficients))
     least, deepest = depth_range_mm
+    brush.lag, brush.tip_gap = _core.Profile(laws.lag), _core.Profile(laws.tip_gap)
+    brush.half_width = _core.Profile(laws.half_width)
+    widest = polymul(widest_ratio(laws), laws.half_width)
+    brush.tip_to_widest = _core.Profile(widest.tolist(), **_floor(laws, deepest))
     brush.paint_depth_mm = (least + deepest) / 2
     depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
     brush.footprints = _core.FootprintTable([_outline(brush, depth, laws) for depth in depths])
@@ -337,28 +355,51 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
         half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
-            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place]))
+            floor = _floor(laws, deepest) if law == "tip_to_widest" else {}
+            setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place], **floor))
     return brush
 
 
 def over_brush(laws, covariance: np.ndarray) -> np.ndarray:
     """From the fit's unknowns to a brush's coefficients; x_w = ratio h."""
     lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
-    rows = lag + gap + 1 + 2 * (half + 1)
+    ratio, own = widest_ratio(laws), np.array(laws.half_width)
+    rows = lag + gap + 1 + half + len(ratio) + half + 1
     to = np.zeros((rows, len(covariance)))
     to[:lag, :lag] = np.eye(lag)
     to[lag + 1 : lag + 1 + gap, lag : lag + gap] = np.eye(gap)
-    widest, width, source = lag + gap + 2, lag + gap + 2 + half + 1, slice(lag + gap, lag + gap + half)
-    to[widest : widest + half, source] = laws.widest_per_half * np.eye(half)
-    to[widest : widest + half, lag + gap + half] = laws.half_width[1:]
-    to[width : width + half, source] = np.eye(half)
+    widest, width = lag + gap + 1, lag + gap + 1 + half + len(ratio) + 1
+    for power in range(half):
+        to[widest + 1 + power : widest + 1 + power + len(ratio), lag + gap + power] = ratio
+    for power in range(len(ratio)):
+        to[widest + power : widest + power + half + 1, lag + gap + half + power] = own
+    to[width : width + half, lag + gap : lag + gap + half] = np.eye(half)
     return to @ covariance @ to.T
+
+
+def widest_ratio(laws) -> np.ndarray:
+    """Of the widest section's place to the half width, ascending powers of depth."""
+    return np.array(laws.widest_by_depth or [laws.widest_per_half])
+
+
+def front_ratio(laws) -> np.ndarray:
+    """Of the footprint's length in front of that to the half width, ascending powers of depth."""
+    return np.array(laws.front_by_depth or [laws.front_per_half])
+
+
+def _floor(laws, deepest: float) -> dict[str, float]:
+    """Of the widest section, where its ratio would fall below the least that a footprint has."""
+    depths = np.linspace(0.0, deepest, 41)
+    if polyval(depths, widest_ratio(laws)).min() >= LEAST_RATIO:
+        return {}
+    return {"floor": 0.0, "floor_slope": LEAST_RATIO * float(polyval(deepest, laws.half_width)) / deepest}
 
 
 def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     half = brush.half_width(depth)
     shape = footprint_shapes.egg if laws.round_tail else footprint_shapes.drop
-    return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), laws.front_per_half * half))
+    front = max(LEAST_RATIO, polyval(depth, front_ratio(laws)))
+    return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), front * half))
 
 
 def _scale(fit, painted: Painted) -> SheetScale | None:

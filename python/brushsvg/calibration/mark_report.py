@@ -13,7 +13,7 @@ from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from ..errors import Notice
 from ..geometry.rotation import rotation
 from . import machine_found
-from .from_marks import LAG_TERMS, TELLS, height_at
+from .from_marks import GAP_TERMS, HALF_TERMS, LAG_TERMS, TELLS, front_ratio, height_at, widest_ratio
 from .stray_marks import OUTLYING
 
 TABLE_ROWS = 6
@@ -44,6 +44,7 @@ def report(made) -> str:
         f"note: {sentence}"
         for sentence in [
             *_few_depths(made),
+            *_departing(made),
             *_astray(made),
             *_unexpected(made),
             *_unlike(fit, overlap[1]),
@@ -72,6 +73,28 @@ def _few_depths(made) -> list[str]:
     return [
         f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {made.painted.depths} depths were "
         "painted. Between them its error may exceed its confidence interval"
+    ]
+
+
+def _departing(made) -> list[str]:
+    """Which laws the usual numbers of coefficients do not follow."""
+    laws = made.fit.laws
+    departing = [
+        name
+        for name, terms, usual in (
+            ("lag", len(laws.lag), LAG_TERMS),
+            ("tip gap", len(laws.tip_gap) - 1, GAP_TERMS),
+            ("half width", len(laws.half_width) - 1, HALF_TERMS),
+            ("widest section", len(widest_ratio(laws)), 1),
+            ("front of the footprint", len(front_ratio(laws)), 1),
+        )
+        if terms > usual
+    ]
+    if not departing:
+        return []
+    return [
+        f"the usual laws do not follow these marks: {', '.join(departing)} have more coefficients, and the intervals "
+        "hold by how much they may still be of another form"
     ]
 
 
