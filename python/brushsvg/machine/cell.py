@@ -141,6 +141,20 @@ class Servo:
 
 
 @dataclass(frozen=True)
+class Pen:
+    """A lift that knows up and down alone: up is the safe height."""
+
+    down_mm: float = _number(
+        "the height that the pen is let down to, below the paper as far as a brush is pressed", -200, -0.01
+    )
+    colours: tuple = _key(
+        "colours of strokes, as in the drawing, '#rrggbb', of pens 1, 2, ... in the plotter; none: it has one",
+        "texts",
+        default=(),
+    )
+
+
+@dataclass(frozen=True)
 class Machine:
     """Where the machine takes the tool that is told to go elsewhere, as `brushsvg calibrate --machine` finds it: it is
     told otherwise, so that the tool goes where it should. x and y from the sheet's lower left corner."""
@@ -249,6 +263,7 @@ class Cell:
     )
     tool: Tool | None = None
     servo: Servo | None = None
+    pen: Pen | None = None
     reload: Reload | None = None
     machine: Machine | None = None
     robodk: RoboDK | None = None
@@ -264,17 +279,19 @@ TABLES = {
     "workspace": Workspace,
     "tool": Tool,
     "servo": Servo,
+    "pen": Pen,
     "reload": Reload,
     "machine": Machine,
     "robodk": RoboDK,
     "arm": Arm,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "robodk", "arm")
-NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
+OPTIONAL_TABLES = ("tool", "servo", "pen", "reload", "machine", "robodk", "arm")
+NEEDED_BY = {"grbl-servo": "servo", "hpgl": "pen"} | dict.fromkeys(
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), "tool"
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
-LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it
+LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0, "hpgl": 10.0}  # of a line; all speeds are whole multiples of it
+UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
 MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
@@ -295,6 +312,19 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
     return frame
 
 
+def unit_mm(cell: Cell) -> float:
+    """How far apart places of x, and of y, lie that the cell's language tells from each other."""
+    return UNITS_MM.get(cell.language, 10.0**-cell.decimals)
+
+
+def rounded(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
+    """Points (n, 3) of a program as the cell's language has them."""
+    points = np.round(points_mm, cell.decimals)
+    if unit := UNITS_MM.get(cell.language):
+        points[:, :2] = np.round(np.rint(np.asarray(points_mm)[:, :2] / unit) * unit, cell.decimals)
+    return points
+
+
 def value_mm(cell: Cell) -> float:
     """The most that one value of the servo changes the height by [mm]."""
     steps = np.diff(np.array(cell.servo.table), axis=0)
@@ -303,7 +333,7 @@ def value_mm(cell: Cell) -> float:
 
 def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
     """(n,) which steps (n, 3) are a servo's lift alone: what they go beside it rounding need not leave."""
-    return np.linalg.norm(steps_mm[:, :2], axis=1) < 0.5 * 10.0**-cell.decimals
+    return np.linalg.norm(steps_mm[:, :2], axis=1) < 0.5 * unit_mm(cell)
 
 
 def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
@@ -311,15 +341,15 @@ def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
     each a move."""
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
     lengths_mm = np.linalg.norm(ways_mm[:, :2], axis=1)
-    part_mm = least_move_mm(cell) + 2**0.5 * 10.0**-cell.decimals
+    part_mm = least_move_mm(cell) + 2**0.5 * unit_mm(cell)
     return np.clip(lengths_mm // part_mm, 1, np.maximum(1, steps)).astype(int)
 
 
 def least_move_mm(cell: Cell) -> float:
     """No move is shorter, between places as they are written: of rounded ones the square of a distance is whole, in
     units, and none is as long as that by a hair."""
-    unit_mm = 10.0**-cell.decimals
-    return unit_mm * (max(2.0, round(LEAST_MM / unit_mm)) ** 2 + 0.5) ** 0.5
+    unit = unit_mm(cell)
+    return unit * (max(2.0, round(LEAST_MM / unit)) ** 2 + 0.5) ** 0.5
 
 
 # no move is shorter, nor than two units of the last decimal: rounded, it would go anywhere or nowhere, and a robot that
@@ -346,4 +376,6 @@ def why_no_waiting(cell: Cell) -> str:
     """Why a program for this cell cannot wait for a person; "" where it can."""
     if cell.language == "ros2":
         return "a trajectory cannot wait for a person"
+    if cell.pen:
+        return "a plotter takes its own pens, of which the cell names none"
     return "a servo's brush falls while the program waits" if cell.servo else ""

@@ -55,9 +55,11 @@ def check(cell: Cell) -> None:
     _check_own_keys(cell)
     _check_paper(cell)
     _check_workspace(cell)
+    if cell.pen:
+        _check_pen(cell)
     if cell.servo:
         _check_servo(cell)
-        _check_machine_of_servo(cell)
+        _check_machine_keeps_heights(cell, "servo, whose depth goes in steps")  # at which a way would jump aside
     _check_paint(cell)
     if cell.arm:
         _check_arm(cell)
@@ -241,6 +243,30 @@ def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
     return nearest, farthest
 
 
+def _check_pen(cell: Cell) -> None:
+    pen = cell.pen
+    if cell.language != "hpgl":
+        sentence = f"language {cell.language!r} tells heights: a pen that knows none is for hpgl"
+        raise Error(sentence, where="pen", code="out-of-range")
+    frame = robot_from_paper(cell)
+    if abs(frame[2, 3]) > 1e-9 or normal_tilt_deg(frame) > 1e-9:
+        sentence = "a pen is up or down over the paper: it must lie level, at z 0"
+        raise Error(sentence, where="paper", code="paper-tilted")
+    if pen.down_mm < cell.heights.lowest_mm:
+        sentence = f"down_mm {pen.down_mm:g} is below lowest_mm {cell.heights.lowest_mm:g}"
+        raise Error(sentence, where="pen.down_mm", code="cell-heights")
+    if cell.stations or cell.reload:
+        sentence = "a pen that is up or down goes into no vessel: stations and reload must go"
+        raise Error(sentence, where="stations", code="cell-station")
+    for number, colour in enumerate(pen.colours, 1):
+        if not re.fullmatch("#[0-9a-fA-F]{6}", colour) or colour.lower() in map(
+            str.lower, pen.colours[: number - 1]
+        ):
+            sentence = f"colour {colour[:24]!r} of pen {number} is not written as #rrggbb, or given twice"
+            raise Error(sentence, where="pen.colours", code="colour-invalid")
+    _check_machine_keeps_heights(cell, "pen, which knows no height", "height_mm")
+
+
 def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
     lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
@@ -288,13 +314,12 @@ def _check_servo(cell: Cell) -> None:
         )
 
 
-def _check_machine_of_servo(cell: Cell) -> None:
-    """Its height goes in steps, at which a way would have to jump aside."""
-    for key in ("lean_mm_per_mm", "tilt_mm_per_mm"):
-        values = getattr(cell.machine, key, ())
+def _check_machine_keeps_heights(cell: Cell, whose: str, *keys: str) -> None:
+    for key in ("lean_mm_per_mm", "tilt_mm_per_mm", *keys):
+        values = np.atleast_1d(getattr(cell.machine, key, ())).tolist()
         if any(values):
             raise Error(
-                f"{key} {list(values)} is outside the range [0, 0] of a servo, whose depth goes in steps",
+                f"{key} {values} is outside the range [0, 0] of a {whose}",
                 where=f"machine.{key}",
                 code="cell-machine",
             )

@@ -79,6 +79,9 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         sentence = f"stroke {first} is outside the range [1, {count}] of this job"
         return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
+    if cell.pen and job.z_offset_mm:
+        sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be told"
+        problems.append(Notice("", sentence, code="pen-depth"))
     told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
         [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm

@@ -46,6 +46,8 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                     f"cell {cell.name} tells apart: nothing would be painted"
                 )
                 found.append(Notice("", sentence, code="never-pressed"))
+            if cell.pen:
+                found += _off_pen(poses, cell)
             if cell.servo:
                 found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
@@ -174,6 +176,23 @@ def _heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
     elif lowest < cell.heights.lowest_mm:
         reach = f"[{cell.heights.lowest_mm:.1f}, 0.0] mm of cell {cell.name}"
         yield Notice("", f"height {lowest:.1f} mm is outside the range {reach}", code="too-low")
+
+
+def _off_pen(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
+    """A notice for the first place where a pass is not drawn at the one height that a pen has."""
+    goes = np.linalg.norm(np.diff(poses[:, :2], axis=0), axis=1) > 1e-9
+    drawn = np.r_[goes, False] | np.r_[False, goes]
+    drawn[poses[:, 2].argmin()] = True  # of a dab, the deepest place
+    for k in np.flatnonzero(drawn & (np.abs(poses[:, 2] - cell.pen.down_mm) > PEN_MM))[:1]:
+        x, y, height = poses[k]
+        sentence = (
+            f"near x {x:.1f}, y {y:.1f} mm the height is {height:.3f} mm: the pen of cell {cell.name} is up or at "
+            f"{cell.pen.down_mm:g} mm, and draws at no other height"
+        )
+        yield Notice("", sentence, code="pen-depth")
+
+
+PEN_MM = 0.005  # of height, that no pen shows
 
 
 def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:

@@ -123,6 +123,12 @@ def _ros2_message(program: Program) -> Iterator[bytes]:
     return cdr(program)
 
 
+def _hpgl(program: Program) -> Iterator[str]:
+    from .hpgl import hpgl
+
+    return hpgl(program)
+
+
 def _robodk(program: Program) -> Iterator[str]:
     from .robodk import robodk
 
@@ -162,5 +168,6 @@ POSTS = {  # by the language a cell names
         circles_by="",
         others={".traj": _ros2_json, ".cdr": _ros2_message},
     ),
+    "hpgl": Post("HP-GL for pen plotters", (".hpgl",), _hpgl, circles_by=""),
     "robodk": Post("what a post of RoboDK's kind writes", (".robodk",), _robodk, False, "pose"),
 }
