@@ -141,6 +141,16 @@ class Servo:
 
 
 @dataclass(frozen=True)
+class Motors:
+    """Two motors that are told steps, and the pin on which a servo lifts the brush; both begin at the robot's origin."""
+
+    steps_per_mm: tuple = _key(
+        "a row for each motor: its steps for a mm along x, and for a mm along y", (2, 2), -1e4, 1e4
+    )
+    servo_pin: int = _key("of the board, RP4 is its pin B1", "whole", 0, 24, default=4)
+
+
+@dataclass(frozen=True)
 class Pen:
     """A lift that knows up and down alone: up is the safe height."""
 
@@ -264,6 +274,7 @@ class Cell:
     tool: Tool | None = None
     servo: Servo | None = None
     pen: Pen | None = None
+    motors: Motors | None = None
     reload: Reload | None = None
     machine: Machine | None = None
     robodk: RoboDK | None = None
@@ -280,17 +291,18 @@ TABLES = {
     "tool": Tool,
     "servo": Servo,
     "pen": Pen,
+    "motors": Motors,
     "reload": Reload,
     "machine": Machine,
     "robodk": RoboDK,
     "arm": Arm,
 }
-OPTIONAL_TABLES = ("tool", "servo", "pen", "reload", "machine", "robodk", "arm")
-NEEDED_BY = {"grbl-servo": "servo", "hpgl": "pen"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), "tool"
+OPTIONAL_TABLES = ("tool", "servo", "pen", "motors", "reload", "machine", "robodk", "arm")
+NEEDED_BY = {"grbl-servo": ("servo",), "ebb": ("servo", "motors"), "hpgl": ("pen",)} | dict.fromkeys(
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
-LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0, "hpgl": 10.0}  # of a line; all speeds are whole multiples of it
+LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0, "hpgl": 10.0, "ebb": 0.1}  # of a line; all speeds are whole multiples of it
 UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
@@ -313,16 +325,31 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
 
 
 def unit_mm(cell: Cell) -> float:
-    """How far apart places of x, and of y, lie that the cell's language tells from each other."""
+    """How far apart places of x, and of y, lie that the cell's language tells from each other; of motors, twice what
+    rounding moves them by at most."""
+    if cell.motors:
+        return float(np.abs(np.linalg.inv(cell.motors.steps_per_mm)).sum(axis=1).max())
     return UNITS_MM.get(cell.language, 10.0**-cell.decimals)
 
 
 def rounded(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
     """Points (n, 3) of a program as the cell's language has them."""
     points = np.round(points_mm, cell.decimals)
+    if cell.motors:
+        points[:, :2] = places_of(steps_of(points_mm, cell.motors), cell.motors)
     if unit := UNITS_MM.get(cell.language):
         points[:, :2] = np.round(np.rint(np.asarray(points_mm)[:, :2] / unit) * unit, cell.decimals)
     return points
+
+
+def steps_of(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
+    """(n, 2) where the motors are at points (n, 2 or 3), in whole steps from the origin."""
+    return np.rint(np.asarray(points_mm)[:, :2] @ np.transpose(motors.steps_per_mm)).astype(int)
+
+
+def places_of(steps: np.ndarray, motors: Motors) -> np.ndarray:
+    """(n, 2) x and y [mm] for steps (n, 2)."""
+    return steps @ np.linalg.inv(motors.steps_per_mm).T
 
 
 def value_mm(cell: Cell) -> float:
@@ -376,6 +403,8 @@ def why_no_waiting(cell: Cell) -> str:
     """Why a program for this cell cannot wait for a person; "" where it can."""
     if cell.language == "ros2":
         return "a trajectory cannot wait for a person"
+    if cell.motors:
+        return "the board cannot wait for a person"
     if cell.pen:
         return "a plotter takes its own pens, of which the cell names none"
     return "a servo's brush falls while the program waits" if cell.servo else ""

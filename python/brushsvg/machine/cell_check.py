@@ -40,8 +40,9 @@ def check(cell: Cell) -> None:
             where="heights.clearance_mm",
             code="cell-heights",
         )
-    if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
-        raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
+    for table in NEEDED_BY.get(cell.language, ()):
+        if getattr(cell, table) is None:
+            raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
     least = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
     if cell.speeds.acceleration_mm_s2 < least:
         greatest = entries(Speeds)["acceleration_mm_s2"].greatest
@@ -57,6 +58,8 @@ def check(cell: Cell) -> None:
     _check_workspace(cell)
     if cell.pen:
         _check_pen(cell)
+    if cell.motors:
+        _check_motors(cell)
     if cell.servo:
         _check_servo(cell)
         _check_machine_keeps_heights(cell, "servo, whose depth goes in steps")  # at which a way would jump aside
@@ -267,10 +270,36 @@ def _check_pen(cell: Cell) -> None:
     _check_machine_keeps_heights(cell, "pen, which knows no height", "height_mm")
 
 
+MOST_STEPS_S = 25_000  # of each motor of an EBB
+MOST_VALUE = 65_535  # of its servo
+
+
+def _check_motors(cell: Cell) -> None:
+    if cell.language != "ebb":
+        sentence = f"language {cell.language!r} tells no steps: motors that are told them are for ebb"
+        raise Error(sentence, where="motors", code="out-of-range")
+    rows = np.array(cell.motors.steps_per_mm)
+    if np.linalg.cond(rows) > 1e3:
+        sentence = "both motors turn for the same way: no place can be told by them"
+        raise Error(sentence, where="motors.steps_per_mm", code="out-of-range")
+    most_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
+    for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
+        if (speed := getattr(cell.speeds, name)) > most_mm_s:
+            raise Error(
+                f"{speed:g} mm/s is outside the range [{LEAST_SPEED_MM_S['ebb']:g}, {most_mm_s:.1f}] mm/s, in which no "
+                f"motor makes more than {MOST_STEPS_S} steps in a second",
+                where=f"speeds.{name}",
+                code="out-of-range",
+            )
+    if (value := max(row[1] for row in cell.servo.table)) > MOST_VALUE:
+        sentence = f"value {value:g} is outside the range [0, {MOST_VALUE}] of 1/12 microseconds"
+        raise Error(sentence, where="servo.table", code="servo-table")
+
+
 def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
     lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
-    if NEEDED_BY.get(cell.language) == "servo" and not lies_level:
+    if "servo" in NEEDED_BY.get(cell.language, ()) and not lies_level:
         raise Error(
             "a servo's heights are those over the paper: it must lie level, at z 0",
             where="paper",

@@ -197,13 +197,14 @@ PEN_MM = 0.005  # of height, that no pen shows
 
 def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:
     """A notice for a way that a servo could not go: its values change along with moves beside the lift, by no more than
-    two steps with any part that the rounding leaves, and whose feed must not be below grbl's least."""
+    two steps with any part that the rounding leaves, and whose feed must not be below the least."""
     steps = np.diff(poses, axis=0)
     flat_mm, way_mm = np.linalg.norm(steps[:, :2], axis=1), np.linalg.norm(steps, axis=1)
     rises_mm = np.abs(steps[:, 2])
+    least_mm_min = 60 * LEAST_SPEED_MM_S.get(cell.language, LEAST_MM_MIN / 60)
     is_steep = (rises_mm > cell.servo.step_mm + 1e-9) & (
         (rises_mm > 2 * cell.servo.step_mm * servo_parts(steps, cell))
-        | (60 * fastest_mm_s * flat_mm < LEAST_MM_MIN * way_mm)
+        | (60 * fastest_mm_s * flat_mm < least_mm_min * way_mm)
     )
     for k in np.flatnonzero(is_steep & ~servo_stands(steps, cell))[:1]:
         x, y, _ = poses[k]

@@ -234,6 +234,12 @@ def _hpgl(text: str, cell: Cell) -> Readback:
     return read_hpgl(text, cell)
 
 
+def _ebb(text: str, cell: Cell) -> Readback:
+    from .ebb import read_ebb
+
+    return read_ebb(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -251,4 +257,5 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "doosan": _doosan,
     "ros2": _ros2,
     "hpgl": _hpgl,
+    "ebb": _ebb,
 }
