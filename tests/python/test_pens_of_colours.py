@@ -23,7 +23,7 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in ("grbl-servo", "fr3")])
+@pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in (*SERVOS, "fr3")])
 def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, name):
     program = f"pens{LANGUAGES[name]}"
     status, _, said = call(capsys, "convert", "pens.svg", program, "--cell", name)

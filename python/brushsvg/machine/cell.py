@@ -142,7 +142,7 @@ class Servo:
 
 @dataclass(frozen=True)
 class Motors:
-    """Two motors that are told steps, and the pin on which a servo lifts the brush; both begin at the robot's origin."""
+    """Two motors that are told steps, from the origin on, and the pin of the servo that lifts the brush."""
 
     steps_per_mm: tuple = _key(
         "a row for each motor: its steps for a mm along x, and for a mm along y", (2, 2), -1e4, 1e4
@@ -368,8 +368,12 @@ def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
     each a move."""
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
     lengths_mm = np.linalg.norm(ways_mm[:, :2], axis=1)
-    part_mm = least_move_mm(cell) + 2**0.5 * unit_mm(cell)
-    return np.clip(lengths_mm // part_mm, 1, np.maximum(1, steps)).astype(int)
+    return np.clip(lengths_mm // least_part_mm(cell), 1, np.maximum(1, steps)).astype(int)
+
+
+def least_part_mm(cell: Cell) -> float:
+    """Parts of a way that are as long are moves, however their ends are rounded."""
+    return least_move_mm(cell) + 2**0.5 * unit_mm(cell)
 
 
 def least_move_mm(cell: Cell) -> float:
@@ -406,5 +410,5 @@ def why_no_waiting(cell: Cell) -> str:
     if cell.motors:
         return "the board cannot wait for a person"
     if cell.pen:
-        return "a plotter takes its own pens, of which the cell names none"
+        return "a pen plotter cannot wait for a person"
     return "a servo's brush falls while the program waits" if cell.servo else ""

@@ -42,7 +42,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
     """
     if why := why_no_waiting(cell):
         raise Error(
-            f"{why}, as a first run must", code="cannot-wait", advice="use border and height one by one"
+            f"{why}, as a first run must", code="cannot-wait", advice="use border" if cell.pen else "use border and height one by one"
         )
     width, height = sheet_mm
     high_mm = _highest_air(cell, sheet_mm) - cell.heights.safe_mm

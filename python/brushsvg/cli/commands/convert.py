@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ...evaluation import report
 from ...machine import preflight, writer
-from ...machine.paint_reload import in_loads, may_pause, pens_changed, too_long, with_one_pen
+from ...machine.paint_reload import has_pens, in_loads, may_pause, pens_changed, too_long, with_one_pen
 from ...machine.program import Job
 from ...pipeline import outputs, prediction, preparation
 from ...text_summary import summarized
@@ -62,7 +62,8 @@ def convert_file(args) -> None:
     warn_of_cell(args, cell)
     seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
     stops = pens_changed(loads, cell, job.first_stroke) if is_program and may_pause(cell) else 0
-    more = f"stops {'once' if stops == 1 else f'{stops} times'} for another pen" if stops else ""
+    does = "takes another pen" if has_pens(cell) else "stops for another pen"
+    more = f"{does} {'once' if stops == 1 else f'{stops} times'}" if stops else ""
     write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap, more)
 
 

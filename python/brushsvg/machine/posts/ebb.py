@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cell import LEAST_SPEED_MM_S, Cell, places_of, servo_parts, servo_stands, steps_of
+from ..cell import LEAST_SPEED_MM_S, least_part_mm, places_of, servo_parts, servo_stands, steps_of
 from ..motion import Move, Program, Wait
 from ..trajectory import joint_caps, paced
 from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at
@@ -49,11 +49,6 @@ def comment(text: str) -> str:
     return f"# {plain(text, LINE_LIMIT - 2)}\n"
 
 
-def told_feed(feed: float) -> str:
-    """The most that the moves have which follow."""
-    return f"# feed {feed:.1f} mm/min\n"
-
-
 def _waited(seconds: float) -> str:
     return f"SM,{round(seconds * 1e3)},0,0\n" if round(seconds * 1e3) else ""
 
@@ -89,9 +84,15 @@ class _Writer:
                 lifts = list(
                     lifted(path[k, 2], path[k + 1, 2], self.value, move.speed_mm_s, step_mm, servo)
                 )
+                yield self._told(feed_mm_min(move.speed_mm_s)) if lifts else ""
                 for self.value, wait_ms in lifts:
                     yield self._set(self.value, wait_ms)
                 yield _waited(servo.settle_s) if lifts else ""
+
+    def _told(self, feed: float) -> str:
+        """The line that says the most that the moves have which follow, where it is another one."""
+        before, self.feed = self.feed, feed
+        return "" if feed == before else f"# feed {feed:.1f} mm/min\n"
 
     def _set(self, value: int, wait_ms: int) -> str:
         return f"S2,{value},{self.cell.motors.servo_pin},0,{wait_ms}\n"
@@ -111,12 +112,7 @@ class _Writer:
         heights = path[which, 2] + ways[which, 2] * (number + 0.5) / counts[which]
         values = value_at(cell.servo, heights)
         parts_mm, tops = (lengths / counts)[which], feeds[which] / 60
-        rows = [
-            (k, when_s, parts_mm[k] if done_mm is None else done_mm)
-            for k, when_s, done_mm in paced(
-                parts_mm.tolist(), inner.tolist(), tops.tolist(), cell.speeds.acceleration_mm_s2
-            )
-        ]
+        rows = self._rows(parts_mm.tolist(), inner.tolist(), tops.tolist())
         part, when_s, done_mm = (np.array(each) for each in zip(*rows, strict=True))
         line = which[part]
         along = (number[part] * parts_mm[part] + done_mm) / lengths[line]
@@ -124,6 +120,19 @@ class _Writer:
             part, when_s, path[line, :2] + ways[line, :2] * along[:, None], path[0, :2]
         )
         yield from self._slices(path[0], part, when_s, places, values, feeds[which])
+
+    def _rows(
+        self, parts_mm: list[float], caps: list[float], tops: list[float]
+    ) -> Iterator[tuple[int, float, float]]:
+        """(part, when [s], how far on it [mm]): no slice is shorter than a move may be."""
+        least_mm, last_mm = least_part_mm(self.cell), 0.0
+        for k, when_s, done_mm in paced(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):
+            if done_mm is None:
+                last_mm = 0.0
+                yield k, when_s, parts_mm[k]
+            elif min(done_mm - last_mm, parts_mm[k] - done_mm) >= least_mm:
+                last_mm = done_mm
+                yield k, when_s, done_mm
 
     def _slices(
         self,
@@ -147,9 +156,7 @@ class _Writer:
             values[part].tolist(), feeds[part].tolist(), times_ms.astype(int).tolist(), moves.tolist(), strict=True
         )
         for value, feed, time_ms, (one, two) in told:
-            if feed != self.feed:
-                self.feed = feed
-                yield told_feed(feed)
+            yield self._told(feed)
             if value != self.value:
                 self.value = value
                 yield self._set(value, 0)

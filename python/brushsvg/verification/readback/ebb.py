@@ -11,12 +11,12 @@ from ...errors import Error
 from ...machine.cell import Cell, places_of
 from ...machine.cell_check import MOST_STEPS_S
 from ...machine.posts.ebb import EBB_END, HOME, comment
-from ...machine.posts.gcode_servo import height_at, value_at
-from . import Act, Readback, Step
+from ...machine.posts.gcode_servo import height_at
+from . import Act, Readback, ReadSection, Step
 
 _FEED = re.compile(r"# feed (\d{1,7}\.\d) mm/min")
-_SM = re.compile(r"SM,(\d{1,8}),(-?\d{1,8}),(-?\d{1,8})")
-_S2 = re.compile(r"S2,(\d{1,5}),(\d{1,2}),0,(\d{1,5})")
+_SM = re.compile(r"SM,(\d{1,8}),(-?\d{1,8})(?:,(-?\d{1,8}))?", re.IGNORECASE)
+_S2 = re.compile(r"S2,(\d{1,5}),(\d{1,2})(?:,-?0+(?:,(-?0|\d{1,5}))?)?", re.IGNORECASE)
 _READY = ("SR,0,1", "EM,1,1")
 LEAST_STEPS_S = 1.31  # with fewer the board refuses a motor's move
 
@@ -48,7 +48,6 @@ class _Reader:
         self.ready: list[str] = []
         self.is_home = self.ended = False
         servo = cell.servo
-        self.up_mm = cell.heights.safe_mm - 1e-9
         self.range = sorted(round(row[1]) for row in servo.table)
         self.heights: dict[int, float] = {}
 
@@ -58,9 +57,11 @@ class _Reader:
         if line.startswith("#"):
             self._remark(number, line)
         elif found := _SM.fullmatch(line):
-            self._move(number, line, *map(int, found.groups()))
+            self._move(number, line, *map(int, found.groups("0")))
         elif found := _S2.fullmatch(line):
-            self._set(number, line, *map(int, found.groups()))
+            self._set(number, line, *map(int, found.groups("0")))
+        elif self.ready and line == _READY[0]:
+            return  # as it is
         elif len(self.ready) < len(_READY) and line == _READY[len(self.ready)]:
             self.ready.append(line)
             self.out.acts.append(Act(number, "text", line))
@@ -76,6 +77,7 @@ class _Reader:
             raise _unread(number, line)
         if said == HOME:
             self.is_home = True
+            self.out.sections.append(ReadSection(said, number))
             self.out.acts.append(Act(number, "text", said))
         elif said == EBB_END:
             self.ended = True
@@ -113,8 +115,7 @@ class _Reader:
             return
         self.value = value
         self.out.acts.append(Act(number, "lift", same=(float(value),)))
-        if not self.is_home:
-            self._step(number)
+        self._step(number)
 
     def _height(self, value: int) -> float:
         if value not in self.heights:
@@ -123,7 +124,7 @@ class _Reader:
 
     def _wait(self, number: int, wait_ms: int) -> None:
         self.out.acts.append(Act(number, "wait", same=(wait_ms / 1e3,)))
-        if (steps := self.out.section().steps) and not self.is_home:
+        if steps := self.out.section().steps:
             last = steps[-1]
             steps[-1] = last._replace(wait_s=last.wait_s + wait_ms / 1e3, waits=last.waits + 1)
 
@@ -138,7 +139,7 @@ class _Reader:
 
     def _move(self, number: int, line: str, time_ms: int, one: int, two: int) -> None:
         self._is_ready(number, line)
-        if self.value is None or not time_ms:
+        if not time_ms or (self.value is None and (one or two)):
             raise Error(f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete")
         if not one and not two:
             if self.along is not None:
@@ -146,7 +147,7 @@ class _Reader:
             self._wait(number, time_ms)
             return
         if self.along is not None:
-            if not self.is_home and self.along != self.value:
+            if self.along != self.value:
                 self.value = self.along
                 self._step(number)
             self.value, self.along = self.along, None
@@ -165,17 +166,9 @@ class _Reader:
                 code="speed-out-of-range",
             )
         self.steps = [self.steps[0] + one, self.steps[1] + two]
-        if self.is_home and self._height(self.value) < self.up_mm - self._unsure_mm():
-            raise Error(f"line {number}: the brush goes back below the safe height", code="travel-too-low")
-        if not self.is_home:
-            self._step(number)
+        self._step(number)
         at_most = (self.feed_mm_s, speed_mm_s)
         self.out.acts.append(Act(number, "way", "", self._place(), at_most, (float(self.value),)))
-
-    def _unsure_mm(self) -> float:
-        """What rounding to a whole value makes of the safe height."""
-        value = int(value_at(self.cell.servo, self.cell.heights.safe_mm))
-        return max(self.cell.heights.safe_mm - self._height(value), 0.0)
 
 
 def _unread(number: int, line: str) -> Error:
