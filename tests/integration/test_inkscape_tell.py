@@ -99,9 +99,7 @@ def test_a_cell_is_advised_by_name(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(document('data-brushsvg-cell="linuxcnc-3axis"'))
     done = plugin.script("save", source, "--format=script")
-    named = re.search(
-        r"; \.script is for cell (.+); choose it in Brush settings\n$", done.stderr.decode()
-    )
+    named = re.search(r"; \.script is for cell (.+); choose it in Brush settings\n$", done.stderr.decode())
     assert named, done.stderr
     assert "ur5e" in named[1].split(" or ")
 

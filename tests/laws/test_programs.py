@@ -167,7 +167,10 @@ def krl_moves(text):
 
 def ebb_moves(text, cell):
     """Steps of two motors of a 2x2 table, each slice with the speed that its time makes; a servo is set before."""
-    rows, table = np.array(cell.motors.steps_per_mm), np.array(sorted(cell.servo.table, key=lambda row: row[1]))
+    rows, table = (
+        np.array(cell.motors.steps_per_mm),
+        np.array(sorted(cell.servo.table, key=lambda row: row[1])),
+    )
     steps, height, visit = np.zeros(2), np.nan, False
     for line in text.splitlines():
         if line.startswith("# "):

@@ -302,7 +302,12 @@ NEEDED_BY = {"grbl-servo": ("servo",), "ebb": ("servo", "motors"), "hpgl": ("pen
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
-LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0, "hpgl": 10.0, "ebb": 0.1}  # of a line; all speeds are whole multiples of it
+LEAST_SPEED_MM_S = {
+    "dobot": 1.0,
+    "fanuc": 1.0,
+    "hpgl": 10.0,
+    "ebb": 0.1,
+}  # of a line; all speeds are whole multiples of it
 UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other

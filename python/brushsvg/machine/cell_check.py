@@ -62,7 +62,9 @@ def check(cell: Cell) -> None:
         _check_motors(cell)
     if cell.servo:
         _check_servo(cell)
-        _check_machine_keeps_heights(cell, "servo, whose depth goes in steps")  # at which a way would jump aside
+        _check_machine_keeps_heights(
+            cell, "servo, whose depth goes in steps"
+        )  # at which a way would jump aside
     _check_paint(cell)
     if cell.arm:
         _check_arm(cell)

@@ -178,9 +178,7 @@ def _pens(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Stat
     )
 
 
-def _pens_of_plotter(
-    loads: PlanInLoads, cell: Cell, first_stroke: int
-) -> tuple[tuple[Station, ...], ...]:
+def _pens_of_plotter(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
     """The first pen is taken, too. Strokes without a colour are drawn with pen 1. Error for a colour that none has."""
     colours = [colour.lower() for colour in cell.pen.colours]
     found, last = [()] * (first_stroke - 1), ""

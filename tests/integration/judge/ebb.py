@@ -1,6 +1,6 @@
 """An EBB, made from its published command set (firmware 2.6.0 to 2.8.1): SM moves both motors evenly for so many
-milliseconds, or waits where no steps are told; it refuses less than 1.31 and more than 25,000 steps in a second. S2 sets
-a servo's pulse, at once where no rate is told, and may hold the next command back. SR and EM take effect at once.
+milliseconds, or waits where no steps are told; it refuses less than 1.31 and more than 25,000 steps in a second. S2
+sets a servo's pulse, at once where no rate is told, and may hold the next command back. SR and EM take effect at once.
 
 Lines that begin with # are taken out by whoever sends the file. Every other command counts as one that acts.
 """
@@ -16,8 +16,10 @@ from .moves import Leg, RefusedError, Run
 
 MOST_24_BITS = 16_777_215
 SLOWEST, FASTEST = 1.31, 25_000.0
-KNOWN = "A AC BL C CS CU ES HM I L3 LM LT MR MW ND NI O PC PD PG PI PO QB QC QG QL QM QN QP QR QS QT QU R RB SC SE SL SN"
-KNOWN += " SP ST T T3 TD TP V XM"
+KNOWN = (
+    "A AC BL C CS CU ES HM I L3 LM LT MR MW ND NI O PC PD PG PI PO QB QC QG QL QM QN QP QR QS QT QU R RB SC SE SL SN "
+    "SP ST T T3 TD TP V XM"
+)
 
 
 def run_ebb(text: str, start, motors: dict, table) -> Run:
@@ -72,7 +74,9 @@ class _Board:
             raise RefusedError(f"line {self.number}: !8 Err: Unknown command {word[:10]!r}")
         if not all(re.fullmatch(r"[+-]?\d+", each) for each in told):
             raise RefusedError(f"line {self.number}: !7 Err: Invalid parameter")
-        {"SM": self._move, "S2": self._servo, "SR": self._power, "EM": self._enable}[word](*map(int, told[:6]))
+        {"SM": self._move, "S2": self._servo, "SR": self._power, "EM": self._enable}[word](
+            *map(int, told[:6])
+        )
 
     def _at(self) -> tuple:
         x, y = np.linalg.solve(self.rows, self.steps)
@@ -88,12 +92,14 @@ class _Board:
         for steps in filter(None, (one, two)):
             if not SLOWEST <= 1e3 * abs(steps) / time_ms <= FASTEST:
                 raise RefusedError(f"line {self.number}: !0 Err: <axis> step rate")
-        self.steps = self.steps + (one, two)
+        self.steps = self.steps + np.array([one, two])
         there = self._at()
         self.run.legs.append(Leg(self.number, "feed", here, there, math.dist(here, there) / time_ms * 1e3))
 
     def _servo(self, value: int = -1, pin: int = -1, rate: int = 0, wait_ms: int = 0, *more: int) -> None:
-        if more or not (0 <= value <= 65535 and 0 <= pin <= 24 and 0 <= rate <= 65535 and 0 <= wait_ms <= 65535):
+        if more or not (
+            0 <= value <= 65535 and 0 <= pin <= 24 and 0 <= rate <= 65535 and 0 <= wait_ms <= 65535
+        ):
             raise RefusedError(f"line {self.number}: !0 Err: parameter out of range")
         if pin != self.pin or not value or rate:
             self._act("another pin, or a servo that is switched off or slow")

@@ -1,5 +1,5 @@
 """HP-GL run as the manuals of HP's pen plotters say, of which hp2xx is a second opinion: units of 0.025 mm, the pen up
-or down, IN sets all back and lifts it, parameters behind PU, PD and PA are places, absolute after PA, relative after PR.
+or down, IN sets all back and lifts it, parameters behind PU, PD and PA are places, absolute after PA, else after PR.
 
 What writes, scales, turns or asks counts as text that acts; what no plotter knows sets its error light.
 """

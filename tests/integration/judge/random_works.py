@@ -111,6 +111,8 @@ def random_cell(random, dialect: str):
     if dialect == "ebb":
         cell = replace(cell, blending=Blending(0.01, float(random.uniform(0.2, 5))))
     cell = _with_space(random, cell)
+    if dialect == "ebb":  # whose motors begin at the robot's origin
+        cell = replace(cell, workspace=replace(cell.workspace, reach_mm=()))
     if random.random() < 0.3:
         cell = _with_a_clip(random, cell)
     if random.random() < 0.5 and dialect != "hpgl":
@@ -119,7 +121,11 @@ def random_cell(random, dialect: str):
     return replace(cell, machine=_machine(apart, dialect)) if apart.random() < 0.5 else cell
 
 
-NEVER_SLOWER = ("approach_mm_s", "press_mm_s", "paint_mm_s")  # than a centimetre in a second, by a pen plotter
+NEVER_SLOWER = (
+    "approach_mm_s",
+    "press_mm_s",
+    "paint_mm_s",
+)  # than a centimetre in a second, by a pen plotter
 
 
 def _machine(random, dialect: str) -> Machine:

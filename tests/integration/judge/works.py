@@ -96,7 +96,9 @@ def _higher(cell):
     if cell.language == "grbl-servo":
         return replace(cell, servo=replace(cell.servo, table=((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0))))
     if cell.language == "ebb":
-        return replace(cell, servo=replace(cell.servo, table=((-10.0, 9000.0), (0.0, 17000.0), (8.0, 24000.0))))
+        return replace(
+            cell, servo=replace(cell.servo, table=((-10.0, 9000.0), (0.0, 17000.0), (8.0, 24000.0)))
+        )
     return cell
 
 

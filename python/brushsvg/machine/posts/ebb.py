@@ -81,9 +81,7 @@ class _Writer:
                 yield "".join(self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run))
                 continue
             for k in run:
-                lifts = list(
-                    lifted(path[k, 2], path[k + 1, 2], self.value, move.speed_mm_s, step_mm, servo)
-                )
+                lifts = list(lifted(path[k, 2], path[k + 1, 2], self.value, move.speed_mm_s, step_mm, servo))
                 yield self._told(feed_mm_min(move.speed_mm_s)) if lifts else ""
                 for self.value, wait_ms in lifts:
                     yield self._set(self.value, wait_ms)
@@ -100,7 +98,7 @@ class _Writer:
     def _ways(
         self, path: np.ndarray, feeds: np.ndarray, blends_mm: np.ndarray | None, run: np.ndarray
     ) -> Iterator[str]:
-        """Straight lines, each in parts on which the height is the one half way along the part, and in slices of time."""
+        """Straight lines, each in parts on which the height is the one half way along, and in slices of time."""
         cell, ways = self.cell, np.diff(path, axis=0)
         lengths = np.linalg.norm(ways[:, :2], axis=1)
         caps = joint_caps(blends_mm, run + 1, ways[:, :2], lengths, cell.speeds.acceleration_mm_s2)
@@ -153,7 +151,11 @@ class _Writer:
         least_s = np.maximum(np.diff(when_s, prepend=0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
         told = zip(
-            values[part].tolist(), feeds[part].tolist(), times_ms.astype(int).tolist(), moves.tolist(), strict=True
+            values[part].tolist(),
+            feeds[part].tolist(),
+            times_ms.astype(int).tolist(),
+            moves.tolist(),
+            strict=True,
         )
         for value, feed, time_ms, (one, two) in told:
             yield self._told(feed)

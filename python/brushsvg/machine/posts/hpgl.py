@@ -1,4 +1,4 @@
-"""Moves -> HP-GL (.hpgl) for pen plotters: whole units of 0.025 mm from the plotter's origin, a pen that is up or down."""
+"""Moves -> HP-GL (.hpgl) for pen plotters: whole units of 0.025 mm from the plotter's origin, a pen up or down."""
 
 from __future__ import annotations
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import re
 
 import numpy as np
 
 from ...errors import Error
-from ...machine.cell import Cell, places_of
+from ...machine.cell import Cell
 from ...machine.cell_check import MOST_STEPS_S
 from ...machine.posts.ebb import EBB_END, HOME, comment
 from ...machine.posts.gcode_servo import height_at
@@ -32,7 +31,8 @@ def read_ebb(text: str, cell: Cell) -> Readback:
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     if any(reader.steps):
         raise Error(
-            "its steps do not lead back to where it began: a line was lost, or changed", code="line-incomplete"
+            "its steps do not lead back to where it began: a line was lost, or changed",
+            code="line-incomplete",
         )
     return reader.out
 
@@ -140,7 +140,9 @@ class _Reader:
     def _move(self, number: int, line: str, time_ms: int, one: int, two: int) -> None:
         self._is_ready(number, line)
         if not time_ms or (self.value is None and (one or two)):
-            raise Error(f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete")
+            raise Error(
+                f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete"
+            )
         if not one and not two:
             if self.along is not None:
                 raise _unread(number, line)
@@ -154,8 +156,8 @@ class _Reader:
         for steps in (one, two):
             if steps and not LEAST_STEPS_S <= 1e3 * abs(steps) / time_ms <= MOST_STEPS_S:
                 raise Error(
-                    f"line {number}: {line!r} has {1e3 * abs(steps) / time_ms:.4g} steps in a second, outside the range "
-                    f"[{LEAST_STEPS_S:g}, {MOST_STEPS_S}] of a motor",
+                    f"line {number}: {line!r} has {1e3 * abs(steps) / time_ms:.4g} steps in a second, outside the "
+                    f"range [{LEAST_STEPS_S:g}, {MOST_STEPS_S}] of a motor",
                     code="speed-out-of-range",
                 )
         way_mm = float(np.linalg.norm(self.mm_from_steps @ (one, two)))
