@@ -26,6 +26,7 @@ GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.hpgl"
 CELL = find_cell("hpgl-plotter")
 DOWN = CELL.pen.down_mm
 SHEET = (100.0, 60.0)
+MIDDLE = np.array([50, 30])
 PENS = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80"><g fill="none" '
     'stroke-width="1"><path d="M30 20h30" stroke="#000000"/><path d="M30 32h30" stroke="#ff0000"/>'
@@ -72,7 +73,7 @@ def test_golden():
 def test_what_is_drawn_lies_within_half_a_unit_of_the_plan(turned_deg):
     rng = np.random.default_rng(5)
     cell = replace(CELL, paper=Paper((120.0, 20.0, 0.0), (0.0, 0.0, turned_deg)))
-    lines = [np.cumsum(rng.uniform(-1, 1, (30, 2)), axis=0) + (50, 30) for _ in range(4)]
+    lines = [MIDDLE + np.cumsum(rng.uniform(-1, 1, (30, 2)), axis=0) for _ in range(4)]
     found = run(text_for(drawn(*lines), cell), cell)
     frame = robot_from_paper(cell)
     wanted = [line @ frame[:2, :2].T + frame[:2, 3] for line in lines]
@@ -134,7 +135,7 @@ def test_random_lines_come_back(seed):
     )
     steps = rng.choice([0.01, 0.1, 1.0, 5.0])
     lines = [
-        np.clip(np.cumsum(rng.uniform(-steps, steps, (rng.integers(2, 40), 2)), axis=0) + (50, 30), 1, 59)
+        np.clip(MIDDLE + np.cumsum(rng.uniform(-steps, steps, (rng.integers(2, 40), 2)), axis=0), 1, 59)
         for _ in range(rng.integers(1, 5))
     ]
     brush = pen(float(rng.uniform(12, 60)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -333,7 +334,7 @@ def unit_mm(cell: Cell) -> float:
     """How far apart places of x, and of y, lie that the cell's language tells from each other; of motors, twice what
     rounding moves them by at most."""
     if cell.motors:
-        return float(np.abs(np.linalg.inv(cell.motors.steps_per_mm)).sum(axis=1).max())
+        return _unit_of_motors_mm(cell.motors)
     return UNITS_MM.get(cell.language, 10.0**-cell.decimals)
 
 
@@ -354,7 +355,18 @@ def steps_of(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
 
 def places_of(steps: np.ndarray, motors: Motors) -> np.ndarray:
     """(n, 2) x and y [mm] for steps (n, 2)."""
-    return steps @ np.linalg.inv(motors.steps_per_mm).T
+    return steps @ mm_from_steps(motors).T
+
+
+@lru_cache(maxsize=8)
+def _unit_of_motors_mm(motors: Motors) -> float:
+    return float(np.abs(mm_from_steps(motors)).sum(axis=1).max())
+
+
+@lru_cache(maxsize=8)
+def mm_from_steps(motors: Motors) -> np.ndarray:
+    """(2, 2) how far x and y go for a step of each motor."""
+    return np.linalg.inv(motors.steps_per_mm)
 
 
 def value_mm(cell: Cell) -> float:
@@ -365,7 +377,7 @@ def value_mm(cell: Cell) -> float:
 
 def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
     """(n,) which steps (n, 3) are a servo's lift alone: what they go beside it rounding need not leave."""
-    return np.linalg.norm(steps_mm[:, :2], axis=1) < 0.5 * unit_mm(cell)
+    return np.hypot(steps_mm[:, 0], steps_mm[:, 1]) < 0.5 * unit_mm(cell)
 
 
 def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:

@@ -71,6 +71,10 @@ def paced(
     speeds = _speeds(lengths, caps, tops, a)
     for k, length in enumerate(lengths):
         begin, end = speeds[k], speeds[k + 1]
+        if begin == end == tops[k]:  # most by far
+            now_s += length / begin
+            yield k, now_s, None
+            continue
         peak = min(tops[k], sqrt(a * length + (begin * begin + end * end) / 2))
         rising_s, falling_s = (peak - begin) / a, (peak - end) / a
         even_mm = max(length - (2 * peak * peak - begin * begin - end * end) / (2 * a), 0.0)
@@ -101,9 +105,11 @@ def _speeds(lengths: list[float], caps: list[float], tops: list[float], a: float
     """At both ends of each line and in all joints: what can be reached, and left in time."""
     speeds = [0.0, *map(min, caps, tops[:-1], tops[1:]), 0.0]
     for k, length in enumerate(lengths):
-        speeds[k + 1] = min(speeds[k + 1], sqrt(speeds[k] ** 2 + 2 * a * length))
+        if speeds[k + 1] > speeds[k]:
+            speeds[k + 1] = min(speeds[k + 1], sqrt(speeds[k] ** 2 + 2 * a * length))
     for k in range(len(lengths) - 1, -1, -1):
-        speeds[k] = min(speeds[k], sqrt(speeds[k + 1] ** 2 + 2 * a * lengths[k]))
+        if speeds[k] > speeds[k + 1]:
+            speeds[k] = min(speeds[k], sqrt(speeds[k + 1] ** 2 + 2 * a * lengths[k]))
     return speeds
 
 

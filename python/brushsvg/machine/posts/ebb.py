@@ -66,22 +66,22 @@ class _Writer:
 
     def moved(self, move: Move) -> Iterator[str]:
         cell, servo = self.cell, self.cell.servo
-        points = np.array(move.points_mm, dtype=float)
-        points[:, :2] = places_of(steps_of(points, cell.motors), cell.motors)
-        path = np.vstack([self.here, points])
+        path = np.concatenate([self.here[None], move.points_mm])
+        path[:, :2] = places_of(steps_of(path, cell.motors), cell.motors)
         self.here = path[-1]
-        ways = np.diff(path, axis=0)
+        ways = path[1:] - path[:-1]
         still = servo_stands(ways, cell)
         fastest_mm_s = self.touching_mm_s if move.meaning in TOUCHING else math.inf
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
-        for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
+        runs = np.arange(len(still))
+        for run in np.split(runs, np.flatnonzero(still[1:] != still[:-1]) + 1) if len(runs) > 1 else [runs]:
             if not still[run[0]]:
                 feeds = feeds_mm_min(ways[run], move.speed_mm_s, fastest_mm_s)
                 feeds = np.maximum(feeds, feed_mm_min(LEAST_SPEED_MM_S["ebb"]))
-                yield "".join(self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run))
+                yield self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run)
                 continue
             for k in run:
-                lifts = list(lifted(path[k, 2], path[k + 1, 2], self.value, move.speed_mm_s, step_mm, servo))
+                lifts = lifted(path[k, 2], path[k + 1, 2], self.value, move.speed_mm_s, step_mm, servo)
                 yield self._told(feed_mm_min(move.speed_mm_s)) if lifts else ""
                 for self.value, wait_ms in lifts:
                     yield self._set(self.value, wait_ms)
@@ -97,7 +97,7 @@ class _Writer:
 
     def _ways(
         self, path: np.ndarray, feeds: np.ndarray, blends_mm: np.ndarray | None, run: np.ndarray
-    ) -> Iterator[str]:
+    ) -> str:
         """Straight lines, each in parts on which the height is the one half way along, and in slices of time."""
         cell, ways = self.cell, np.diff(path, axis=0)
         lengths = np.linalg.norm(ways[:, :2], axis=1)
@@ -117,7 +117,7 @@ class _Writer:
         part, when_s, places = _none_long(
             part, when_s, path[line, :2] + ways[line, :2] * along[:, None], path[0, :2]
         )
-        yield from self._slices(path[0], part, when_s, places, values, feeds[which])
+        return self._slices(path[0], part, when_s, places, values, feeds[which])
 
     def _rows(
         self, parts_mm: list[float], caps: list[float], tops: list[float]
@@ -140,7 +140,7 @@ class _Writer:
         places: np.ndarray,
         values: np.ndarray,
         feeds: np.ndarray,
-    ) -> Iterator[str]:
+    ) -> str:
         motors = self.cell.motors
         steps = np.vstack([steps_of(start[None], motors), steps_of(places, motors)])
         goes = np.diff(steps, axis=0).any(axis=1)
@@ -150,19 +150,16 @@ class _Writer:
         # never faster than it may be, whatever rounding makes of ways and times
         least_s = np.maximum(np.diff(when_s, prepend=0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
-        told = zip(
-            values[part].tolist(),
-            feeds[part].tolist(),
-            times_ms.astype(int).tolist(),
-            moves.tolist(),
-            strict=True,
-        )
-        for value, feed, time_ms, (one, two) in told:
-            yield self._told(feed)
-            if value != self.value:
-                self.value = value
-                yield self._set(value, 0)
-            yield f"SM,{time_ms},{one},{two}\n"
+        values, feeds = values[part], feeds[part]
+        new_value, new_feed = np.diff(values, prepend=self.value) != 0, np.diff(feeds, prepend=self.feed) != 0
+        told = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
+        lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in told]
+        for k in np.flatnonzero(new_value):
+            lines[k] = self._set(values[k], 0) + lines[k]
+        for k in np.flatnonzero(new_feed):
+            lines[k] = self._told(feeds[k]) + lines[k]
+        self.value = int(values[-1]) if len(values) else self.value
+        return "".join(lines)
 
 
 def _none_long(

@@ -83,7 +83,7 @@ def _lines(
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for k in run:
-            lifts = list(lifted(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo))
+            lifts = lifted(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
             for value, wait_ms in lifts:
                 yield f"M3 S{value}\nG4 P{number(wait_ms / 1e3, 3)}\n"
             if servo.settle_s and lifts:
@@ -93,16 +93,18 @@ def _lines(
 
 def lifted(
     from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
-) -> Iterator[tuple[int, int]]:
+) -> list[tuple[int, int]]:
     """The lift alone: step by step its value and how long to wait [ms], as long as the way takes at the speed. The way
     is that between the values, which are whole: after a line it begins where its last part was held."""
     feed_mm_s = feed_mm_min(speed_mm_s) / 60
-    count = max(1, int(np.ceil(abs(to_mm - from_mm) / step_mm - 1e-9)))
-    for k in range(1, count + 1):
-        before, value = value, int(value_at(servo, from_mm + (to_mm - from_mm) * k / count))
-        if value != before:
-            way_mm = abs(height_at(servo, value) - height_at(servo, before))
-            yield value, math.ceil(1e3 * way_mm / feed_mm_s)
+    count = max(1, math.ceil(abs(to_mm - from_mm) / step_mm - 1e-9))
+    told = value_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
+    told = np.concatenate([[value], told])
+    told = told[np.concatenate([[True], told[1:] != told[:-1]])]
+    values, heights = zip(*sorted((value, height) for height, value in servo.table), strict=True)
+    at_mm = np.interp(told, values, heights)
+    waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
+    return list(zip(told[1:].tolist(), waits_ms.tolist(), strict=True))
 
 
 def _ways(

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ...errors import Error
-from ...machine.cell import Cell
+from ...machine.cell import Cell, mm_from_steps
 from ...machine.cell_check import MOST_STEPS_S
 from ...machine.posts.ebb import EBB_END, HOME, comment
 from ...machine.posts.gcode_servo import height_at
@@ -40,7 +40,7 @@ def read_ebb(text: str, cell: Cell) -> Readback:
 class _Reader:
     def __init__(self, cell: Cell):
         self.cell, self.out = cell, Readback(blends_by_radius=True)
-        self.mm_from_steps = np.linalg.inv(cell.motors.steps_per_mm)
+        self.mm_from_steps = mm_from_steps(cell.motors)
         self.steps = [0, 0]
         self.value: int | None = None
         self.along: int | None = None  # a value that takes effect with the next move
