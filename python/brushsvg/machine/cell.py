@@ -350,7 +350,12 @@ def rounded(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
 
 def steps_of(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
     """(n, 2) where the motors are at points (n, 2 or 3), in whole steps from the origin."""
-    return np.rint(np.asarray(points_mm)[:, :2] @ np.transpose(motors.steps_per_mm)).astype(int)
+    return np.rint(np.asarray(points_mm)[:, :2] @ _steps_from_mm(motors)).astype(int)
+
+
+@lru_cache(maxsize=8)
+def _steps_from_mm(motors: Motors) -> np.ndarray:
+    return np.transpose(motors.steps_per_mm)
 
 
 def places_of(steps: np.ndarray, motors: Motors) -> np.ndarray:

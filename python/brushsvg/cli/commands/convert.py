@@ -62,9 +62,9 @@ def convert_file(args) -> None:
     warn_of_cell(args, cell)
     seconds = seconds_written(suffix, work.plan, walk, brush, work.options.cell)
     stops = pens_changed(loads, cell, job.first_stroke) if is_program and may_pause(cell) else 0
-    does = "takes another pen" if has_pens(cell) else "stops for another pen"
-    more = f"{does} {'once' if stops == 1 else f'{stops} times'}" if stops else ""
-    write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap, more)
+    times = "once" if stops == 1 else f"{stops} times"
+    more = f"takes another pen {times}" if has_pens(cell) else f"stops {times} for another pen"
+    write(args, files, len(loads.loads) - job.first_stroke + 1, seconds, overlap, more if stops else "")
 
 
 def job_page_of(path: str, work) -> bytes:

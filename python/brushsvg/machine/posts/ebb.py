@@ -17,7 +17,7 @@ from .text import feed_mm_min, plain
 LINE_LIMIT = 100
 SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a motor is told, the board refuses
 STEPS_MS = 25  # no motor makes more in a millisecond
-HOME = "back to where it began"
+HOME = "end: back to where it began"
 EBB_END = "end: the brush is held up, over where it began"
 
 
@@ -57,7 +57,7 @@ class _Writer:
     def __init__(self, program: Program):
         self.cell, self.touching_mm_s = program.cell, program.touching_mm_s
         self.here = np.array([0.0, 0.0, program.rise_mm])
-        self.value, self.feed = 0, 0.0
+        self.steps, self.value, self.feed = np.zeros(2, dtype=int), 0, 0.0
 
     def risen(self, height_mm: float) -> str:
         """Up before going anywhere."""
@@ -65,27 +65,36 @@ class _Writer:
         return self._set(self.value, 0) + _waited(self.cell.servo.settle_s)
 
     def moved(self, move: Move) -> Iterator[str]:
-        cell, servo = self.cell, self.cell.servo
-        path = np.concatenate([self.here[None], move.points_mm])
-        path[:, :2] = places_of(steps_of(path, cell.motors), cell.motors)
+        motors, here = self.cell.motors, self.here
+        steps = steps_of(move.points_mm, motors)
+        height_mm = float(move.points_mm[-1, 2])
+        if len(steps) == 1 and (steps[0] == self.steps).all():  # most moves by far
+            self.here = np.array([*here[:2], height_mm])
+            yield self._lifted(move, here[2], height_mm)
+            return
+        path = np.vstack([here, np.column_stack([places_of(steps, motors), move.points_mm[:, 2]])])
         self.here = path[-1]
         ways = path[1:] - path[:-1]
-        still = servo_stands(ways, cell)
+        still = servo_stands(ways, self.cell)
         fastest_mm_s = self.touching_mm_s if move.meaning in TOUCHING else math.inf
-        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
-        runs = np.arange(len(still))
-        for run in np.split(runs, np.flatnonzero(still[1:] != still[:-1]) + 1) if len(runs) > 1 else [runs]:
-            if not still[run[0]]:
-                feeds = feeds_mm_min(ways[run], move.speed_mm_s, fastest_mm_s)
-                feeds = np.maximum(feeds, feed_mm_min(LEAST_SPEED_MM_S["ebb"]))
-                yield self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run)
+        for run in np.split(np.arange(len(still)), np.flatnonzero(still[1:] != still[:-1]) + 1):
+            if still[run[0]]:
+                for k in run:
+                    yield self._lifted(move, path[k, 2], path[k + 1, 2])
                 continue
-            for k in run:
-                lifts = lifted(path[k, 2], path[k + 1, 2], self.value, move.speed_mm_s, step_mm, servo)
-                yield self._told(feed_mm_min(move.speed_mm_s)) if lifts else ""
-                for self.value, wait_ms in lifts:
-                    yield self._set(self.value, wait_ms)
-                yield _waited(servo.settle_s) if lifts else ""
+            feeds = feeds_mm_min(ways[run], move.speed_mm_s, fastest_mm_s)
+            feeds = np.maximum(feeds, feed_mm_min(LEAST_SPEED_MM_S["ebb"]))
+            yield self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run)
+
+    def _lifted(self, move: Move, from_mm: float, to_mm: float) -> str:
+        servo = self.cell.servo
+        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
+        lifts = lifted(from_mm, to_mm, self.value, move.speed_mm_s, step_mm, servo)
+        if not lifts:
+            return ""
+        self.value = lifts[-1][0]
+        told = "".join(self._set(*lift) for lift in lifts)
+        return self._told(feed_mm_min(move.speed_mm_s)) + told + _waited(servo.settle_s)
 
     def _told(self, feed: float) -> str:
         """The line that says the most that the moves have which follow, where it is another one."""
@@ -117,7 +126,7 @@ class _Writer:
         part, when_s, places = _none_long(
             part, when_s, path[line, :2] + ways[line, :2] * along[:, None], path[0, :2]
         )
-        return self._slices(path[0], part, when_s, places, values, feeds[which])
+        return self._slices(part, when_s, places, values, feeds[which])
 
     def _rows(
         self, parts_mm: list[float], caps: list[float], tops: list[float]
@@ -134,7 +143,6 @@ class _Writer:
 
     def _slices(
         self,
-        start: np.ndarray,
         part: np.ndarray,
         when_s: np.ndarray,
         places: np.ndarray,
@@ -142,10 +150,11 @@ class _Writer:
         feeds: np.ndarray,
     ) -> str:
         motors = self.cell.motors
-        steps = np.vstack([steps_of(start[None], motors), steps_of(places, motors)])
-        goes = np.diff(steps, axis=0).any(axis=1)
-        part, when_s, steps = part[goes], when_s[goes], steps[np.r_[True, goes]]
-        moves = np.diff(steps, axis=0)
+        steps = np.vstack([self.steps, steps_of(places, motors)])
+        self.steps = steps[-1]
+        moves = steps[1:] - steps[:-1]
+        goes = moves.any(axis=1)  # where it stands, what follows takes the time, too
+        part, when_s, moves = part[goes], when_s[goes], moves[goes]
         ways_mm = np.linalg.norm(places_of(moves, motors), axis=1)
         # never faster than it may be, whatever rounding makes of ways and times
         least_s = np.maximum(np.diff(when_s, prepend=0.0), 60 * ways_mm / feeds[part])
