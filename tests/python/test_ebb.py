@@ -111,7 +111,7 @@ def test_no_speed_stops_a_motor_or_is_too_fast_for_one():
     """The stub refuses less than 1.31 and more than 25,000 steps in a second."""
     fast = replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=220.0, acceleration_mm_s2=5000.0))
     run(made(wave(), cell=fast))
-    found = run(made([(10, 10, 0), (10, 10, -1), (12.003, 11.171, -1), (12.003, 11.171, 0)], speed=0.1))
+    found = run(made([(10, 10, 0), (10, 10, -1), (12.003, 11.984, -1), (12.003, 11.984, 0)], speed=0.1))
     slow = [leg.speed_mm_s for leg in found.legs if leg.kind == "feed" and leg.end[2] < 0]
     assert 0.05 < max(slow) <= 0.1
     with refused("out-of-range 222 0.1 221.0"):
