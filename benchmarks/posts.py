@@ -23,16 +23,24 @@ STROKES = 1000
 POSES = 150
 
 
-def plan_of(strokes: int, poses: int, sheet_mm=(400.0, 400.0)):
-    """Waves side by side, pressed and lifted at their ends."""
+def plan_of(strokes: int, poses: int, sheet_mm=(400.0, 400.0), down_mm: float | None = None):
+    """Waves side by side, pressed and lifted at their ends; for a pen, all at the height that it is let down to."""
     t = np.linspace(0, 1, poses)
     passes = []
     for number in range(strokes):
         x, y = 20 + 36 * (number % 10), 20 + 360 * (number // 10) / (strokes / 10)
         depth = -3 * np.minimum(1, 10 * np.minimum(t, 1 - t))
         wave = np.column_stack([x + 30 * t, y + np.sin(20 * t), depth])
+        if down_mm is not None:
+            wave[:, 2] = down_mm
         passes.append(_core.Pass(f"s{number}", wave, 20.0))
     return _core.Plan("round-6", "", sheet_mm, passes)
+
+
+def tried_with(name: str) -> tuple:
+    """Its brush, and what a plan for it needs besides."""
+    pen = find_cell(name).pen
+    return find_brush("rigid" if pen else "round-6"), {"down_mm": pen.down_mm} if pen else {}
 
 
 def roomy(name: str):
@@ -53,9 +61,9 @@ def peak_mb() -> float:
 
 def child(name: str, strokes: int) -> None:
     """Memory beyond the plan's arrays, in a process of its own."""
-    brush = find_brush("round-6")
-    write(name, plan_of(10, POSES), brush)  # what is loaded for any program
-    plan = plan_of(10 * strokes, 990)  # no program of TP has more points
+    brush, own = tried_with(name)
+    write(name, plan_of(10, POSES, **own), brush)  # what is loaded for any program
+    plan = plan_of(10 * strokes, 990, **own)  # no program of TP has more points
     before = peak_mb()
     begin = time.perf_counter()
     size = write(name, plan, brush)
@@ -63,7 +71,7 @@ def child(name: str, strokes: int) -> None:
 
 
 def main() -> None:
-    brush, plan = find_brush("round-6"), plan_of(STROKES, POSES)
+    plan = plan_of(STROKES, POSES)
     names = [name for name in cell_names() if find_cell(name).language in POSTS]
     print(f"a page of {STROKES} strokes, {STROKES * POSES} poses")
     begin = time.perf_counter()
@@ -73,8 +81,10 @@ def main() -> None:
         f"  {'floor: three numbers a pose as text':<48} {time.perf_counter() - begin:7.3f} s {len(text) / 1e6:7.1f} MB"
     )
     for name in names:
+        brush, own = tried_with(name)
+        asked = plan_of(STROKES, POSES, **own) if own else plan
         begin = time.perf_counter()
-        size = write(name, plan, brush)
+        size = write(name, asked, brush)
         print(f"  {name:<48} {time.perf_counter() - begin:7.3f} s {size / 1e6:7.1f} MB")
     print("10 million poses: memory beyond the plan's arrays (aim: 50 MB)")
     for name in names:

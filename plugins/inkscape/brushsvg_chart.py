@@ -16,7 +16,7 @@ from brushsvg_tell import tell
 
 LAYER_ID, PAGE_ID = "brushsvg-chart", "brushsvg-chart-page"
 GAP_MM = 10
-PROGRAMS = (".ngc", ".script", ".jks", ".mod", ".py", ".src", ".lua", ".ls", ".drl", ".csv", ".json")
+PROGRAMS = (".ngc", ".script", ".jks", ".mod", ".py", ".src", ".lua", ".ls", ".drl", ".csv", ".ebb", ".json")
 
 
 def main() -> None:

@@ -61,13 +61,25 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".ls": "fanuc",
         ".drl": "doosan",
         ".csv": "ros2",
+        ".ebb": "ebb",
+        ".hpgl": "hpgl",
     }.get(extension, "gcode")
-    plugin.set(**{f"save.{entry}__cell": cell})
+    pen = {f"save.{entry}__brush": "rigid"} if entry == "hpgl" else {}  # which has one depth
+    plugin.set(**{f"save.{entry}__cell": cell}, **pen)
     try:
         plugin.save(drawing, saved)
     finally:
         plugin.set()
-    brushsvg("convert", "drawing.svg", f"typed{extension}", "--cell", cell, cwd=tmp_path, status=0)
+    brushsvg(
+        "convert",
+        "drawing.svg",
+        f"typed{extension}",
+        "--cell",
+        cell,
+        *(["--brush", "rigid"] if pen else []),
+        cwd=tmp_path,
+        status=0,
+    )
     assert saved.read_bytes() == (tmp_path / f"typed{extension}").read_bytes()
 
 

@@ -44,7 +44,7 @@ USAGE = [
 LATER = {
     "flags": ["--caps"],
     "commands": ["learn"],
-    "formats": [".ebb", ".hpgl", ".pdf", ".krl"],
+    "formats": [".pdf", ".krl"],
 }
 PAGES = [
     [],
@@ -127,6 +127,8 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".csv": ("--cell", "fr3"),
             ".traj": ("--cell", "fr3"),
             ".cdr": ("--cell", "fr3"),
+            ".ebb": ("--cell", "axidraw-ebb"),
+            ".hpgl": ("--cell", "hpgl-plotter", "--brush", "rigid"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -153,6 +155,8 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.csv",
             "made.traj",
             "made.cdr",
+            "made.ebb",
+            "made.hpgl",
             "page.pdf",
             "page.svg",
             "seen.png",

@@ -36,6 +36,11 @@ LANGUAGES = {
     "lrmate200id": ".ls",
     "m0609": ".drl",
     "fr3": ".csv",
+    "axidraw-ebb": ".ebb",
+}
+SERVOS = {  # with the values of a table that reaches far enough
+    "grbl-servo": ((-12.0, 100.0), (0.0, 500.0), (25.0, 900.0)),
+    "axidraw-ebb": ((-12.0, 10000.0), (0.0, 16000.0), (25.0, 30000.0)),
 }
 SHEET = (400.0, 400.0)
 
@@ -44,14 +49,14 @@ def random_cell(rng, name):
     """A cell of a language with heights, speeds, paper and paint of its own."""
     cell = find_cell(name)
     safe = rng.uniform(6, 20)
-    if name == "grbl-servo":
-        cell = replace(cell, servo=replace(cell.servo, table=((-12.0, 100.0), (0.0, 500.0), (25.0, 900.0))))
+    if name in SERVOS:
+        cell = replace(cell, servo=replace(cell.servo, table=SERVOS[name]))
     lowest = -rng.uniform(5, 10)
     cell = replace(cell, heights=Heights(safe, rng.uniform(0.5, 3), lowest))
     cell = replace(
         cell, speeds=replace(cell.speeds, press_mm_s=rng.uniform(2, 30), approach_mm_s=rng.uniform(5, 60))
     )
-    if name != "grbl-servo":  # whose values know no paper that leans
+    if name not in SERVOS:  # whose values know no paper that leans
         paper = Paper(
             tuple(rng.uniform(-300, 300, 3)),
             (*rng.uniform(-1, 1, 2) * rng.integers(0, 2), rng.uniform(0, 360)),
@@ -160,6 +165,32 @@ def krl_moves(text):
                 yield False, tuple(map(float, point)), speed, visit
 
 
+def ebb_moves(text, cell):
+    """Steps of two motors of a 2x2 table, each slice with the speed that its time makes; a servo is set before."""
+    rows, table = (
+        np.array(cell.motors.steps_per_mm),
+        np.array(sorted(cell.servo.table, key=lambda row: row[1])),
+    )
+    steps, height, visit = np.zeros(2), np.nan, False
+    for line in text.splitlines():
+        if line.startswith("# "):
+            visit = line.startswith("# paint") or (visit and line.startswith("# feed"))
+            continue
+        word, *numbers = line.split(",")
+        values = [int(number) for number in numbers]
+        x, y = np.linalg.solve(rows, steps)
+        if word == "S2":
+            height = float(np.interp(values[0], table[:, 1], table[:, 0]))
+            yield False, (x, y, height), 0.0, visit
+        elif word == "SM" and any(values[1:]):
+            steps = steps + values[1:]
+            there = np.linalg.solve(rows, steps)
+            assert max(map(abs, values[1:])) <= 25 * values[0], "25,000 steps in a second"
+            speed = float(np.hypot(*(there - (x, y)))) / values[0] * 1e3
+            yield False, (*there, height), speed, visit
+    assert not steps.any(), "it ends where it began"
+
+
 ROBOTS = {
     "ur5e": lambda text: moves_on_paper(text, "  # ", r"v=([\d.]+)", 1e3),
     "jaka-zu3": jaka_moves,
@@ -197,8 +228,8 @@ def test_whatever_is_written_is_safe(name, seed):
     robot = ROBOTS.get(name)
     code = re.sub(r"\b9E9\b" if robot else r"\(.*\)|[#;].*", "", text)  # as RAPID calls an axis that is none
     assert not re.search(r"\d[eE][-+]?\d|nan|inf\b|-0\.0+(?![\d])", code)
-    moves = robot(text) if robot else gcode_moves(text, cell)
-    slack = 0.15 if name == "grbl-servo" else 2e-3
+    moves = robot(text) if robot else ebb_moves(text, cell) if cell.motors else gcode_moves(text, cell)
+    slack = {"grbl-servo": 0.15, "axidraw-ebb": 0.02}.get(name, 2e-3)
     fastest = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s)
     # what leans and is rounded in the robot's frame is off by as much in the paper's
     last = None
@@ -219,7 +250,8 @@ def test_whatever_is_written_is_safe(name, seed):
 
 
 def test_every_language_is_tried():
-    posts = set(POSTS) - {"robodk"}  # whatever a user's own post writes
+    # whatever a user's own post writes; and a pen, which draws no plan of this kind: test_hpgl
+    posts = set(POSTS) - {"robodk", "hpgl"}
     assert {find_cell(name).language for name in LANGUAGES} == posts
 
 
@@ -229,7 +261,7 @@ def test_programs_for_machines_that_go_elsewhere_are_allowed_and_come_back(seed)
     name = list(LANGUAGES)[seed % len(LANGUAGES)]
     cell, brush = random_cell(rng, name), make_brush(name="made")
     axes = {"scale": tuple(rng.uniform(0.97, 1.03, 2)), "skew": rng.uniform(-0.02, 0.02)}
-    if name != "grbl-servo":
+    if name not in SERVOS:
         axes["lean_mm_per_mm"] = tuple(rng.uniform(-0.5, 0.5, 2))
         axes |= {"height_mm": rng.uniform(-0.5, 0.5), "tilt_mm_per_mm": tuple(rng.uniform(-0.004, 0.004, 2))}
     cell = replace(cell, machine=Machine(**axes))

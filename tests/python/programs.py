@@ -23,7 +23,9 @@ LANGUAGES = {
     "lrmate200id": ".ls",
     "m0609": ".drl",
     "fr3": ".csv",
+    "axidraw-ebb": ".ebb",
 }
+SERVOS = ("grbl-servo", "axidraw-ebb")
 RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnostics import agrees, in_json, is_told, refused
-from programs import LANGUAGES, RUNNABLE, call
+from programs import LANGUAGES, RUNNABLE, SERVOS, call
 
 from brushsvg import _core
 from brushsvg.machine import preflight, writer
@@ -64,12 +64,12 @@ def test_what_was_planned_comes_back(desk, name):
         for arc in meant.arcs:  # told by its ends, and at most a pose on its way
             inside = slice(arc.first + 1, arc.last)
             away[inside] = np.minimum(away[inside], off_circles(found, meant.poses_mm[inside, :2]))
-        assert away.max() < (0.1 if name == "grbl-servo" else 2e-3), "every pose is passed"
+        assert away.max() < (0.1 if name in SERVOS else 2e-3), "every pose is passed"
         assert found.speed_mm_s == pytest.approx(meant.speed_mm_s, rel=1e-3)
     planned, painted = (_core.simulate(plan, work.brush, 0.005) for plan in (work.plan, back.plan))
     for marks in (planned, painted):
         _core.trace_outlines(marks, work.brush)
-    assert _core.overlap(planned.outline_mm, painted.outline_mm) > (0.985 if name == "grbl-servo" else 0.998)
+    assert _core.overlap(planned.outline_mm, painted.outline_mm) > (0.985 if name in SERVOS else 0.998)
 
 
 def edited(old, new, count=1):
@@ -613,7 +613,7 @@ STATIONS = [
 @pytest.mark.slow
 def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
     """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
-    if hand and cell in ("grbl-servo", "fr3"):
+    if hand and cell in (*SERVOS, "fr3"):
         return  # its brush falls while the program waits; a trajectory waits for nobody
     suffix = LANGUAGES[cell]
     for names in STATIONS:

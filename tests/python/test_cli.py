@@ -587,7 +587,7 @@ def test_the_package_runs_as_a_module(desk):
     assert (
         done.stderr
         == b"brushsvg: b.svg does not end in .json or .ngc or .gcode or .nc or .script or .jks or .mod or .py or .src "
-        b"or .lua or .ls or .drl or .csv or .traj or .cdr or .robodk (see brushsvg convert --help)\n"
+        b"or .lua or .ls or .drl or .csv or .traj or .cdr or .ebb or .hpgl or .robodk (see brushsvg convert --help)\n"
     )
     done = spawn("--version", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")
@@ -740,7 +740,9 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         assert run(capsys, "cell", "show", name)[0] == 0
         status, out, err = run(capsys, "cell", "check", name)
         assert (status, out) == (0, f"{name}: cell {name} can be used\n")
-        assert bool(err) == (not name.endswith(("-3axis", "-servo"))), "a robot's paper is an example"
+        assert bool(err) == (not name.endswith(("-3axis", "-servo", "-ebb", "-plotter"))), (
+            "a robot's paper is an example"
+        )
     assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis", "--quiet") == (0, "", [])
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from diagnostics import in_json, is_told
+from programs import SERVOS
 
 from brushsvg.brush.library import find_brush
 from brushsvg.machine.cell_file import cell_names, find_cell
@@ -15,7 +16,7 @@ from brushsvg.machine.setup_programs import first_run
 pytestmark = pytest.mark.arm
 
 SHEET_MM = (200.0, 100.0)
-WAITING = [name for name in cell_names() if name not in ("grbl-servo", "fr3")]
+WAITING = [name for name in cell_names() if name not in (*SERVOS, "fr3", "hpgl-plotter")]
 
 
 @pytest.mark.parametrize("name", WAITING)
@@ -45,7 +46,15 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
 
 
-@pytest.mark.parametrize(("name", "program"), [("grbl-servo", "first.nc"), ("fr3", "first.csv")])
+@pytest.mark.parametrize(
+    ("name", "program"),
+    [
+        ("grbl-servo", "first.nc"),
+        ("fr3", "first.csv"),
+        ("axidraw-ebb", "first.ebb"),
+        ("hpgl-plotter", "first.hpgl"),
+    ],
+)
 def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, capsys):
     """A servo's brush would fall, a trajectory would go on."""
     status, _, told = in_json(capsys, "first-run", name, "-o", tmp_path / program)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from diagnostics import in_json, is_told
-from programs import LANGUAGES, RUNNABLE, call
+from programs import LANGUAGES, RUNNABLE, SERVOS, call
 
 from brushsvg.machine.cell_file import find_cell, write_cell
 
@@ -23,7 +23,7 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in ("grbl-servo", "fr3")])
+@pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in (*SERVOS, "fr3")])
 def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, name):
     program = f"pens{LANGUAGES[name]}"
     status, _, said = call(capsys, "convert", "pens.svg", program, "--cell", name)
@@ -49,7 +49,7 @@ def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
 
 
 def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
-    for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3")):
+    for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
         status, _, said = in_json(capsys, "convert", "pens.svg", program, "--cell", name)
         assert status == 0 and is_told(said, "colours-as-one")
         assert call(capsys, "check", program, "pens.svg")[0] == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -141,6 +142,30 @@ class Servo:
 
 
 @dataclass(frozen=True)
+class Motors:
+    """Two motors that are told steps, from the origin on, and the pin of the servo that lifts the brush."""
+
+    steps_per_mm: tuple = _key(
+        "a row for each motor: its steps for a mm along x, and for a mm along y", (2, 2), -1e4, 1e4
+    )
+    servo_pin: int = _key("of the board, RP4 is its pin B1", "whole", 0, 24, default=4)
+
+
+@dataclass(frozen=True)
+class Pen:
+    """A lift that knows up and down alone: up is the safe height."""
+
+    down_mm: float = _number(
+        "the height that the pen is let down to, below the paper as far as a brush is pressed", -200, -0.01
+    )
+    colours: tuple = _key(
+        "colours of strokes, as in the drawing, '#rrggbb', of pens 1, 2, ... in the plotter; none: it has one",
+        "texts",
+        default=(),
+    )
+
+
+@dataclass(frozen=True)
 class Machine:
     """Where the machine takes the tool that is told to go elsewhere, as `brushsvg calibrate --machine` finds it: it is
     told otherwise, so that the tool goes where it should. x and y from the sheet's lower left corner."""
@@ -257,6 +282,8 @@ class Cell:
     )
     tool: Tool | None = None
     servo: Servo | None = None
+    pen: Pen | None = None
+    motors: Motors | None = None
     reload: Reload | None = None
     machine: Machine | None = None
     robodk: RoboDK | None = None
@@ -272,17 +299,25 @@ TABLES = {
     "workspace": Workspace,
     "tool": Tool,
     "servo": Servo,
+    "pen": Pen,
+    "motors": Motors,
     "reload": Reload,
     "machine": Machine,
     "robodk": RoboDK,
     "arm": Arm,
 }
-OPTIONAL_TABLES = ("tool", "servo", "reload", "machine", "robodk", "arm")
-NEEDED_BY = {"grbl-servo": "servo"} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), "tool"
+OPTIONAL_TABLES = ("tool", "servo", "pen", "motors", "reload", "machine", "robodk", "arm")
+NEEDED_BY = {"grbl-servo": ("servo",), "ebb": ("servo", "motors"), "hpgl": ("pen",)} | dict.fromkeys(
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
-LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0}  # of a line; all their speeds are whole multiples of it
+LEAST_SPEED_MM_S = {
+    "dobot": 1.0,
+    "fanuc": 1.0,
+    "hpgl": 10.0,
+    "ebb": 0.1,
+}  # of a line; all speeds are whole multiples of it
+UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
 MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
@@ -303,6 +338,50 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
     return frame
 
 
+def unit_mm(cell: Cell) -> float:
+    """How far apart places of x, and of y, lie that the cell's language tells from each other; of motors, twice what
+    rounding moves them by at most."""
+    if cell.motors:
+        return _unit_of_motors_mm(cell.motors)
+    return UNITS_MM.get(cell.language, 10.0**-cell.decimals)
+
+
+def rounded(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
+    """Points (n, 3) of a program as the cell's language has them."""
+    points = np.round(points_mm, cell.decimals)
+    if cell.motors:
+        points[:, :2] = places_of(steps_of(points_mm, cell.motors), cell.motors)
+    if unit := UNITS_MM.get(cell.language):
+        points[:, :2] = np.round(np.rint(np.asarray(points_mm)[:, :2] / unit) * unit, cell.decimals)
+    return points
+
+
+def steps_of(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
+    """(n, 2) where the motors are at points (n, 2 or 3), in whole steps from the origin."""
+    return np.rint(np.asarray(points_mm)[:, :2] @ _steps_from_mm(motors)).astype(int)
+
+
+@lru_cache(maxsize=8)
+def _steps_from_mm(motors: Motors) -> np.ndarray:
+    return np.transpose(motors.steps_per_mm)
+
+
+def places_of(steps: np.ndarray, motors: Motors) -> np.ndarray:
+    """(n, 2) x and y [mm] for steps (n, 2)."""
+    return steps @ mm_from_steps(motors).T
+
+
+@lru_cache(maxsize=8)
+def _unit_of_motors_mm(motors: Motors) -> float:
+    return float(np.abs(mm_from_steps(motors)).sum(axis=1).max())
+
+
+@lru_cache(maxsize=8)
+def mm_from_steps(motors: Motors) -> np.ndarray:
+    """(2, 2) how far x and y go for a step of each motor."""
+    return np.linalg.inv(motors.steps_per_mm)
+
+
 def value_mm(cell: Cell) -> float:
     """The most that one value of the servo changes the height by [mm]."""
     steps = np.diff(np.array(cell.servo.table), axis=0)
@@ -311,7 +390,7 @@ def value_mm(cell: Cell) -> float:
 
 def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
     """(n,) which steps (n, 3) are a servo's lift alone: what they go beside it rounding need not leave."""
-    return np.linalg.norm(steps_mm[:, :2], axis=1) < 0.5 * 10.0**-cell.decimals
+    return np.hypot(steps_mm[:, 0], steps_mm[:, 1]) < 0.5 * unit_mm(cell)
 
 
 def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
@@ -319,15 +398,19 @@ def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
     each a move."""
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
     lengths_mm = np.linalg.norm(ways_mm[:, :2], axis=1)
-    part_mm = least_move_mm(cell) + 2**0.5 * 10.0**-cell.decimals
-    return np.clip(lengths_mm // part_mm, 1, np.maximum(1, steps)).astype(int)
+    return np.clip(lengths_mm // least_part_mm(cell), 1, np.maximum(1, steps)).astype(int)
+
+
+def least_part_mm(cell: Cell) -> float:
+    """Parts of a way that are as long are moves, however their ends are rounded."""
+    return least_move_mm(cell) + 2**0.5 * unit_mm(cell)
 
 
 def least_move_mm(cell: Cell) -> float:
     """No move is shorter, between places as they are written: of rounded ones the square of a distance is whole, in
     units, and none is as long as that by a hair."""
-    unit_mm = 10.0**-cell.decimals
-    return unit_mm * (max(2.0, round(LEAST_MM / unit_mm)) ** 2 + 0.5) ** 0.5
+    unit = unit_mm(cell)
+    return unit * (max(2.0, round(LEAST_MM / unit)) ** 2 + 0.5) ** 0.5
 
 
 # no move is shorter, nor than two units of the last decimal: rounded, it would go anywhere or nowhere, and a robot that
@@ -354,4 +437,8 @@ def why_no_waiting(cell: Cell) -> str:
     """Why a program for this cell cannot wait for a person; "" where it can."""
     if cell.language == "ros2":
         return "a trajectory cannot wait for a person"
+    if cell.motors:
+        return "the board cannot wait for a person"
+    if cell.pen:
+        return "a pen plotter cannot wait for a person"
     return "a servo's brush falls while the program waits" if cell.servo else ""

@@ -42,8 +42,9 @@ def check(cell: Cell) -> None:
             where="heights.clearance_mm",
             code="cell-heights",
         )
-    if (table := NEEDED_BY.get(cell.language)) and getattr(cell, table) is None:
-        raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
+    for table in NEEDED_BY.get(cell.language, ()):
+        if getattr(cell, table) is None:
+            raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
     least = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
     if cell.speeds.acceleration_mm_s2 < least:
         greatest = entries(Speeds)["acceleration_mm_s2"].greatest
@@ -59,9 +60,15 @@ def check(cell: Cell) -> None:
     _check_workspace(cell)
     if cell.machine and cell.machine.map_mm:
         _check_map(cell.machine.map_mm)
+    if cell.pen:
+        _check_pen(cell)
+    if cell.motors:
+        _check_motors(cell)
     if cell.servo:
         _check_servo(cell)
-        _check_machine_of_servo(cell)
+        _check_machine_keeps_heights(
+            cell, "servo, whose depth goes in steps"
+        )  # at which a way would jump aside
     _check_paint(cell)
     if cell.arm:
         _check_arm(cell)
@@ -245,10 +252,60 @@ def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
     return nearest, farthest
 
 
+def _check_pen(cell: Cell) -> None:
+    pen = cell.pen
+    if cell.language != "hpgl":
+        sentence = f"language {cell.language!r} tells heights: a pen that knows none is for hpgl"
+        raise Error(sentence, where="pen", code="out-of-range")
+    frame = robot_from_paper(cell)
+    if abs(frame[2, 3]) > 1e-9 or normal_tilt_deg(frame) > 1e-9:
+        sentence = "a pen is up or down over the paper: it must lie level, at z 0"
+        raise Error(sentence, where="paper", code="paper-tilted")
+    if pen.down_mm < cell.heights.lowest_mm:
+        sentence = f"down_mm {pen.down_mm:g} is below lowest_mm {cell.heights.lowest_mm:g}"
+        raise Error(sentence, where="pen.down_mm", code="cell-heights")
+    if cell.stations or cell.reload:
+        sentence = "a pen that is up or down goes into no vessel: stations and reload must go"
+        raise Error(sentence, where="stations", code="cell-station")
+    for number, colour in enumerate(pen.colours, 1):
+        if not re.fullmatch("#[0-9a-fA-F]{6}", colour) or colour.lower() in map(
+            str.lower, pen.colours[: number - 1]
+        ):
+            sentence = f"colour {colour[:24]!r} of pen {number} is not written as #rrggbb, or given twice"
+            raise Error(sentence, where="pen.colours", code="colour-invalid")
+    _check_machine_keeps_heights(cell, "pen, which knows no height", "height_mm")
+
+
+MOST_STEPS_S = 25_000  # of each motor of an EBB
+MOST_VALUE = 65_535  # of its servo
+
+
+def _check_motors(cell: Cell) -> None:
+    if cell.language != "ebb":
+        sentence = f"language {cell.language!r} tells no steps: motors that are told them are for ebb"
+        raise Error(sentence, where="motors", code="out-of-range")
+    rows = np.array(cell.motors.steps_per_mm)
+    if np.linalg.cond(rows) > 1e3:
+        sentence = "both motors turn for the same way: no place can be told by them"
+        raise Error(sentence, where="motors.steps_per_mm", code="out-of-range")
+    most_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
+    for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
+        if (speed := getattr(cell.speeds, name)) > most_mm_s:
+            raise Error(
+                f"{speed:g} mm/s is outside the range [{LEAST_SPEED_MM_S['ebb']:g}, {most_mm_s:.1f}] mm/s, in which no "
+                f"motor makes more than {MOST_STEPS_S} steps in a second",
+                where=f"speeds.{name}",
+                code="out-of-range",
+            )
+    if (value := max(row[1] for row in cell.servo.table)) > MOST_VALUE:
+        sentence = f"value {value:g} is outside the range [0, {MOST_VALUE}] of 1/12 microseconds"
+        raise Error(sentence, where="servo.table", code="servo-table")
+
+
 def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
     lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
-    if NEEDED_BY.get(cell.language) == "servo" and not lies_level:
+    if "servo" in NEEDED_BY.get(cell.language, ()) and not lies_level:
         raise Error(
             "a servo's heights are those over the paper: it must lie level, at z 0",
             where="paper",
@@ -328,13 +385,12 @@ def _check_map(map_mm: tuple) -> None:
             )
 
 
-def _check_machine_of_servo(cell: Cell) -> None:
-    """Its height goes in steps, at which a way would have to jump aside."""
-    for key in ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"):
-        values = getattr(cell.machine, key, ())
+def _check_machine_keeps_heights(cell: Cell, whose: str, *keys: str) -> None:
+    for key in ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm", *keys):
+        values = np.atleast_1d(getattr(cell.machine, key, ())).tolist()
         if np.any(values):
             raise Error(
-                f"{key} {list(values)} is outside the range [0, 0] of a servo, whose depth goes in steps",
+                f"{key} {values} is outside the range [0, 0] of a {whose}",
                 where=f"machine.{key}",
                 code="cell-machine",
             )

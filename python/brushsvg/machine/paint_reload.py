@@ -128,7 +128,7 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
     without. Error for a colour that no station serves.
     """
     if not cell.reload:
-        return _pens(loads, first_stroke) if may_pause(cell) else ()
+        return _pens(loads, cell, first_stroke) if may_pause(cell) else ()
     painted, due = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
     found, last, used_mm = [()] * len(painted), None, 0.0
     with suppress(Error):  # what no station serves is not on the brush
@@ -151,16 +151,23 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
 
 
 def may_pause(cell: Cell) -> bool:
-    """Whether the program stops for another pen."""
-    return cell.pause_per_colour and not why_no_waiting(cell)
+    """Whether the program stops for another pen, or takes it by itself."""
+    return cell.pause_per_colour and (has_pens(cell) or not why_no_waiting(cell))
+
+
+def has_pens(cell: Cell) -> bool:
+    """Whether the machine takes pens of several colours by itself."""
+    return bool(cell.pen and cell.pen.colours)
 
 
 def pen(colour: str) -> Station:
-    """Where a person takes another pen or brush: wherever the tool is, at the safe height."""
+    """Where a person, or the plotter, takes another pen or brush: wherever the tool is, at the safe height."""
     return Station(f"pen {colour.lower().lstrip('#')}", (), by_hand=True)
 
 
-def _pens(loads: PlanInLoads, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
+def _pens(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
+    if has_pens(cell):
+        return _pens_of_plotter(loads, cell, first_stroke)
     changed = [False] + [
         bool(a.colour and b.colour) and a.colour.lower() != b.colour.lower() for a, b in pairwise(loads.loads)
     ]
@@ -174,9 +181,27 @@ def _pens(loads: PlanInLoads, first_stroke: int) -> tuple[tuple[Station, ...], .
     )
 
 
+def _pens_of_plotter(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
+    """The first pen is taken, too. Strokes without a colour are drawn with pen 1. Error for a colour that none has."""
+    colours = [colour.lower() for colour in cell.pen.colours]
+    found, last = [()] * (first_stroke - 1), ""
+    for a_pass in loads.loads[first_stroke - 1 :]:
+        colour = a_pass.colour.lower() or colours[0]
+        if colour not in colours:
+            raise Error(
+                f"no pen of cell {cell.name} has colour {colour}; there are {', '.join(colours)}",
+                a_pass.stroke,
+                code="colour-not-served",
+            )
+        found.append((pen(colour),) if colour != last else ())
+        last = colour
+    return tuple(found)
+
+
 def pens_changed(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> int:
     """How often strokes ask for another pen than the one before, on a cell without paint."""
-    return 0 if cell.reload else sum(map(bool, _pens(loads, first_stroke)))
+    taken = () if cell.reload else _pens(loads, cell, first_stroke)
+    return sum(map(bool, taken)) - (1 if taken and has_pens(cell) else 0)
 
 
 def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[Notice]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from .cell import Cell, robot_from_paper
+from .cell import Cell, robot_from_paper, unit_mm
 from .corner_blending import blend_radii, blended
 from .distortion import true_pass
 from .paint_reload import PlanInLoads
@@ -47,13 +47,18 @@ CUT_IN_AIR_MM = (
 
 
 def check_rounding(cell: Cell, tolerance_mm: float) -> None:
-    """Error where the cell's decimals alone move places by more than a fifth of a plan's tolerance."""
-    rounded_mm = 0.5 * 10.0**-cell.decimals
-    if rounded_mm > tolerance_mm / 5:
+    """Error where the units of the cell's language alone move places by more than a fifth of a plan's tolerance, or a
+    quarter where they are the language's own."""
+    rounded_mm, part = 0.5 * unit_mm(cell), "a fifth"
+    most_mm = tolerance_mm / 5
+    if own := unit_mm(cell) != 10.0**-cell.decimals:
+        most_mm, part = tolerance_mm / 4, "a quarter"
+    if rounded_mm > most_mm + 1e-9:
+        units = f"units of {unit_mm(cell):g} mm" if own else f"{cell.decimals} decimals"
         raise Error(
-            f"{cell.decimals} decimals of cell {cell.name} round places by up to {rounded_mm:g} mm, outside the "
-            f"range [0, {tolerance_mm / 5:g}] mm, a fifth of the tolerance",
-            where="decimals",
+            f"{units} of cell {cell.name} round places by up to {rounded_mm:g} mm, outside the "
+            f"range [0, {most_mm:g}] mm, {part} of the tolerance",
+            where="" if own else "decimals",
             code="decimals-too-few",
         )
 

@@ -79,6 +79,9 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         sentence = f"stroke {first} is outside the range [1, {count}] of this job"
         return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
+    if cell.pen and job.z_offset_mm:
+        sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be told"
+        problems.append(Notice("", sentence, code="pen-depth"))
     told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
         [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
@@ -116,12 +119,15 @@ def _as_run(a_pass, made: Program):
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
     """The same for a program's ways, its rise before the first move included."""
     ends: list = []
+    home = _home(made)
 
     def sections() -> Iterator[Section]:
+        yield from home
         for section in made.sections():
             if moves := section.moves:
                 ends[:] = [ends[0] if ends else moves[0].points_mm[0], moves[-1].points_mm[-1]]
             yield section
+        yield from home
 
     frame, height_mm = made.robot_from_frame, made.rise_mm
     found = walked_astray(sections(), frame, made.cell, sheet_mm)
@@ -130,6 +136,15 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
         ends = list(moved(frame, np.reshape(ends, (-1, 3))))
         frame, height_mm = np.eye(4), made.rise_in_robot_mm
     return found + rise_astray(height_mm, ends, frame, made.cell)
+
+
+def _home(made: Program) -> tuple[Section, ...]:
+    """Where motors that are told steps alone begin, and end: over the robot's origin."""
+    if made.cell.motors is None:
+        return ()
+    place = moved(np.linalg.inv(made.robot_from_frame), np.array([[0.0, 0.0, made.cell.heights.safe_mm]]))
+    travel = Move("travel", place, made.cell.speeds.travel_mm_s)
+    return (Section("home: where the motors begin and end", (travel,)),)
 
 
 def out_of_arm(made: Program, sheet_mm) -> list[Notice]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import _core
 from .arc_chords import OFF_MM, with_chords_on
-from .cell import RADII_MM, Cell, least_move_mm
+from .cell import RADII_MM, Cell, least_move_mm, rounded, unit_mm
 from .corner_blending import ON_THE_SPOT_MM
 from .distortion import leans, told_pass
 from .frames import is_upright, moved
@@ -40,28 +40,28 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     written is what the cell's machine is told for it."""
     a_pass = told_pass(a_pass, cell)
     post = POSTS.get(cell.language)
-    unit_mm = 10.0**-cell.decimals
+    unit = unit_mm(cell)
     meant = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     told_by = circles_by(cell)
     in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
     # what leans is told to go aside for it to go straight down, which it does up to rounding
-    sideways_mm = 2 * unit_mm if leans(cell.machine) else ON_THE_SPOT_MM
+    sideways_mm = 2 * unit if leans(cell.machine) else ON_THE_SPOT_MM
     if in_robot and not is_upright(frame):
-        sideways_mm = 2 * unit_mm  # up and down are only so up to rounding
+        sideways_mm = 2 * unit  # up and down are only so up to rounding
         told_by = ""  # and circles lie in no plane that the robot knows
 
-    def rounded(poses: np.ndarray) -> np.ndarray:
+    def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
-            return moved(np.linalg.inv(frame), np.round(moved(frame, poses), cell.decimals))
-        return np.round(poses, cell.decimals)
+            return moved(np.linalg.inv(frame), rounded(moved(frame, poses), cell))
+        return rounded(poses, cell)
 
-    poses, arcs = rounded(meant), []
+    poses, arcs = on_grid(meant), []
     least_mm = least_move_mm(cell)
     if told_by:
         arcs, others = _told(a_pass.arcs, poses, told_by, cell)
         dense, arcs = with_chords_on(meant, others, arcs)
         if len(dense) > len(meant):
-            meant, poses = dense, rounded(dense)
+            meant, poses = dense, on_grid(dense)
     kept = _kept(poses, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):
         arcs = [
@@ -90,15 +90,15 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
 def _told(arcs, poses: np.ndarray, told_by: str, cell: Cell) -> tuple[list, list]:
     """The arcs that are told as circles, those that come back to where they began or beyond in parts, and none where no
     more than a tiny move would lead to it or away from it; and the others."""
-    unit_mm, least_mm = 10.0**-cell.decimals, least_move_mm(cell)
+    unit, least_mm = unit_mm(cell), least_move_mm(cell)
 
     def is_tiny(first: int, last: int) -> bool:
         return first != last and dist(poses[first], poses[last]) < least_mm
 
     told, others, done = [], [], 0
-    for part in chain.from_iterable(_parts(arc, poses, CIRCLE_UNITS * unit_mm) for arc in arcs):
+    for part in chain.from_iterable(_parts(arc, poses, CIRCLE_UNITS * unit) for arc in arcs):
         if (
-            _is_told(poses[part.first : part.last + 1, :2], told_by, CIRCLE_UNITS * unit_mm)
+            _is_told(poses[part.first : part.last + 1, :2], told_by, CIRCLE_UNITS * unit)
             and _is_round(poses[[part.first, part.last], :2] - part.centre_mm, cell)
             and not is_tiny(done, part.first)
             and not is_tiny(part.last, len(poses) - 1)
@@ -136,7 +136,7 @@ PART_RAD, MOST_RAD = (
 def _is_round(spokes: np.ndarray, cell: Cell) -> bool:
     """Whether the firmware takes a circle with the spokes (2, 2) to its ends for one, and keeps near it."""
     first, last = np.linalg.norm(spokes, axis=1).tolist()
-    near_mm = RADII_MM.get(cell.language, inf) - 1.5 * 10.0**-cell.decimals  # its centre is rounded, too
+    near_mm = RADII_MM.get(cell.language, inf) - 1.5 * unit_mm(cell)  # its centre is rounded, too
     sagitta_mm = cell.arc_segment_mm**2 / (8 * max(first, 1e-9))
     return abs(first - last) <= near_mm and sagitta_mm <= OFF_MM
 

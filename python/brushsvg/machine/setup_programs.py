@@ -42,7 +42,9 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
     """
     if why := why_no_waiting(cell):
         raise Error(
-            f"{why}, as a first run must", code="cannot-wait", advice="use border and height one by one"
+            f"{why}, as a first run must",
+            code="cannot-wait",
+            advice="use border" if cell.pen else "use border and height one by one",
         )
     width, height = sheet_mm
     high_mm = _highest_air(cell, sheet_mm) - cell.heights.safe_mm
@@ -151,11 +153,8 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
         slow_mm_s = approach_mm_s(brush, cell)
-        steps = [
-            step
-            for corner in path[1:]
-            for step in (Wait(CORNER_WAIT_S), Move("look", corner[None], slow_mm_s))
-        ]
+        waits = () if cell.pen else (Wait(CORNER_WAIT_S),)  # a pen plotter is told no time
+        steps = [step for corner in path[1:] for step in (*waits, Move("look", corner[None], slow_mm_s))]
         yield Section("border of the job, at safe height", (start, *steps))
 
     return _unless_astray(sections, brush, cell, sheet_mm, z_offset_mm)
@@ -168,6 +167,9 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
     Error when they do not fit on the sheet or go deeper than brush or cell allow.
     """
     heights = strokes_at(highest_mm, lowest_mm, step_mm)
+    if cell.pen:
+        sentence = f"the pen of cell {cell.name} is up or down: it tries no heights in between"
+        raise Error(sentence, code="pen-depth")
     if lowest_mm < cell.heights.lowest_mm or -lowest_mm > brush.depth_range_mm[1]:
         least = max(cell.heights.lowest_mm, -brush.depth_range_mm[1])
         raise Error(

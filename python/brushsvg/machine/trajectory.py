@@ -49,47 +49,67 @@ def _moved(move: Move, here: tuple, now_s: float, a: float, decimals: int, rows:
     at = np.flatnonzero(goes) + 1
     steps, lengths = steps[goes], lengths[goes]
     top = move.speed_mm_s
-    speeds = _speeds(lengths.tolist(), _caps(move, at, steps, lengths, a).tolist(), top, a)
+    caps = joint_caps(move.blends_mm, at, steps, lengths, a).tolist()
     places = path[at].tolist()
-    for k, length in enumerate(lengths.tolist()):
-        begin, end = speeds[k], speeds[k + 1]
-        peak = min(top, sqrt(a * length + (begin * begin + end * end) / 2))
-        rising_s, falling_s = (peak - begin) / a, (peak - end) / a
-        even_mm = max(length - (2 * peak * peak - begin * begin - end * end) / (2 * a), 0.0)
-        even_s = even_mm / peak if even_mm > LEAST_MM else 0.0
+    for k, when_s, done_mm in paced(lengths.tolist(), caps, [top] * len(lengths), a, now_s):
         there = places[k]
-        changes = max(rising_s, falling_s) > SLICE_S / 2
-        for after_s, done_mm in (
-            () if not changes else _slices(begin, peak, rising_s, even_s, falling_s, length, end, a)
-        ):
-            part = done_mm / length
-            place = (x + part * (to - x) for x, to in zip(here, there, strict=True))
-            rows.append((now_s + after_s, *place, top, WAY))
-        now_s += rising_s + even_s + falling_s
-        here = tuple(there)
-        rows.append((now_s, *here, top, POSE))
+        if done_mm is None:
+            now_s, here = when_s, tuple(there)
+            rows.append((now_s, *here, top, POSE))
+            continue
+        part = done_mm / lengths[k]
+        place = (x + part * (to - x) for x, to in zip(here, there, strict=True))
+        rows.append((when_s, *place, top, WAY))
     return now_s, here
 
 
-def _caps(move: Move, at: np.ndarray, steps: np.ndarray, lengths: np.ndarray, a: float) -> np.ndarray:
-    """(n - 1,) the most that the speed may be through each joint of n lines."""
+def paced(
+    lengths: list[float], caps: list[float], tops: list[float], a: float, now_s: float = 0.0
+) -> Iterator[tuple[int, float, float | None]]:
+    """(line, when [s], how far on the line [mm], None for its end) of n lines [mm] that follow each other, from rest to
+    rest. caps: (n - 1) the most that the speed may be in each joint; tops: (n,) on each line [mm/s]."""
+    speeds = _speeds(lengths, caps, tops, a)
+    for k, length in enumerate(lengths):
+        begin, end = speeds[k], speeds[k + 1]
+        if begin == end == tops[k]:  # most by far
+            now_s += length / begin
+            yield k, now_s, None
+            continue
+        peak = min(tops[k], sqrt(a * length + (begin * begin + end * end) / 2))
+        rising_s, falling_s = (peak - begin) / a, (peak - end) / a
+        even_mm = max(length - (2 * peak * peak - begin * begin - end * end) / (2 * a), 0.0)
+        even_s = even_mm / peak if even_mm > LEAST_MM else 0.0
+        if max(rising_s, falling_s) > SLICE_S / 2:
+            for after_s, done_mm in _slices(begin, peak, rising_s, even_s, falling_s, length, end, a):
+                yield k, now_s + after_s, done_mm
+        now_s += rising_s + even_s + falling_s
+        yield k, now_s, None
+
+
+def joint_caps(
+    blends_mm: np.ndarray | None, at: np.ndarray, steps: np.ndarray, lengths: np.ndarray, a: float
+) -> np.ndarray:
+    """(n - 1,) the most that the speed may be through each joint of n lines, the k-th of which ends at point at[k] - 1
+    of those that have blends."""
     count = len(lengths)
-    if move.blends_mm is None or count < 2:
+    if blends_mm is None or count < 2:
         return np.zeros(count - 1)
     along = steps / lengths[:, None]
     cosine = np.clip((along[1:] * along[:-1]).sum(axis=1), -1.0, 1.0)
     bend = np.sqrt((1 - cosine) / np.maximum(1 + cosine, 1e-12))  # tan(t / 2)
-    radii = move.blends_mm[at[:-1] - 1]
+    radii = blends_mm[at[:-1] - 1]
     return np.sqrt(np.divide(a * radii, bend, out=np.full(count - 1, np.inf), where=bend > 1e-7))
 
 
-def _speeds(lengths: list[float], caps: list[float], top: float, a: float) -> list[float]:
+def _speeds(lengths: list[float], caps: list[float], tops: list[float], a: float) -> list[float]:
     """At both ends of each line and in all joints: what can be reached, and left in time."""
-    speeds = [0.0, *(min(cap, top) for cap in caps), 0.0]
+    speeds = [0.0, *map(min, caps, tops[:-1], tops[1:]), 0.0]
     for k, length in enumerate(lengths):
-        speeds[k + 1] = min(speeds[k + 1], sqrt(speeds[k] ** 2 + 2 * a * length))
+        if speeds[k + 1] > speeds[k]:
+            speeds[k + 1] = min(speeds[k + 1], sqrt(speeds[k] ** 2 + 2 * a * length))
     for k in range(len(lengths) - 1, -1, -1):
-        speeds[k] = min(speeds[k], sqrt(speeds[k + 1] ** 2 + 2 * a * lengths[k]))
+        if speeds[k] > speeds[k + 1]:
+            speeds[k] = min(speeds[k], sqrt(speeds[k + 1] ** 2 + 2 * a * lengths[k]))
     return speeds
 
 

@@ -46,6 +46,8 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                     f"cell {cell.name} tells apart: nothing would be painted"
                 )
                 found.append(Notice("", sentence, code="never-pressed"))
+            if cell.pen:
+                found += _off_pen(poses, cell)
             if cell.servo:
                 found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
@@ -176,15 +178,33 @@ def _heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
         yield Notice("", f"height {lowest:.1f} mm is outside the range {reach}", code="too-low")
 
 
+def _off_pen(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
+    """A notice for the first place where a pass is not drawn at the one height that a pen has."""
+    goes = np.linalg.norm(np.diff(poses[:, :2], axis=0), axis=1) > 1e-9
+    drawn = np.r_[goes, False] | np.r_[False, goes]
+    drawn[poses[:, 2].argmin()] = True  # of a dab, the deepest place
+    for k in np.flatnonzero(drawn & (np.abs(poses[:, 2] - cell.pen.down_mm) > PEN_MM))[:1]:
+        x, y, height = poses[k]
+        sentence = (
+            f"near x {x:.1f}, y {y:.1f} mm the height is {height:.3f} mm: the pen of cell {cell.name} is up or at "
+            f"{cell.pen.down_mm:g} mm, and draws at no other height"
+        )
+        yield Notice("", sentence, code="pen-depth")
+
+
+PEN_MM = 0.005  # of height, that no pen shows
+
+
 def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:
     """A notice for a way that a servo could not go: its values change along with moves beside the lift, by no more than
-    two steps with any part that the rounding leaves, and whose feed must not be below grbl's least."""
+    two steps with any part that the rounding leaves, and whose feed must not be below the least."""
     steps = np.diff(poses, axis=0)
     flat_mm, way_mm = np.linalg.norm(steps[:, :2], axis=1), np.linalg.norm(steps, axis=1)
     rises_mm = np.abs(steps[:, 2])
+    least_mm_min = 60 * LEAST_SPEED_MM_S.get(cell.language, LEAST_MM_MIN / 60)
     is_steep = (rises_mm > cell.servo.step_mm + 1e-9) & (
         (rises_mm > 2 * cell.servo.step_mm * servo_parts(steps, cell))
-        | (60 * fastest_mm_s * flat_mm < LEAST_MM_MIN * way_mm)
+        | (60 * fastest_mm_s * flat_mm < least_mm_min * way_mm)
     )
     for k in np.flatnonzero(is_steep & ~servo_stands(steps, cell))[:1]:
         x, y, _ = poses[k]

@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..machine.arc_chords import with_chords
-from ..machine.cell import Cell, value_mm
+from ..machine.cell import Cell, least_move_mm, unit_mm, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
 from .simulate_program import Problems, Ran, chords, slack_mm
@@ -88,7 +88,8 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     """Where a pass that was read, its poses in these lines of the program, does not run where it should, in the order
     in which it should, or not as fast."""
     meant = _with_circles_of(a_pass, meant)
-    limit_mm = max(STRAY_MM, slack_mm(cell))
+    # where units are coarse, a pose gives way to one that is less than a move away
+    limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # a servo's height goes in steps of whole values, beside the line by half of both
     beside_mm = (cell.servo.step_mm + value_mm(cell)) / 2 if cell.servo else 0.0
     steepness = limit_mm / (limit_mm + beside_mm)

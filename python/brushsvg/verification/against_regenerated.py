@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import _core
-from ..machine.cell import Cell, value_mm
+from ..machine.cell import Cell, unit_mm, value_mm
 from ..machine.header_lines import header_of
 from ..machine.motion import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
@@ -233,8 +233,8 @@ class _Alike:
 
     def __init__(self, cell: Cell, header_ranges: tuple = ((0.0, math.inf), (0.0, math.inf))):
         self.length_mm, self.time_s = header_ranges
-        self.near_mm = max(NEAR_MM, 3.1 * 10.0**-cell.decimals)
-        self.blends = max(BLENDS, BLENDS_PER_MM * 10.0**-cell.decimals)
+        self.near_mm = max(NEAR_MM, 3.1 * unit_mm(cell))
+        self.blends = max(BLENDS, BLENDS_PER_MM * unit_mm(cell))
         if cell.servo:
             # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
             self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s

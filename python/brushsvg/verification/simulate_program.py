@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from ..machine.cell import Blending, Cell, robot_from_paper, value_mm
+from ..machine.cell import Blending, Cell, robot_from_paper, unit_mm, value_mm
 from ..machine.corner_blending import blend_radii
 from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
 from ..machine.frames import is_upright, moved
@@ -52,8 +52,8 @@ class Ran:
 
 
 def slack_mm(cell: Cell) -> float:
-    """How far the heights of a program may be off by rounding alone: its decimals, or a servo's whole values."""
-    return max(TOUCH_MM, 1.1 * 10.0**-cell.decimals) + (value_mm(cell) / 2 if cell.servo else 0.0)
+    """How far the heights of a program may be off by rounding alone: its units, or a servo's whole values."""
+    return max(TOUCH_MM, 1.1 * unit_mm(cell)) + (value_mm(cell) / 2 if cell.servo else 0.0)
 
 
 def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
@@ -336,7 +336,7 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool
     if leans or cell.servo is None:
         sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
         slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
-        for k in np.flatnonzero(slower & (sideways < 2 * 10.0**-cell.decimals)):
+        for k in np.flatnonzero(slower & (sideways < 2 * unit_mm(cell))):
             poses[k + 1, :2] = poses[k, :2]
     arcs = _arcs(owner, track.centres)
     for arc in arcs:  # at one depth, but for what is rounding
@@ -409,7 +409,7 @@ def _ahead(
     ends_s = np.cumsum(took_s + np.r_[0.0, [step.wait_s for step in steps[:-1]]])
     begins_s, ends_mm = ends_s - took_s, np.cumsum(ways_mm)
     # a steep way is slow: what rounding makes of its ends takes its time
-    rounded_s = np.divide(0.71 * 10.0**-cell.decimals, speeds, out=np.zeros(len(steps)), where=took_s > 0)
+    rounded_s = np.divide(0.71 * unit_mm(cell), speeds, out=np.zeros(len(steps)), where=took_s > 0)
     rounded_s = np.max([rounded_s, np.r_[rounded_s[1:], 0.0], np.r_[0.0, rounded_s[:-1]]], axis=0)
     begins_mm = ends_mm - ways_mm
     starts, ends = np.minimum(before[:, 2], top_mm), np.minimum(after[:, 2], top_mm)

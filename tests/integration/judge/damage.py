@@ -355,6 +355,49 @@ SCRIPTS = {
         says='tp_log("{}")',
         rates=(r"(set_velx\()(\d+\.\d+)", r"(radius=)(\d+\.\d+)", r"(set_accx\()(\d+\.\d+)"),
     ),
+    "hpgl": Script(
+        remark='CO "',
+        moves=r"PA-?\d|PU|PD",
+        words=(
+            *(("PA", "PR"), ("PU", "PD"), ("PD", "PU"), ("PA", "PD"), ("PD", "PA"), (",", ";"), (";", "")),
+            *((";", ","), ("PA", "PU"), ("PA", "pa"), ("VS", "SP"), ("SP", "VS"), ("PU;", ""), ("PA", "AA")),
+        ),
+        modes=(
+            *(("IN", ""), ("IN", "DF"), ("PA;", "PR;"), ("SP1", "SP2"), ("SP1", "SP"), ("SP0", "SP1")),
+            *(("PA;", ""), ("VS2", "VS38"), ("VS", "FS")),
+        ),
+        offsets=r"PA\d",
+        shifts=(-4000, -40, -1, 1, 400),
+        more=(
+            *("SC0,100,0,100;", "IP0,0,4000,4000;", "RO90;", "PR;", "IN;", "PD;", "PU;", "SP2;", "VS38;"),
+            *("EA1000,1000;", "CI200;", "LBx;", "PD0,0;", "PA0,0;", "PG;", "VS1;"),
+        ),
+        says="LB{};",
+        rates=(r"(VS)(\d+)",),
+        after=1,
+        decimals=0,
+    ),
+    "ebb": Script(
+        remark="#",
+        moves=r"SM|S2",
+        words=(
+            *(("SM", "XM"), ("SM", "LM"), ("S2", "SP"), ("SM", "S2"), ("S2", "SM"), (",-", ","), (",", ";")),
+            *((",0,0", ",0"), (",4,", ",5,"), ("SM", "sm"), (",0,", ",1,"), (",", ",-"), (",4,0,0", ",4")),
+        ),
+        modes=(
+            *(("EM,1,1", "EM,2,2"), ("EM,1,1", "EM,0,0"), ("EM", ""), ("SR,0,1", "SR,60000,1"), ("SR", "")),
+            *(("SR,0,1", "SR,0,0"), (",4,0,", ",4,100,")),
+        ),
+        offsets=r"SM",
+        shifts=(-800, -80, -1, 1, 80),
+        more=(
+            *("SM,500,100,100", "SP,0", "SP,1", "TP", "CS", "HM,4000", "EM,0,0", "EM,1,1", "R", "SC,4,12000"),
+            *("SM,500,0,0", "S2,0,4", "S2,15000,4,0,0", "XM,100,10,10", "SR,0,1", "QG", "SR,60000"),
+        ),
+        says="says,{}",
+        rates=(r"(SM,)(\d+)", r"(S2,\d+,4,0,)(\d+)"),
+        decimals=0,
+    ),
     "ros2": Script(
         remark="#",
         moves=r"-?\d",
@@ -412,12 +455,14 @@ class Page:
 
     def sections(self) -> list[tuple[int, int]]:
         """First and last line behind of what stands under each title."""
-        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan", "ros2"))
+        last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan", "ros2", "ebb"))
         last = min(last - (self.script.after if self.script else 0), self.data)
         ends = [*self.titles[1:], last]
         return list(zip(self.titles, ends, strict=True))
 
     def made(self, words: str) -> str:
+        if self.dialect == "hpgl":
+            return f'CO "{words}";'
         end = " ;" if self.remark.startswith(" : ") else ""
         return f"{self.remark} {words}{end}" if self.script else f"({words})"
 

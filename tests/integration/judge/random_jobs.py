@@ -37,7 +37,7 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
     suffix = CELLS[dialect][1]
     source, toml = put(folder / "drawing.svg", svg), put(folder / "mine.toml", write_cell(cell))
     brush = put(folder / "mine.json", _core.write_brush(random_brush(random)))
-    flags += ("--brush", str(brush))
+    flags += ("--brush", "rigid" if dialect == "hpgl" else str(brush))  # a pen has one height
     program, plan = folder / f"program{suffix}", folder / "plan.json"
     program.unlink(missing_ok=True)
     try:
@@ -55,7 +55,7 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
             return Tried(dialect, number, tuple(said))
         wrong.append(f"no plan: {said}")
         return Tried(dialect, number, (), tuple(wrong))
-    job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), str(brush), flags)
+    job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
     run = job.interpret(text)
     wrong += [f"the controller stops: {run.refused}"] if run.refused else []
     wrong += [f"acts: {what}" for what in run.acts]

@@ -13,7 +13,7 @@ from brushsvg.machine.cell import Blending, Machine, Paper, Reload, Servo, Stati
 from brushsvg.machine.cell_file import find_cell
 
 from .verdict import ROBOTS
-from .works import CELLS
+from .works import CELLS, FLAT
 
 SHEET = (80.0, 60.0)
 
@@ -78,35 +78,59 @@ def random_cell(random, dialect: str):
     )
     cell = replace(cell, speeds=speeds, decimals=int(random.choice((3, 3, 3, 4, 5, 6))))
     paper = Paper()
-    if dialect == "grbl-servo":
+    if dialect in FLAT:
         if random.random() < 0.4:
             paper = Paper(
                 (*random.uniform(-300, 300, 2).tolist(), 0.0), (0.0, 0.0, float(random.uniform(0, 360)))
             )
-        cell = replace(cell, servo=_servo(random, lowest, safe))
+        if dialect == "grbl-servo":
+            cell = replace(cell, servo=_servo(random, lowest, safe))
+        elif dialect == "ebb":
+            servo = _servo(random, lowest, safe)
+            table = tuple((height, round(20 * value + 5000)) for height, value in servo.table)
+            cell = replace(cell, servo=replace(servo, table=table))
+        else:
+            speeds = {name: max(10.0, getattr(cell.speeds, name)) for name in NEVER_SLOWER}
+            cell = replace(cell, speeds=replace(cell.speeds, **speeds), decimals=3)
     elif random.random() < 0.8:
         leans = random.uniform(-1, 1, 2) * (0 if random.random() < 0.4 else 9 if dialect in ROBOTS else 1.3)
         paper = Paper(
             tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360)))
         )
-    if random.random() < 0.25 and dialect != "grbl-servo":
+    if dialect == "ebb" and paper.rotation_deg[2]:  # its motors begin over the sheet
+        turn = np.radians(paper.rotation_deg[2])
+        x, y = random.uniform((0, 0), SHEET)
+        place = (-x * np.cos(turn) + y * np.sin(turn), -x * np.sin(turn) - y * np.cos(turn), 0.0)
+        paper = replace(paper, origin_mm=tuple(map(float, place)))
+    if random.random() < 0.25 and dialect not in FLAT:
         paper = _about_the_robot(random)
     cell = replace(cell, paper=paper)
     if random.random() < 0.6 and dialect in ("linuxcnc", *ROBOTS):
         radius = float(random.uniform(0.2, 5)) if dialect in ROBOTS else 0.0
         cell = replace(cell, blending=Blending(float(random.choice((0.0, 0.005, 0.01, 0.05))), radius))
+    if dialect == "ebb":
+        cell = replace(cell, blending=Blending(0.01, float(random.uniform(0.2, 5))))
     cell = _with_space(random, cell)
+    if dialect == "ebb":  # whose motors begin at the robot's origin
+        cell = replace(cell, workspace=replace(cell.workspace, reach_mm=()))
     if random.random() < 0.3:
         cell = _with_a_clip(random, cell)
-    if random.random() < 0.5:
+    if random.random() < 0.5 and dialect != "hpgl":
         cell = _with_paint(random, cell)
     (apart,) = random.spawn(1)  # so that all else is as it is on machines that go where they are told to
     return replace(cell, machine=_machine(apart, dialect)) if apart.random() < 0.5 else cell
 
 
+NEVER_SLOWER = (
+    "approach_mm_s",
+    "press_mm_s",
+    "paint_mm_s",
+)  # than a centimetre in a second, by a pen plotter
+
+
 def _machine(random, dialect: str) -> Machine:
     """One that goes elsewhere: little, or as far as a cell may say; of a servo, no depth hangs on it."""
-    much, is_servo = random.random() < 0.3, dialect == "grbl-servo"
+    much, is_servo = random.random() < 0.3, dialect in FLAT
 
     def pair(little: float, large: float) -> tuple:
         return tuple((random.uniform(-1, 1, 2) * (large if much else little)).tolist())
@@ -119,7 +143,7 @@ def _machine(random, dialect: str) -> Machine:
     elif random.random() < 0.5:
         found = replace(found, scale=(1 + pair(0.02, 0.09)[0],) * 2)  # circles stay round
     if random.random() < 0.5:
-        found = replace(found, height_mm=pair(0.4, 2.0)[0])
+        found = found if dialect == "hpgl" else replace(found, height_mm=pair(0.4, 2.0)[0])
         found = found if is_servo else replace(found, tilt_mm_per_mm=pair(0.005, 0.03))
     if random.random() < 0.4 and not is_servo:
         found = replace(found, map_mm=_map(random, 3.0 if much else 0.6))
@@ -230,7 +254,7 @@ def _with_paint(random, cell):
         stations.append(station)
     if not any(not station.colours for station in stations):
         return cell
-    if cell.language != "grbl-servo" and random.random() < 0.2:
+    if cell.language not in FLAT and random.random() < 0.2:
         stations[0] = Station(stations[0].name, stations[0].place_mm, stations[0].colours, by_hand=True)
     when = str(random.choice(("length", "stroke", "layer")))
     return replace(cell, reload=Reload(when, float(random.uniform(25, 150)), 4.0), stations=tuple(stations))
@@ -256,7 +280,7 @@ def random_flags(random, dialect: str) -> tuple[str, ...]:
         flags += ("--corners", "turn")
     if random.random() < 0.2:
         flags += ("--order", "nearest")
-    if random.random() < 0.25 and dialect != "grbl-servo":
+    if random.random() < 0.25 and dialect not in FLAT:
         flags += ("--z-offset", f"{random.uniform(-0.5, 1.5):.2f}")
     if random.random() < 0.2:
         flags += ("--tolerance", str(random.choice(("0.02", "0.1"))))

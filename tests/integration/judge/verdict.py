@@ -17,8 +17,10 @@ import numpy as np
 from . import places
 from .dobot import run_dobot
 from .doosan import run_doosan
+from .ebb import run_ebb
 from .fanuc import run_fanuc
 from .gcode import run_gcode
+from .hpgl import run_hpgl
 from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
@@ -49,6 +51,9 @@ ROBOTS = {
     "doosan": run_doosan,
     "ros2": run_ros2,
 }
+
+
+SERVOS = ("grbl-servo", "ebb")
 
 
 @dataclass
@@ -82,7 +87,7 @@ class Job:
     def servo_mm(self) -> tuple[float, float]:
         """Of a servo: the height of one value at most, and the step; else nothing."""
         servo = self.cell.get("servo")
-        if self.language != "grbl-servo":
+        if self.language not in SERVOS:
             return 0.0, 0.0
         steps = np.diff(np.array(servo["table"], dtype=float), axis=0)
         return float(np.abs(steps[:, 0] / steps[:, 1]).max()), servo.get("step_mm", 0.1)
@@ -142,6 +147,11 @@ class Job:
             return robot(text, *of, *more)
         if self.language in ("marlin", "klipper"):
             return run_printer(text, self.language, self.start, bool(self.cell.get("arc_segment_mm")))
+        if self.language == "hpgl":
+            heights = self.cell["pen"]["down_mm"], self.cell["heights"]["safe_mm"]
+            return run_hpgl(text, self.start, *heights, self.cell["speeds"]["travel_mm_s"])
+        if self.language == "ebb":
+            return run_ebb(text, self.start, self.cell["motors"], self.cell["servo"]["table"])
         dialect = self.language.removesuffix("-servo")
         servo = self.cell["servo"]["table"] if self.language == "grbl-servo" else None
         return run_gcode(text, dialect, self.start, servo, self.cell["speeds"]["travel_mm_s"])
@@ -290,7 +300,7 @@ def _fast(way: Way, job: Job):
     if (over := ~still & (kinds != "jump") & (speeds > fastest * 1.001 + 0.01)).any():
         k = int(over.argmax())
         yield f"faster than any speed of the cell: {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
-    if job.language == "grbl-servo":
+    if job.language in SERVOS:
         yield from _jumps(way, job)
 
 
@@ -615,7 +625,7 @@ def _told(way: Way, job: Job) -> list:
     cut = [leg.cut_mm for leg in way.run.legs] if job.language == "jaka" else cuts(way, job)
     out: list = []
     for k, leg in enumerate(way.run.legs):
-        if leg.kind in ("jump", "wait") and job.language == "grbl-servo":
+        if leg.kind in ("jump", "wait") and job.language in SERVOS:
             if out and out[-1][0].kind == "lift":
                 out[-1] = (_lifted(out[-1][0], leg, job), 0.0)
             else:
@@ -642,7 +652,7 @@ def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
 
 def _same(ours: list, theirs: list, job: Job) -> bool:
     """Whether a list of legs is another within rounding, and nowhere faster."""
-    near = ROUNDING_MM if job.language != "grbl-servo" else max(ROUNDING_MM, 1.01 * job.servo_mm[0])
+    near = ROUNDING_MM if job.language not in SERVOS else max(ROUNDING_MM, 1.01 * job.servo_mm[0])
     first = 0
     while first < min(len(ours), len(theirs)) and _alike(ours[first], theirs[first], near, job):
         first += 1

@@ -31,8 +31,12 @@ CELLS = {
     "fanuc": ("lrmate200id", ".ls"),
     "doosan": ("m0609", ".drl"),
     "ros2": ("fr3", ".csv"),
+    "ebb": ("axidraw-ebb", ".ebb"),
+    "hpgl": ("hpgl-plotter", ".hpgl"),
 }
-FEWER = ("marlin", "klipper", "fluidnc")  # share writer and reader with grbl: tried less often
+FLAT = ("grbl-servo", "ebb", "hpgl")  # on paper that lies level, at z 0
+LIKE_GRBL = ("klipper", "fluidnc")  # share writer, reader and judge with others
+FEWER = ("marlin", *LIKE_GRBL, "ebb", "hpgl")  # tried less often
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 
 
@@ -65,8 +69,9 @@ def _with_arcs(cell):
 
 def _turned(cell):
     """On paper that lies askew, and higher."""
-    if cell.language == "grbl-servo":
-        return replace(cell, paper=Paper(origin_mm=(40.0, 30.0, 0.0), rotation_deg=(0.0, 0.0, 30.0)))
+    if cell.language in FLAT:
+        near = (15.0, 10.0, 0.0) if cell.motors else (40.0, 30.0, 0.0)  # to where motors begin
+        return replace(cell, paper=Paper(origin_mm=near, rotation_deg=(0.0, 0.0, 30.0)))
     paper = Paper(origin_mm=(-30.0, -450.0, 12.5), rotation_deg=(0.0, 0.0, 30.0))
     return replace(cell, paper=paper)
 
@@ -76,6 +81,12 @@ def _leaning(cell):
         return replace(
             cell, servo=replace(cell.servo, table=((-10.0, 900.0), (-2.0, 660.0), (0.0, 600.0), (5.0, 400.0)))
         )
+    if cell.language == "ebb":  # each axis with a motor, the servo the other way round
+        table = ((-10.0, 25000.0), (-2.0, 18000.0), (0.0, 16000.0), (6.0, 11000.0))
+        motors = replace(cell.motors, steps_per_mm=((80.0, 0.0), (0.0, -100.0)), servo_pin=5)
+        return replace(cell, servo=replace(cell.servo, table=table), motors=motors)
+    if cell.pen:
+        return _turned(cell)
     paper = Paper(origin_mm=(-30.0, -450.0, 12.5), rotation_deg=(1.0, -0.7, 10.0))
     return replace(cell, paper=paper)
 
@@ -84,10 +95,16 @@ def _higher(cell):
     """A servo that can lift the brush over paper that lies higher than thought."""
     if cell.language == "grbl-servo":
         return replace(cell, servo=replace(cell.servo, table=((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0))))
+    if cell.language == "ebb":
+        return replace(
+            cell, servo=replace(cell.servo, table=((-10.0, 9000.0), (0.0, 17000.0), (8.0, 24000.0)))
+        )
     return cell
 
 
 def _painted(cell):
+    if cell.pen:  # takes pens
+        return replace(cell, pen=replace(cell.pen, colours=("#000000", "#ff0000")))
     safe = cell.heights.safe_mm
     rim = min(2.0, safe - cell.heights.clearance_mm)
     ink = Station("ink", (-15.0, 20.0), surface_mm=-1.0, depth_mm=3.0, rim_mm=rim, hold_s=0.4, drip_s=0.5)
@@ -141,6 +158,15 @@ def cell_of(dialect: str, change=None):
     return replace(cell, name="mine") if change else cell
 
 
+def flags_for(flags: tuple[str, ...], dialect: str) -> tuple[str, ...]:
+    """Of a pen, which has one height: without what would tell others."""
+    if dialect != "hpgl":
+        return flags
+    pairs = zip(flags[::2], flags[1::2], strict=True)
+    pairs = [pair for pair in pairs if pair[0] not in ("--z-offset", "--compensation", "--lag")]
+    return (*itertools.chain(*pairs), "--brush", "rigid")
+
+
 def job_for(cell_toml: str, plan_json: str, brush_name: str, flags=()) -> Job:
     said = dict(itertools.pairwise(flags))
     brush = find_brush(brush_name)
@@ -156,7 +182,7 @@ def make(name: str, dialect: str, folder: Path) -> Made:
     cell = put(folder / "mine.toml", cell_toml)
     svg = put(folder / "drawing.svg", work.svg)
     plan, program = folder / "plan.json", folder / f"program{suffix}"
-    flags = work.flags
+    flags = flags_for(work.flags, dialect)
     planned = [
         flag
         for k, flag in enumerate(flags)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...evaluation import report
-from ...machine.paint_reload import may_pause, pens_changed
+from ...machine.paint_reload import has_pens, may_pause, pens_changed
 from ...machine.program import Job
 from ...pipeline import conversion, outputs
 from ..console import RefusedError, about, stage, warn
@@ -39,5 +39,8 @@ def convert_file(args) -> None:
     stops = (
         pens_changed(one.loads, one.cell, job.first_stroke) if one.is_program and may_pause(one.cell) else 0
     )
-    more = f"stops {'once' if stops == 1 else f'{stops} times'} for another pen" if stops else ""
-    write(args, files, len(one.loads.loads) - job.first_stroke + 1, one.time_s(), overlap, more)
+    times = "once" if stops == 1 else f"{stops} times"
+    more = f"takes another pen {times}" if has_pens(one.cell) else f"stops {times} for another pen"
+    write(
+        args, files, len(one.loads.loads) - job.first_stroke + 1, one.time_s(), overlap, more if stops else ""
+    )

@@ -123,6 +123,18 @@ def _ros2_message(program: Program) -> Iterator[bytes]:
     return cdr(program)
 
 
+def _hpgl(program: Program) -> Iterator[str]:
+    from .hpgl import hpgl
+
+    return hpgl(program)
+
+
+def _ebb(program: Program) -> Iterator[str]:
+    from .ebb import ebb
+
+    return ebb(program)
+
+
 def _robodk(program: Program) -> Iterator[str]:
     from .robodk import robodk
 
@@ -162,5 +174,7 @@ POSTS = {  # by the language a cell names
         circles_by="",
         others={".traj": _ros2_json, ".cdr": _ros2_message},
     ),
+    "ebb": Post("commands for EBB boards (AxiDraw, NextDraw)", (".ebb",), _ebb, circles_by=""),
+    "hpgl": Post("HP-GL for pen plotters", (".hpgl",), _hpgl, circles_by=""),
     "robodk": Post("what a post of RoboDK's kind writes", (".robodk",), _robodk, False, "pose"),
 }

@@ -78,33 +78,33 @@ def _lines(
     for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
         if not still[run[0]]:
             part = path[run[0] : run[-1] + 2]
-            feeds = _feeds(np.diff(part, axis=0), move.speed_mm_s, fastest_mm_s)
+            feeds = feeds_mm_min(np.diff(part, axis=0), move.speed_mm_s, fastest_mm_s)
             value, feed = yield from _ways(part, feeds, feed, cell)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for k in run:
-            value = yield from _lift(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
+            lifts = lifted(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
+            for value, wait_ms in lifts:
+                yield f"M3 S{value}\nG4 P{number(wait_ms / 1e3, 3)}\n"
+            if servo.settle_s and lifts:
+                yield f"G4 P{number(servo.settle_s, 3)}\n"
     return value, feed
 
 
-def _lift(
+def lifted(
     from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
-) -> Generator[str, None, int]:
-    """The lift alone: step by step, waiting as long as the way takes at the speed, then until the servo rests. The way
+) -> list[tuple[int, int]]:
+    """The lift alone: step by step its value and how long to wait [ms], as long as the way takes at the speed. The way
     is that between the values, which are whole: after a line it begins where its last part was held."""
     feed_mm_s = feed_mm_min(speed_mm_s) / 60
-    count = max(1, int(np.ceil(abs(to_mm - from_mm) / step_mm - 1e-9)))
-    has_moved = False
-    for k in range(1, count + 1):
-        before, value = value, int(value_at(servo, from_mm + (to_mm - from_mm) * k / count))
-        if value == before:
-            continue
-        way_mm = abs(height_at(servo, value) - height_at(servo, before))
-        yield f"M3 S{value}\nG4 P{number(math.ceil(1e3 * way_mm / feed_mm_s) / 1e3, 3)}\n"
-        has_moved = True
-    if servo.settle_s and has_moved:
-        yield f"G4 P{number(servo.settle_s, 3)}\n"
-    return value
+    count = max(1, math.ceil(abs(to_mm - from_mm) / step_mm - 1e-9))
+    told = value_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
+    told = np.concatenate([[value], told])
+    told = told[np.concatenate([[True], told[1:] != told[:-1]])]
+    values, heights = zip(*sorted((value, height) for height, value in servo.table), strict=True)
+    at_mm = np.interp(told, values, heights)
+    waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
+    return list(zip(told[1:].tolist(), waits_ms.tolist(), strict=True))
 
 
 def _ways(
@@ -132,7 +132,7 @@ def _ways(
     return int(values[-1]), feed
 
 
-def _feeds(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
+def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
     """(n,) the feed [mm/min] of each line (n, 3). It is that of the way beside the lift alone: where both together
     would be faster than the tip may be, it is lower, in hundredths of the fastest, so that few lines change it."""
     part = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)

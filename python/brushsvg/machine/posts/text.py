@@ -11,7 +11,8 @@ import numpy as np
 
 BRACKETS = {ord("("): "[", ord(")"): "]"}
 AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
-ENDS = {ord(";"): ","}  # an instruction of TP
+ENDS = {ord(";"): ","}  # an instruction of TP, and of HP-GL
+QUOTES = {ord('"'): "'"}  # that end a comment of HP-GL
 NAMED = 40  # letters of a name that no line of a program is too short for
 ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, whatever a stroke's length
 
@@ -28,7 +29,7 @@ def plain(text: str, room: int) -> str:
 
 def spelled(text: str) -> str:
     """A text with no letter that some language leaves out: what any program makes of it, until it is cut."""
-    return plain(text, len(text) * 18).translate(BRACKETS | AT_ONCE | ENDS)
+    return plain(text, len(text) * 18).translate(BRACKETS | AT_ONCE | ENDS | QUOTES)
 
 
 def told_apart(names: Sequence[str]) -> list[str]:

@@ -154,7 +154,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
-            ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(")
+            ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(", 'CO "')
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
@@ -228,6 +228,18 @@ def _ros2(text: str, cell: Cell) -> Readback:
     return read_ros2(as_table(text) if text.startswith("{") else text, cell)
 
 
+def _hpgl(text: str, cell: Cell) -> Readback:
+    from .hpgl import read_hpgl
+
+    return read_hpgl(text, cell)
+
+
+def _ebb(text: str, cell: Cell) -> Readback:
+    from .ebb import read_ebb
+
+    return read_ebb(text, cell)
+
+
 _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "linuxcnc": _gcode,
     "grbl": _gcode,
@@ -244,4 +256,6 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "fanuc": _fanuc,
     "doosan": _doosan,
     "ros2": _ros2,
+    "hpgl": _hpgl,
+    "ebb": _ebb,
 }

@@ -121,7 +121,9 @@ def _damaged(word: str, said: str) -> Error:
 def _header_of(text: str) -> dict[str, str]:
     """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
     text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # a remark of TP goes on
-    told = re.compile(r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;")
+    told = re.compile(
+        r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;|CO \"(\w+): (.*)\";"
+    )
     lines = (told.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     found = ([each for each in line.groups() if each is not None] for line in lines if line)
     return {word: said[0] if said else "" for word, *said in found}

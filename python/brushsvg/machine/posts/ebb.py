@@ -1,0 +1,186 @@
+"""Moves -> commands of an EBB (.ebb), the board of AxiDraw and NextDraw: steps of two motors in so many milliseconds, a
+servo's pulse in 1/12 microseconds. Lines that begin with # are for readers; whoever sends the file leaves them out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..cell import LEAST_SPEED_MM_S, least_part_mm, places_of, servo_parts, servo_stands, steps_of
+from ..motion import Move, Program, Wait
+from ..trajectory import joint_caps, paced
+from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at
+from .text import feed_mm_min, plain
+
+LINE_LIMIT = 100
+SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a motor is told, the board refuses
+STEPS_MS = 25  # no motor makes more in a millisecond
+HOME = "end: back to where it began"
+EBB_END = "end: the brush is held up, over where it began"
+
+
+def ebb(program: Program) -> Iterator[str]:
+    """The board knows no speed that changes: each move is cut into slices of an even one, with the cell's acceleration
+    between them. Places are rounded to whole steps first, so that no differences add up. A servo's height is held along
+    each slice, as in grbl_servo. The board counts from where its motors were switched on: there the program begins,
+    the brush over the origin, and there it ends."""
+    cell = program.cell
+    writer = _Writer(program)
+    yield "".join(map(comment, program.header))
+    yield comment("note: begin with the brush over the origin; leave lines with # out when sending")
+    yield "SR,0,1\nEM,1,1\n"  # a servo that is not switched off after a minute; motors on, 16 microsteps
+    yield writer.risen(program.rise_mm)
+    for section in program.sections():
+        yield comment(section.title)
+        for step in section.steps:
+            if isinstance(step, Wait):
+                yield _waited(step.seconds)
+            else:
+                yield from writer.moved(step)
+    yield comment(HOME)
+    there = np.array([[0.0, 0.0, writer.here[2]]])
+    yield from writer.moved(Move("travel", there, cell.speeds.travel_mm_s))
+    yield comment(EBB_END)
+
+
+def comment(text: str) -> str:
+    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+
+
+def _waited(seconds: float) -> str:
+    return f"SM,{round(seconds * 1e3)},0,0\n" if round(seconds * 1e3) else ""
+
+
+class _Writer:
+    def __init__(self, program: Program):
+        self.cell, self.touching_mm_s = program.cell, program.touching_mm_s
+        self.here = np.array([0.0, 0.0, program.rise_mm])
+        self.steps, self.value, self.feed = np.zeros(2, dtype=int), 0, 0.0
+
+    def risen(self, height_mm: float) -> str:
+        """Up before going anywhere."""
+        self.value = int(value_at(self.cell.servo, height_mm))
+        return self._set(self.value, 0) + _waited(self.cell.servo.settle_s)
+
+    def moved(self, move: Move) -> Iterator[str]:
+        motors, here = self.cell.motors, self.here
+        steps = steps_of(move.points_mm, motors)
+        height_mm = float(move.points_mm[-1, 2])
+        if len(steps) == 1 and (steps[0] == self.steps).all():  # most moves by far
+            self.here = np.array([*here[:2], height_mm])
+            yield self._lifted(move, here[2], height_mm)
+            return
+        path = np.vstack([here, np.column_stack([places_of(steps, motors), move.points_mm[:, 2]])])
+        self.here = path[-1]
+        ways = path[1:] - path[:-1]
+        still = servo_stands(ways, self.cell)
+        fastest_mm_s = self.touching_mm_s if move.meaning in TOUCHING else math.inf
+        for run in np.split(np.arange(len(still)), np.flatnonzero(still[1:] != still[:-1]) + 1):
+            if still[run[0]]:
+                for k in run:
+                    yield self._lifted(move, path[k, 2], path[k + 1, 2])
+                continue
+            feeds = feeds_mm_min(ways[run], move.speed_mm_s, fastest_mm_s)
+            feeds = np.maximum(feeds, feed_mm_min(LEAST_SPEED_MM_S["ebb"]))
+            yield self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run)
+
+    def _lifted(self, move: Move, from_mm: float, to_mm: float) -> str:
+        servo = self.cell.servo
+        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
+        lifts = lifted(from_mm, to_mm, self.value, move.speed_mm_s, step_mm, servo)
+        if not lifts:
+            return ""
+        self.value = lifts[-1][0]
+        told = "".join(self._set(*lift) for lift in lifts)
+        return self._told(feed_mm_min(move.speed_mm_s)) + told + _waited(servo.settle_s)
+
+    def _told(self, feed: float) -> str:
+        """The line that says the most that the moves have which follow, where it is another one."""
+        before, self.feed = self.feed, feed
+        return "" if feed == before else f"# feed {feed:.1f} mm/min\n"
+
+    def _set(self, value: int, wait_ms: int) -> str:
+        return f"S2,{value},{self.cell.motors.servo_pin},0,{wait_ms}\n"
+
+    def _ways(
+        self, path: np.ndarray, feeds: np.ndarray, blends_mm: np.ndarray | None, run: np.ndarray
+    ) -> str:
+        """Straight lines, each in parts on which the height is the one half way along, and in slices of time."""
+        cell, ways = self.cell, np.diff(path, axis=0)
+        lengths = np.linalg.norm(ways[:, :2], axis=1)
+        caps = joint_caps(blends_mm, run + 1, ways[:, :2], lengths, cell.speeds.acceleration_mm_s2)
+        counts = servo_parts(ways, cell)
+        which = np.repeat(np.arange(len(ways)), counts)
+        number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+        inner = np.full(len(which) - 1, np.inf)
+        inner[np.cumsum(counts)[:-1] - 1] = caps
+        heights = path[which, 2] + ways[which, 2] * (number + 0.5) / counts[which]
+        values = value_at(cell.servo, heights)
+        parts_mm, tops = (lengths / counts)[which], feeds[which] / 60
+        rows = self._rows(parts_mm.tolist(), inner.tolist(), tops.tolist())
+        part, when_s, done_mm = (np.array(each) for each in zip(*rows, strict=True))
+        line = which[part]
+        along = (number[part] * parts_mm[part] + done_mm) / lengths[line]
+        part, when_s, places = _none_long(
+            part, when_s, path[line, :2] + ways[line, :2] * along[:, None], path[0, :2]
+        )
+        return self._slices(part, when_s, places, values, feeds[which])
+
+    def _rows(
+        self, parts_mm: list[float], caps: list[float], tops: list[float]
+    ) -> Iterator[tuple[int, float, float]]:
+        """(part, when [s], how far on it [mm]): no slice is shorter than a move may be."""
+        least_mm, last_mm = least_part_mm(self.cell), 0.0
+        for k, when_s, done_mm in paced(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):
+            if done_mm is None:
+                last_mm = 0.0
+                yield k, when_s, parts_mm[k]
+            elif min(done_mm - last_mm, parts_mm[k] - done_mm) >= least_mm:
+                last_mm = done_mm
+                yield k, when_s, done_mm
+
+    def _slices(
+        self,
+        part: np.ndarray,
+        when_s: np.ndarray,
+        places: np.ndarray,
+        values: np.ndarray,
+        feeds: np.ndarray,
+    ) -> str:
+        motors = self.cell.motors
+        steps = np.vstack([self.steps, steps_of(places, motors)])
+        self.steps = steps[-1]
+        moves = steps[1:] - steps[:-1]
+        goes = moves.any(axis=1)  # where it stands, what follows takes the time, too
+        part, when_s, moves = part[goes], when_s[goes], moves[goes]
+        ways_mm = np.linalg.norm(places_of(moves, motors), axis=1)
+        # never faster than it may be, whatever rounding makes of ways and times
+        least_s = np.maximum(np.diff(when_s, prepend=0.0), 60 * ways_mm / feeds[part])
+        times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
+        values, feeds = values[part], feeds[part]
+        new_value, new_feed = np.diff(values, prepend=self.value) != 0, np.diff(feeds, prepend=self.feed) != 0
+        told = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
+        lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in told]
+        for k in np.flatnonzero(new_value):
+            lines[k] = self._set(values[k], 0) + lines[k]
+        for k in np.flatnonzero(new_feed):
+            lines[k] = self._told(feeds[k]) + lines[k]
+        self.value = int(values[-1]) if len(values) else self.value
+        return "".join(lines)
+
+
+def _none_long(
+    part: np.ndarray, when_s: np.ndarray, places: np.ndarray, start: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same rows, with more where one takes long."""
+    times_s = np.diff(when_s, prepend=0.0)
+    counts = np.maximum(1, np.ceil(times_s / SLOWEST_S - 1e-9)).astype(int)
+    if (counts == 1).all():
+        return part, when_s, places
+    which = np.repeat(np.arange(len(part)), counts)
+    left = (np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(which))) / counts[which]
+    before = np.vstack([start, places[:-1]])
+    places = places[which] - (places - before)[which] * left[:, None]
+    return part[which], when_s[which] - times_s[which] * left, places

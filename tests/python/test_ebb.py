@@ -1,0 +1,222 @@
+"""Commands of an EBB: places in whole steps without drift, slices that no motor and no brush is too slow for, a servo's
+heights; read by a stub that is made from the board's own documentation."""
+
+import re
+import sys
+import textwrap
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told, refused
+from judge.ebb import run_ebb
+from programs import RUNNABLE, call, program
+from test_urscript import BRUSH, STROKES, text_for
+
+from brushsvg import _core
+from brushsvg.machine.cell import Motors, Paper, robot_from_paper
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.posts.ebb import HOME
+from brushsvg.machine.writer import text_of
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ebb"
+CELL = find_cell("axidraw-ebb")
+ROWS = np.array(CELL.motors.steps_per_mm)
+SHEET = (100.0, 60.0)
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"><g fill="none" '
+    'stroke="#000"><path d="M20 30c10-20 30 20 50 0" stroke-width="2"/><path d="M30 45h30"/></g></svg>'
+)
+
+
+def made(*passes, cell=CELL, speed=20.0):
+    passes = [_core.Pass(f"s{k}", np.array(poses, float), speed) for k, poses in enumerate(passes, 1)]
+    return "".join(text_of(POSTS["ebb"], program(_core.Plan("b", "", SHEET, passes), BRUSH, cell)))
+
+
+def run(text, cell=CELL):
+    motors = {"steps_per_mm": cell.motors.steps_per_mm, "servo_pin": cell.motors.servo_pin}
+    found = run_ebb(text, (0.0, 0.0, 1.0), motors, cell.servo.table)
+    assert not found.refused and not found.acts
+    assert found.legs[-1].end[:2] == (0.0, 0.0), "the next program begins where this one did"
+    return found
+
+
+def wave(count=200):
+    t = np.linspace(0, 1, count)
+    depth = -3 * np.minimum(1, 8 * np.minimum(t, 1 - t))
+    return np.column_stack([10 + 70 * t, 30 + 15 * np.sin(9 * t), depth])
+
+
+def test_golden():
+    assert text_for(CELL) == GOLDEN.read_text(encoding="ascii")
+
+
+@pytest.mark.parametrize(
+    "motors", [CELL.motors, Motors(((80.0, 0.0), (0.0, -100.0)), 5), Motors(((80.0, 30.0), (-20.0, 60.0)))]
+)
+@pytest.mark.parametrize("turned_deg", [0.0, 25.0])
+def test_every_pose_is_passed_within_half_a_step_of_both_motors(motors, turned_deg):
+    cell = replace(CELL, motors=motors, paper=Paper((-8.0, 5.0, 0.0), (0.0, 0.0, turned_deg)))
+    paths = [wave(), STROKES["n/1"], STROKES["dot"]]
+    found = run(made(*paths, cell=cell), cell)
+    rows, frame = np.array(motors.steps_per_mm), robot_from_paper(cell)
+    ends = np.array([leg.end for leg in found.legs])
+    steps = ends[:, :2] @ rows.T
+    assert np.abs(steps - np.rint(steps)).max() < 1e-6
+    away_steps = 0.0
+    for pose in np.vstack([np.array(path, float) for path in paths]):
+        wanted = (frame @ [*pose[:2], 0.0, 1.0])[:2] @ rows.T
+        off = np.abs(steps - wanted).max(axis=1)
+        at = off <= 0.5 + 1e-6
+        assert at.any(), pose
+        assert np.abs(ends[at, 2] - pose[2]).min() < cell.servo.step_mm, (
+            "half a step, where parts may be so short"
+        )
+        away_steps = max(away_steps, off[at].min())
+    assert away_steps > 0.4
+
+
+def test_a_page_does_not_drift():
+    """Steps are differences of rounded places, not rounded differences, whose errors would add up."""
+    dashes = [
+        [(10 + 0.83 * k, 10, 0), (10.303 + 0.83 * k, 40.007, -1), (10.303 + 0.83 * k, 40.007, 0)]
+        for k in range(90)
+    ]
+    found = run(made(*dashes))
+    last = [leg for leg in found.legs if leg.end[2] < 0][-1]
+    assert np.abs(np.subtract(last.end[:2], dashes[-1][-1][:2])).max() <= 0.00625 + 1e-9
+
+
+def test_speeds_change_by_the_cells_acceleration_in_slices():
+    found = run(made([(10, 10, 0), (10, 10, -2), (70, 10, -2), (70, 10, 0)]))
+    most = CELL.speeds.acceleration_mm_s2
+    for low in (False, True):
+        legs = [leg for leg in found.legs if leg.kind == "feed" and (leg.end[2] < 0) == low]
+        speeds = np.array([leg.speed_mm_s for leg in legs])
+        times = np.array([np.linalg.norm(np.subtract(leg.end, leg.start)) for leg in legs]) / speeds
+        limit = 20.0 if low else CELL.speeds.travel_mm_s
+        assert 0.97 * limit < speeds.max() <= limit + 1e-9
+        # a step more or less, and a millisecond, are what rounding makes of a slice
+        slack = 2 * 0.0125 / times.min()
+        changes = np.abs(np.diff(np.r_[0.0, speeds, 0.0]))
+        between = (np.r_[0.0, times] + np.r_[times, 0.0]) / 2
+        assert (changes <= 1.1 * most * between + slack + 1.5).all()
+
+
+def test_no_speed_stops_a_motor_or_is_too_fast_for_one():
+    """The stub refuses less than 1.31 and more than 25,000 steps in a second."""
+    fast = replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=220.0, acceleration_mm_s2=5000.0))
+    run(made(wave(), cell=fast))
+    found = run(made([(10, 10, 0), (10, 10, -1), (12.003, 11.984, -1), (12.003, 11.984, 0)], speed=0.1))
+    slow = [leg.speed_mm_s for leg in found.legs if leg.kind == "feed" and leg.end[2] < 0]
+    assert 0.05 < max(slow) <= 0.1
+    with refused("out-of-range 222 0.1 221.0"):
+        parse_cell(write_cell(replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=222.0))))
+
+
+def test_a_servo_stays_switched_on_and_is_set_before_the_motors_go():
+    lines = [line for line in text_for(CELL).splitlines() if not line.startswith("#")]
+    assert lines[:3] == ["SR,0,1", "EM,1,1", "S2,21200,4,0,0"]
+    assert all(re.fullmatch(r"S2,\d+,4,0,\d+|SM,\d+,-?\d+,-?\d+", line) for line in lines[2:])
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.svg").write_text(DRAWING)
+    return tmp_path
+
+
+def test_what_is_written_is_allowed(desk, capsys):
+    assert call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")[0] == 0
+    assert RUNNABLE in call(capsys, "check", "a.ebb", "a.svg")[1]
+    for name, words in (("b", ("border", "a.svg", "b.ebb")), ("h", ("height", "h.ebb"))):
+        assert call(capsys, *words, "--cell", "axidraw-ebb")[0] == 0
+        assert RUNNABLE in call(capsys, "check", f"{name}.ebb")[1]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (r"(SM,\d+,-?\d+,-?\d+\n)(?=# feed)", "", "line-incomplete"),
+        (r"# feed 1200.0 mm/min(?=\nS2,\d+,4,0,0\n)", "# feed 6000.0 mm/min", "speed-out-of-range"),
+        (r"# feed 1200.0 mm/min\n(?=S2,\d+,4,0,0\n)", "", "speed-out-of-range"),
+        (r"(?<=SM,)\d+(?=,-?[1-9]\d\d,)", "5", "speed-out-of-range"),
+        (r"SR,0,1\n", "", "line-unread"),
+        (r"EM,1,1\n", "", "mode-missing"),
+        (r"EM,1,1", "EM,2,2", "line-unread"),
+        (r"S2,21200,4,0,0", "S2,25000,4,0,0", "servo-out-of-range 10800 22000"),
+        (r"S2,\d+,4,0,(?=[1-9])", "S2,21200,5,0,", "line-unread"),
+        (r"S2,21200,4,0,\d+\n(?=SM,150,0,0\n# stroke 2)", "", "program-changed"),
+        (rf"# {HOME}\n[^#]*", "", "line-unread"),
+        (r"# end: the .*\n", "", "program-cut-short"),
+        (r"\n# stroke 2", "\nSP,0\n# stroke 2", "line-unread"),
+    ],
+)
+def test_check_refuses_what_was_damaged(desk, capsys, old, new, told):
+    call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")
+    text, count = re.subn(old, new, Path("a.ebb").read_text(), count=1)
+    assert count == 1
+    Path("a.ebb").write_text(text)
+    status, _, said = in_json(capsys, "check", "a.ebb")
+    assert status == 1 and is_told(said, told), said
+
+
+def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk, capsys, monkeypatch):
+    call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")
+    docs = (Path(__file__).parents[2] / "docs" / "machines.md").read_text()
+    sender = textwrap.dedent(re.search(r"(?m)^      import sys, serial.*?\n\n(?=  \S)", docs, re.DOTALL)[0])
+    sent = []
+
+    class Serial:
+        def __init__(self, port, timeout):
+            assert port == "/dev/ttyACM0" and timeout > 10
+
+        __enter__ = lambda self: self  # noqa: E731
+        __exit__ = lambda *_: None  # noqa: E731
+
+        def write(self, data):
+            assert data.endswith(b"\r")
+            sent.append(data[:-1].decode())
+
+        def readline(self):
+            return b"!8 Err: no\r\n" if len(sent) == most else b"OK\r\n"
+
+    monkeypatch.setitem(sys.modules, "serial", SimpleNamespace(Serial=Serial))
+    monkeypatch.setattr(sys, "argv", ["send.py", "a.ebb", "/dev/ttyACM0"])
+    most = 0
+    exec(sender, {})
+    wanted = [line for line in Path("a.ebb").read_text().splitlines() if not line.startswith("#")]
+    assert sent == wanted
+    sent.clear()
+    most = 5
+    with pytest.raises(SystemExit, match="!8 Err"):
+        exec(sender, {})
+    assert sent == wanted[:5]
+
+
+def test_who_begins_beyond_the_workspace_is_told(desk, capsys):
+    far = replace(CELL, name="far", paper=Paper((100.0, 0.0, 0.0)))
+    Path("far.toml").write_text(write_cell(far))
+    status, _, said = in_json(capsys, "convert", "a.svg", "a.ebb", "--cell", "far.toml")
+    assert status == 1 and is_told(said, "tool-off-sheet 70.00 motors")
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"motors": None}, "key-missing motors"),
+        ({"servo": None}, "key-missing servo"),
+        ({"motors": Motors(((80.0, 80.0), (80.0, 80.0)))}, "out-of-range 'motors.steps_per_mm'"),
+        ({"language": "grbl-servo"}, "out-of-range motors grbl-servo"),
+        ({"servo": replace(CELL.servo, table=((-8.0, 0.0), (6.0, 70000.0)))}, "servo-table 65535"),
+        ({"paper": Paper((0.0, 0.0, 3.0))}, "paper-tilted"),
+    ],
+)
+def test_a_cell_that_a_board_cannot_be_is_refused(change, told):
+    with refused(told):
+        parse_cell(write_cell(replace(CELL, **change)))
