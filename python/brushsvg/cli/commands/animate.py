@@ -6,7 +6,7 @@ from ...pipeline import outputs
 from ..console import about
 from ..steps.options import settled, typed
 from ..steps.output_places import check_places, write
-from ..steps.prepared import look, seconds_of
+from ..steps.prepared import look
 
 
 def animate_file(args) -> None:
@@ -15,4 +15,4 @@ def animate_file(args) -> None:
     work, loads, cell = looked.work, looked.loads, looked.work.options.cell
     with about(args.input):
         page = outputs.played(work, loads, looked.marks, cell, args.speed)
-    write(args, {args.output: page}, len(loads.loads), seconds_of(loads, work.brush, cell))
+    write(args, {args.output: page}, len(loads.loads), looked.seconds())

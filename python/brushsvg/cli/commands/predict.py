@@ -6,7 +6,7 @@ from ...pipeline import outputs
 from ..console import about, say, stage
 from ..steps.options import settled, typed
 from ..steps.output_places import check_places, suffix_of, write
-from ..steps.prepared import look, seconds_of
+from ..steps.prepared import look
 
 
 def predict_file(args) -> None:
@@ -25,5 +25,4 @@ def predict_file(args) -> None:
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = outputs.picture(suffix, work, marks, band)
-    seconds = seconds_of(looked.loads, work.brush, work.options.cell)
-    write(args, {args.output: picture}, len(work.plan.passes), seconds)
+    write(args, {args.output: picture}, len(work.plan.passes), looked.seconds())

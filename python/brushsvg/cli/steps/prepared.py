@@ -9,7 +9,7 @@ from ...errors import Error, Notice
 from ...machine import preflight, writer
 from ...machine.cell import Cell
 from ...machine.motion import duration_s
-from ...machine.paint_reload import PlanInLoads, in_loads, too_long
+from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
 from ...machine.program import Walked
 from ...pipeline import prediction, preparation
 from ..console import about, stage, warn
@@ -31,30 +31,33 @@ def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool 
         return preparation.prepare(chosen.input, options, stage, partly)
 
 
-def seconds_of(loads: PlanInLoads, brush, cell: Cell) -> float | None:
-    """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
-    with suppress(Error):
-        return writer.time_s(loads, brush, cell)
-    return None
-
-
 def seconds_written(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
     """How long the machine takes for a program that was gone through, or for one of a plan.json."""
     if suffix != ".json":
         return duration_s(walk.made)
-    return seconds_of(in_loads(plan, brush, cell), brush, cell)
+    with suppress(Error):
+        return writer.time_s(in_loads(plan, brush, cell), brush, cell)
+    return None
 
 
 @dataclass(frozen=True)
 class Looked:
-    """marks: of the strokes, or of the loads where those are looked at; forbidden: which of the warnings forbid to run
-    a program: to someone who looks they only warn."""
+    """marks: of the strokes, or of the loads where those are looked at; walk: of the loads, None where no stroke is
+    left; forbidden: which of the warnings forbid to run a program: to someone who looks they only warn."""
 
     work: preparation.Work
     loads: PlanInLoads
     marks: object
+    walk: Walked | None
     warnings: list[Notice]
     forbidden: list[Notice]
+
+    def seconds(self) -> float | None:
+        """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
+        with suppress(Error):
+            visits(self.loads, self.work.options.cell)  # else they are not in what was gone through
+            return duration_s(self.walk.made) if self.walk else None
+        return None
 
 
 def look(
@@ -66,10 +69,11 @@ def look(
         loads = in_loads(work.plan, brush, cell)
         plan = loads.as_plan() if at_loads else work.plan
         marks = prediction.marks_of(plan, brush, outlines, stage, whole)
-        warnings, forbidden = [*work.notices], []
+        walk = None
         if work.plan.passes or not work.refused:
-            forbidden = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm).problems
-        warnings += forbidden
+            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
+        forbidden = walk.problems if walk else []
+        warnings = [*work.notices, *forbidden]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
-    return Looked(work, loads, marks, warnings, forbidden)
+    return Looked(work, loads, marks, walk, warnings, forbidden)
