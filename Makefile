@@ -12,7 +12,7 @@ SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -23,6 +23,7 @@ help:
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
+	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -132,6 +133,7 @@ bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	cmake --preset release >/dev/null
 	cmake --build --preset release --target advance_bench
+	$(BIN)/python benchmarks/table.py
 	build/release/benchmarks/advance_bench
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
@@ -140,6 +142,18 @@ bench: setup
 	font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf  # of `make integration`
 	if [ -f $$font ]; then $(BIN)/pip install -q -e '.[bench]' --no-build-isolation; $(BIN)/python benchmarks/outlines.py $$font; fi
 	$(BIN)/python benchmarks/preview.py
+
+# The same script over both trees: that of REV is built beside ours and stays there, so that the next time is quick.
+bench-compare: setup
+	@: "$${REV:?which revision? make bench-compare REV=main}"
+	$(MAKE) --no-print-directory $(VENV)/.dev
+	that="build/compare/$$(git rev-parse --short --verify "$$REV^{commit}")"
+	[ -e "$$that" ] || git worktree add -q --detach "$$that" "$$REV"
+	$(MAKE) --no-print-directory -C "$$that" setup
+	for tree in . "$$that"; do
+	  (cd "$$tree"; cmake --preset release >/dev/null; cmake --build --preset release --target advance_bench)
+	done
+	$(BIN)/python benchmarks/table.py --against "$$that"
 
 docs: setup
 	@$(BIN)/pip install -q --no-build-isolation -e ".[docs]"

@@ -107,6 +107,10 @@ def python_target(parts: list[str], folder: str = "") -> str | None:
     return inside if home.with_suffix(".py").is_file() else "__init__"
 
 
+# these import by the names of a table: the package what is public, the commands a file beside them
+BY_NAME = (PACKAGE / "__init__.py", PACKAGE / "cli" / "commands" / "__init__.py")
+
+
 @cache
 def imported(path: Path, text: str) -> list[list[str]]:
     """Every import anywhere in the file, those inside functions and for type checkers too, by its full name."""
@@ -121,7 +125,7 @@ def imported(path: Path, text: str) -> list[list[str]]:
             names += [[*base, alias.name] for alias in node.names]
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "__import__")):
             constant = node.args and isinstance(node.args[0], ast.Constant)
-            assert constant or path == PACKAGE / "__init__.py", f"{path}: an import that cannot be followed"
+            assert constant or path in BY_NAME, f"{path}: an import that cannot be followed"
             names += [node.args[0].value.split(".")] if constant else []
     return names
 

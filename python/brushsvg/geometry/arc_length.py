@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
@@ -26,10 +24,10 @@ def _between(cubics: np.ndarray, t0: np.ndarray, t1: np.ndarray) -> np.ndarray:
 
 def knots(cubics: np.ndarray) -> np.ndarray:
     """Arc length [mm] from the start of each of the cubics (n, 4, 2) to equally spaced parameters: (n, parts + 1)."""
-    edges = np.linspace(0.0, 1.0, _PARTS + 1)
-    one = np.ones(len(cubics))
-    parts = [_between(cubics, a * one, b * one) for a, b in pairwise(edges)]
-    return np.cumsum([0.0 * one, *parts], axis=0).T
+    half = 0.5 / _PARTS
+    t = np.arange(_PARTS)[:, None] / _PARTS + half * (1 + _NODES)
+    parts = half * (_speed(cubics, t.ravel()).reshape(-1, *t.shape) @ _WEIGHTS)
+    return np.column_stack([np.zeros(len(cubics)), np.cumsum(parts, axis=1)])
 
 
 def parameters_at(cubics: np.ndarray, known: np.ndarray, at_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -137,13 +137,13 @@ def prepare(source, options: Options = Options(), stage=lambda text: None, partl
     planned = [stroke for stroke in drawn if stroke.id not in without]
     bare, blank = unreached(planned, painted, brush), []
     leads = options.compensation in ("closed", "refined")
-    traces = _core.simulate(plan, brush).passes if leads else []
-    if leads:
+    if leads and any(stroke.wanted_mm for stroke in planned):  # of shapes alone it is asked what stays blank
+        traces = _core.simulate(plan, brush).passes
         bare = left_blank(bare, painted, traces, brush)
+        blank = missed(planned, painted, traces, bare, brush)
     notices += blank_notices(bare)
     astray = _astray(painted, strokes, plan, tracking_errors, moved, brush, options)
     if leads:
-        blank = missed(planned, painted, traces, bare, brush)
         notices += blank_notices(blank, is_reached=True) + astray
     return Work(
         design.title,

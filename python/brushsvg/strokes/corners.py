@@ -105,6 +105,8 @@ def _parts(stroke, brush) -> list:
     if not len(line.cubics):
         return [stroke]
     sharp = [k for k in range(1, len(line.cubics)) if line.turn_rad(k) > _SHARP_RAD]
+    if not sharp:
+        return [stroke]
     ends = [0, *sharp, len(line.cubics)]
     at_mm = line.at * knots(line.cubics)[:, -1].sum()
     width_mm = 2 * max(half for _, half in line.half_width)

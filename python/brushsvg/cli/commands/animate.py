@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ...pipeline import outputs
-from ...pipeline.conversion import time_of_s
 from ..console import about
 from ..steps.options import settled, typed
 from ..steps.output_places import check_places, write
@@ -16,4 +15,4 @@ def animate_file(args) -> None:
     work, loads, cell = looked.work, looked.loads, looked.work.options.cell
     with about(args.input):
         page = outputs.played(work, loads, looked.marks, cell, args.speed)
-    write(args, {args.output: page}, len(loads.loads), time_of_s(loads, work.brush, cell))
+    write(args, {args.output: page}, len(loads.loads), looked.seconds())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ...pipeline import outputs
-from ...pipeline.conversion import time_of_s
 from ..console import about, say, stage
 from ..steps.options import settled, typed
 from ..steps.output_places import check_places, suffix_of, write
@@ -26,5 +25,4 @@ def predict_file(args) -> None:
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = outputs.picture(suffix, work, marks, band)
-    seconds = time_of_s(looked.loads, work.brush, work.options.cell)
-    write(args, {args.output: picture}, len(work.plan.passes), seconds)
+    write(args, {args.output: picture}, len(work.plan.passes), looked.seconds())

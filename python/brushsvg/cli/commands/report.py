@@ -26,7 +26,13 @@ def report_file(args) -> None:
         stage("trying other sizes")
         advice = other_sizes.advice(work)
         figures = outputs.reported(
-            work, marks, work.options.cell, looked.warnings, advice=advice, forbidden=looked.forbidden
+            work,
+            marks,
+            work.options.cell,
+            looked.warnings,
+            looked.forbidden,
+            seconds=looked.seconds(),
+            advice=advice,
         )
         text = report.as_text(".json" if args.json else ".txt", figures)
         if args.preview:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
-from ...errors import Notice
+from ...errors import Error, Notice
 from ...machine import preflight
 from ...machine.cell import Cell
-from ...machine.paint_reload import PlanInLoads, in_loads, too_long
+from ...machine.motion import duration_s
+from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
+from ...machine.program import Walked
 from ...pipeline import prediction, preparation
 from ...pipeline.choices import Choices, without_effect
 from ..console import about, stage, warn
@@ -23,14 +26,22 @@ def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool 
 
 @dataclass(frozen=True)
 class Looked:
-    """marks: of the strokes, or of the loads where those are looked at; forbidden: which of the warnings forbid to run
-    a program: to someone who looks they only warn."""
+    """marks: of the strokes, or of the loads where those are looked at; walk: of the loads, None where no stroke is
+    left; forbidden: which of the warnings forbid to run a program: to someone who looks they only warn."""
 
     work: preparation.Work
     loads: PlanInLoads
     marks: object
+    walk: Walked | None
     warnings: list[Notice]
     forbidden: list[Notice]
+
+    def seconds(self) -> float | None:
+        """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
+        with suppress(Error):
+            visits(self.loads, self.work.options.cell)  # else they are not in what was gone through
+            return duration_s(self.walk.made) if self.walk else None
+        return None
 
 
 def look(
@@ -42,10 +53,11 @@ def look(
         loads = in_loads(work.plan, brush, cell)
         plan = loads.as_plan() if at_loads else work.plan
         marks = prediction.marks_of(plan, brush, outlines, stage, whole)
-        warnings, forbidden = [*work.notices], []
+        walk = None
         if work.plan.passes or not work.refused:
-            forbidden = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm).problems
-        warnings += forbidden
+            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
+        forbidden = walk.problems if walk else []
+        warnings = [*work.notices, *forbidden]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
-    return Looked(work, loads, marks, warnings, forbidden)
+    return Looked(work, loads, marks, walk, warnings, forbidden)
