@@ -128,6 +128,9 @@ def test_strokes_that_are_painted_once_tell_no_spread(tmp_path, capsys):
     assert main(words) == 0
     status, _, told = in_json(capsys, "compare", tmp_path / "a.jpg", tmp_path / "four.svg", "--sheets")
     assert status == 1 and is_told(told, "too-few-repeats"), told
+    twice = (tmp_path / "a.jpg", tmp_path / "a.jpg", tmp_path / "four.svg")
+    status, _, told = in_json(capsys, "compare", *twice, "--sheets")
+    assert status == 1 and is_told(told, "too-few-repeats"), told
     assert (
         main(
             ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--picture", "a.png"]
