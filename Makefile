@@ -148,6 +148,7 @@ bench-compare: setup
 	@: "$${REV:?which revision? make bench-compare REV=main}"
 	$(MAKE) --no-print-directory $(VENV)/.dev
 	that="build/compare/$$(git rev-parse --short --verify "$$REV^{commit}")"
+	git worktree prune
 	[ -e "$$that" ] || git worktree add -q --detach "$$that" "$$REV"
 	$(MAKE) --no-print-directory -C "$$that" setup
 	for tree in . "$$that"; do
