@@ -968,9 +968,13 @@ class MarkLaws:
         widest_per_half: float = 1.8,
         front_per_half: float = 1.0,
         round_tail: bool = False,
+        widest_by_depth: collections.abc.Sequence[float] = [],
+        front_by_depth: collections.abc.Sequence[float] = [],
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
+    @property
+    def front_by_depth(self) -> tuple[float, ...]: ...
     @property
     def front_per_half(self) -> float: ...
     @property
@@ -981,6 +985,8 @@ class MarkLaws:
     def round_tail(self) -> bool: ...
     @property
     def tip_gap(self) -> tuple[float, ...]: ...
+    @property
+    def widest_by_depth(self) -> tuple[float, ...]: ...
     @property
     def widest_per_half(self) -> float: ...
 
@@ -1036,10 +1042,12 @@ class MarkOptions:
     deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
     widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
     and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
-    machine's numbers; 0: it does as it is told. noise_mm: fit nothing, say what to expect of such edges.
+    machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
+    nothing, say what to expect of such edges.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    departing: bool
     front_per_half: Prior
     height_mm: Prior
     laws: LawPrior | None
@@ -1142,8 +1150,8 @@ class MarkFit:
     A brush fitted to marks.
 
     covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-    front_per_half, height, shift x and y, turn; where any of the machine was asked for lean x and y, scale x and y, skew,
-    tilt x and y, backlash x and y.
+    front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
+    where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y.
     """
     def __copy__(self) -> MarkFit: ...
     def __deepcopy__(self, memo: dict) -> MarkFit: ...
