@@ -21,12 +21,13 @@ def test_no_public_name_is_forgotten():
 
 @pytest.mark.parametrize("batch", range(BATCHES))
 @pytest.mark.slow
-def test_nonsense_ends_in_a_result_or_a_sentence(batch):
+def test_nonsense_ends_in_a_result_or_a_sentence(batch, tmp_path):
     done = subprocess.run(
         [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS | FITS)[batch::BATCHES]],
         capture_output=True,
         text=True,
         errors="replace",
+        cwd=tmp_path,
         timeout=LONG_S,
     )
     assert done.returncode == 0, done.stderr.splitlines()[-5:]
