@@ -141,7 +141,7 @@ SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: asked of the
     [
         pytest.param(name, marks=pytest.mark.arm) if name in SMALL_ARMS else name
         for name in cell_names()
-        if find_cell(name).language in POSTS
+        if find_cell(name).language in POSTS and find_cell(name).pen is None  # a pen does not lag
     ],
 )
 def test_a_program_for_every_cell(name, tmp_path, capsys):

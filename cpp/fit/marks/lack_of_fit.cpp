@@ -150,6 +150,7 @@ MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& m
     out.says = fit.says;
     out.weighing = fit.weighing;
     out.iterations = fit.iterations;
+    out.model.go_on_counting(fit.model);
     return out;
 }
 

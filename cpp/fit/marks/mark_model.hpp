@@ -78,6 +78,9 @@ class MarkModel {
         refuse_endless();
     }
 
+    /// The looks that another model of the same marks took count on here.
+    void go_on_counting(const MarkModel& other) { looks_ = other.looks_; }
+
     /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
     /// mark's displacement where asked for. Outside it is that from the nearest footprint and what it sweeps to its
     /// neighbours. Inside it is negative: how far it is out of all footprints, square to the edge that the painted

@@ -183,7 +183,7 @@ def add_simulate_photo(commands) -> None:
     )
     simulate.add_argument("--seed", metavar="N", type=values.count, default=1, help="of chance; default: 1")
     add_quiet(simulate)
-    simulate.set_defaults(run="simulate_photo", parser=simulate, check=_check_simulate_photo)
+    simulate.set_defaults(run="simulate_photo_file", parser=simulate, check=_check_simulate_photo)
 
 
 def _check_simulate_photo(args) -> None:

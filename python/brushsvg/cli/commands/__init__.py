@@ -32,7 +32,7 @@ _HOME = {
     "predict_file": "predict",
     "report_file": "report",
     "scan_file": "scan",
-    "simulate_photo": "simulate_photo",
+    "simulate_photo_file": "simulate_photo",
     "text_file": "text",
 }
 

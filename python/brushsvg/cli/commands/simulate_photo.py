@@ -9,7 +9,7 @@ from ..steps.output_places import check_places, write
 from ..steps.prepared import prepare
 
 
-def simulate_photo(args) -> None:
+def simulate_photo_file(args) -> None:
     from ...painted.job_page import job_page
     from ...simulated.painting import painted
     from ...simulated.photo import simulated_photo
