@@ -42,15 +42,16 @@ inline constexpr auto members<brushsvg::fit::Machine> =
 template <>
 inline constexpr auto members<brushsvg::fit::MarkOptions> =
     std::tuple(&brushsvg::fit::MarkOptions::deepest_mm, &brushsvg::fit::MarkOptions::lag_terms,
-               &brushsvg::fit::MarkOptions::tip_gap_terms, &brushsvg::fit::MarkOptions::half_width_terms, &brushsvg::fit::MarkOptions::departing,
-               &brushsvg::fit::MarkOptions::widest_per_half, &brushsvg::fit::MarkOptions::front_per_half,
-               &brushsvg::fit::MarkOptions::laws, &brushsvg::fit::MarkOptions::round_tail,
-               &brushsvg::fit::MarkOptions::height_mm, &brushsvg::fit::MarkOptions::placement_mm,
-               &brushsvg::fit::MarkOptions::turn_rad, &brushsvg::fit::MarkOptions::displacement_mm,
-               &brushsvg::fit::MarkOptions::lean_mm_per_mm, &brushsvg::fit::MarkOptions::axes,
-               &brushsvg::fit::MarkOptions::tilt_mm_per_mm, &brushsvg::fit::MarkOptions::backlash_mm,
-               &brushsvg::fit::MarkOptions::spacing_mm, &brushsvg::fit::MarkOptions::noise_mm,
-               &brushsvg::fit::MarkOptions::noise_length_mm, &brushsvg::fit::MarkOptions::most_iterations);
+               &brushsvg::fit::MarkOptions::tip_gap_terms, &brushsvg::fit::MarkOptions::half_width_terms,
+               &brushsvg::fit::MarkOptions::departing, &brushsvg::fit::MarkOptions::widest_per_half,
+               &brushsvg::fit::MarkOptions::front_per_half, &brushsvg::fit::MarkOptions::laws,
+               &brushsvg::fit::MarkOptions::round_tail, &brushsvg::fit::MarkOptions::height_mm,
+               &brushsvg::fit::MarkOptions::placement_mm, &brushsvg::fit::MarkOptions::turn_rad,
+               &brushsvg::fit::MarkOptions::displacement_mm, &brushsvg::fit::MarkOptions::lean_mm_per_mm,
+               &brushsvg::fit::MarkOptions::axes, &brushsvg::fit::MarkOptions::tilt_mm_per_mm,
+               &brushsvg::fit::MarkOptions::backlash_mm, &brushsvg::fit::MarkOptions::spacing_mm,
+               &brushsvg::fit::MarkOptions::noise_mm, &brushsvg::fit::MarkOptions::noise_length_mm,
+               &brushsvg::fit::MarkOptions::most_iterations);
 
 template <>
 inline constexpr auto members<brushsvg::fit::MarkMiss> =

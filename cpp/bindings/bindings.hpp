@@ -38,8 +38,8 @@ void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);
 
-/// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints. Any thread is given up by
-/// PyThreadState_SetAsyncExc, which is heard by whoever runs a line of Python, as here every now and then.
+/// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints. Any thread is given up
+/// by PyThreadState_SetAsyncExc, which is heard by whoever runs a line of Python, as here every now and then.
 class Unlocked {
  public:
     Unlocked()
