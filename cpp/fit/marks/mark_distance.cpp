@@ -132,7 +132,7 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
         distance_mm[k] = beside.distance_mm;
         if (!by_shared) continue;
         const Eigen::RowVector2d normal = beside.normal.transpose();
-        by_laws(footprints[row], beside.edge, beside.normal, shared, by_shared->row(k));
+        by_laws(footprints[row], beside.edge, beside.normal, by_shared->row(k));
         by_shared->row(k).segment<2>(layout_.shift()) = -normal * back;
         const Eigen::Vector2d seen = painted.point_mm.row(k).transpose() - shared.segment<2>(layout_.shift()) - centre_;
         (*by_shared)(k, layout_.turn()) = normal * back_by_turn * seen;
@@ -166,7 +166,7 @@ VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* 
 }
 
 void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,
-                        const VectorXd& shared, Eigen::Ref<Eigen::RowVectorXd> out) const {
+                        Eigen::Ref<Eigen::RowVectorXd> out) const {
     const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
     const double nu = normal.dot(u), nl = normal.dot(left);
     ByLag heading_by = now.heading_by, left_by;

@@ -108,7 +108,7 @@ class MarkModel {
     bool follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const;
     std::array<double, kMachine> machine_numbers(const VectorXd& shared) const;
     /// Derivatives of a distance by the laws' unknowns and the height.
-    void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal, const VectorXd& shared,
+    void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,
                  Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     /// rate times the derivatives of a ratio by its unknowns.
