@@ -346,9 +346,10 @@ def test_what_to_expect_is_what_comes():
 
 
 def test_laws_that_are_known_add_their_information():
-    """Inverse covariances add up, exactly where edges err independently."""
+    """Inverse covariances add up, exactly where edges err independently and laws keep to their numbers."""
     _, _, made = calibrated(3)
     options = core.MarkOptions()
+    options.departing = False
     options.deepest_mm, options.noise_mm, options.noise_length_mm = made.painted.deepest_mm, 0.1, 1e-3
     options.lag_terms, options.half_width_terms = len(made.fit.laws.lag), len(made.fit.laws.half_width) - 1
     options.height_mm = core.Prior(0.1, 0.3)  # beyond the touch, where intervals are those of both sides

@@ -122,6 +122,7 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
     at.shared[at.model.layout().widest()] = from->widest_per_half;
     at.shared[at.model.layout().front()] = from->front_per_half;
     at.weighing.noise_mm = std::max(1e-3, *options.noise_mm);
+    at.weighing.is_asked = true;
     const double kept = std::exp(-options.spacing_mm / std::max(1e-6, options.noise_length_mm));
     at.weighing.repeats = (1.0 + kept) / (1.0 - kept);
     for (double c = kept; c > 1e-3 && at.weighing.together.size() < 60; c *= kept) at.weighing.together.push_back(c);

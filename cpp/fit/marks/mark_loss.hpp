@@ -32,6 +32,7 @@ struct Weighing {
     std::vector<double> together{1.0};  ///< autocovariance of psi along an outline: at 0, 1, 2 ... points
     double slope = 1.0;                 ///< mean slope of psi
     Loss loss = Loss::cauchy;
+    bool is_asked = false;  ///< what edges would tell that err so, not what these do
 };
 
 }  // namespace brushsvg::fit

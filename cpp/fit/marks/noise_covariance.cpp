@@ -275,7 +275,7 @@ MatrixXd covariance(const MarkProblem& at) {
     at.add_known(spread);
     const MatrixXd inverse = inverse_slope(at, marks, weighing);
     const MatrixXd out = inverse.topRows(g) * spread * inverse.leftCols(g);
-    return with_misfit(out, pulls(at, marks, inverse), at);
+    return weighing.is_asked ? out : with_misfit(out, pulls(at, marks, inverse), at);
 }
 
 }  // namespace brushsvg::fit

@@ -22,7 +22,7 @@ SAME_MM = (
 )
 ALONG = 65  # places at which ways are compared
 LEAST_FREEDOM = 4  # values to spare for a spread: fewer say next to nothing
-SAME_MM = 1e-9  # no two sheets repeat so well
+ALIKE_MM = 1e-9  # no two sheets repeat so well
 BIN_SHARE = 0.25  # width of a column of the histogram over the spread
 BAR = 40
 
@@ -106,7 +106,7 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
         )
         raise Error(sentence, code="too-few-repeats")
     sigma = math.sqrt(squares / freedom)
-    if sigma < SAME_MM:
+    if sigma < ALIKE_MM:
         sentence = "marks lie alike to the last digit: photographs of two sheets are needed, not of one twice"
         raise Error(sentence, code="too-few-repeats")
     low, high = (sigma * math.sqrt(freedom / _chi_square(freedom, side)) for side in (1.96, -1.96))
