@@ -64,7 +64,7 @@ def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("sheet.txt", ".ngc .script .jks .mod .py .src .lua .ls .drl .csv .json"),
+        ("sheet.txt", ".ngc .script .jks .mod .py .src .lua .ls .drl .csv .ebb .json"),
         ("nowhere/sheet.ngc", "cannot be written"),
     ],
 )

@@ -65,9 +65,10 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".hpgl": "hpgl",
     }.get(extension, "gcode")
     pen = {f"save.{entry}__brush": "rigid"} if entry == "hpgl" else {}  # which has one depth
+    chosen = entry if entry == "hpgl" else ""  # Inkscape has an entry of its own for it
     plugin.set(**{f"save.{entry}__cell": cell}, **pen)
     try:
-        plugin.save(drawing, saved)
+        plugin.save(drawing, saved, chosen)
     finally:
         plugin.set()
     brushsvg(

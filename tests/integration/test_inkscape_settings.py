@@ -11,7 +11,8 @@ from brushsvg.pipeline.preparation import DEFAULT_BRUSH, Options
 
 MACHINES = (
     f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6, "
-    "for KRL kr6-r900, for Lua cr5, for TP lrmate200id, for DRL m0609, for ROS 2 fr3"
+    "for KRL kr6-r900, for Lua cr5, for TP lrmate200id, for DRL m0609, for ROS 2 fr3, "
+    "for EBB axidraw-ebb, for HP-GL hpgl-plotter"
 )
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
 
