@@ -93,6 +93,7 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("X2.5", "X2e5", "line-unread 13"),
         ("X2.5", "A2 X2.5", "line-unread 13"),
         ("G91", "G90 G91", "line-unread 7"),
+        ("X2.5", "G4 P1 X2.5", "line-unread 13"),
         ("J0.5", "J0.5 R0.5", "line-unread 8"),
         ("J0.5", "J0.5 P2", "line-unread 8"),
     ],
@@ -207,11 +208,13 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG0 X60\nG0 Z5\n", "rapid-too-low 4"),
         ("G1 Z-1 F300\nG0 X50\nG0 Z5\n", "line-incomplete 1"),
         ("G0 Z5\nG1 Z-1 F300\nG1 X50 Y50\nG0 Z5\n", "line-incomplete 2"),
+        ("M3 S500\nG1 X50 Y10 F600\nM5\n", "line-incomplete 2"),
     ],
 )
 def test_check_says_what_is_missing(desk, capsys, program, told):
     (desk / "bad.gcode").write_text(program)
-    status, _, said = in_json(capsys, "check", "bad.gcode")
+    cell = ("--cell", "grbl-servo") if "M3" in program else ()
+    status, _, said = in_json(capsys, "check", "bad.gcode", *cell)
     assert status == 1 and is_told(said, told), said
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import _core
-from ..drawing.gcode.toolpaths import CHORD_MM, ways
+from ..drawing.gcode.toolpaths import CHORD_MM, Way, ways
 from ..errors import Error, Notice
 from ..machine.cell import Cell, robot_from_paper
 from ..machine.move_extents import ways as straight
@@ -34,8 +34,9 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
 
     Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
     """
-    passes, careless = _touches(text, cell)
-    outside = _outside(text, cell, sheet_mm)
+    some = ways(text)
+    passes, careless = _touches(some, cell)
+    outside = _outside(some, cell, sheet_mm)
     if not passes:
         raise Error("the brush never touches the paper: nothing is below z 0", code="nothing-painted")
     if sheet_mm is None:
@@ -52,11 +53,11 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
     return Foreign(plan, marks, tuple(dict.fromkeys(problems)))
 
 
-def _outside(text: str, cell: Cell, sheet_mm) -> list[Notice]:
+def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
     """A notice for each limit of place that a line leaves, in the air as well; sheet_mm: with the margin round it,
     where it is known."""
     lines, paths = [], []
-    for way in ways(text):
+    for way in some:
         points = _at_heights(way, cell)
         points = points[~np.isnan(points).any(axis=1)]
         if len(points):
@@ -72,7 +73,7 @@ def _outside(text: str, cell: Cell, sheet_mm) -> list[Notice]:
     ]
 
 
-def _touches(text: str, cell: Cell) -> tuple[list, list[Notice]]:
+def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
     """A pass for each time that the brush is at or below the paper, and a notice for each rapid move there."""
     passes, careless = [], []
     poses: list[np.ndarray] = []
@@ -87,14 +88,12 @@ def _touches(text: str, cell: Cell) -> tuple[list, list[Notice]]:
         poses.clear()
         speeds.clear()
 
-    for way in ways(text):
+    for way in some:
         points = _at_heights(way, cell)
+        if points[-1, 2] < 0 and np.isnan(points[[0, -1], :2]).any():
+            sentence = f"line {way.line}: the brush is down where no line has named both X and Y"
+            raise Error(sentence, code="line-incomplete")
         if np.isnan(points[-1]).any():
-            if points[-1, 2] < 0:
-                raise Error(
-                    f"line {way.line}: the brush is down where no line has named both X and Y",
-                    code="line-incomplete",
-                )
             lifted()
             continue
         points = points[~np.isnan(points).any(axis=1)]

@@ -132,7 +132,9 @@ class _Reader:
             self.power = values["S"]
         if self._pen() != power:
             self._dot(number, power)
-        if codes & {4, 92}:
+        if 4 in codes and set("XYZIJ") & set(values):  # a wait by some, a way behind it by others
+            raise _unread(number, line)
+        if 92 in codes:
             return
         if set("XYZ") & set(values) or (self.motion in (2, 3) and set("IJ") & set(values)):
             self._move(number, line, values)
