@@ -47,16 +47,6 @@ from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
 from brushsvg.pipeline.preparation import Options, prepare
 
-WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
-<title>word</title><g fill="none" stroke="#000" stroke-linecap="round">
-<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="5"/>
-<path id="line" d="M60 78 L14 74" stroke-width="3"/>
-<path id="wave" d="M72 76 C84 56 96 92 110 72 S128 66 132 76" stroke-width="2.5"/>
-<path id="hook" d="M70 12 L98 12 C106 12 106 34 92 34 L78 34" stroke-width="4"/>
-<path id="loop" d="M34 46 a9 9 0 1 1 -0.01 0" stroke-width="2"/>
-<path id="slash" d="M58 24 L30 20" stroke-width="3"/>
-<path id="stem" d="M124 20 L126 52" stroke-width="4"/>
-<path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/></g></svg>"""
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005
 CAUSES = ("place of the sheet", "machine", "height and tilt of the paper", "brush", "each stroke's own place")
@@ -119,7 +109,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
     began = time.process_time()
     folder.mkdir(parents=True, exist_ok=True)
     save_brush(studio.known_brush(), folder / "mine-0.json")
-    (folder / "word.svg").write_text(WORD)
+    (folder / "word.svg").write_text(studio.WORD)
     (folder / "cell-0.toml").write_text(write_cell(find_cell()))
     drawn = None
     result = {

@@ -18,16 +18,6 @@ from brushsvg.pipeline.json_files import read_plan  # noqa: E402
 
 pytestmark = pytest.mark.long
 
-WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
-<title>word</title><g fill="none" stroke="#000" stroke-linecap="round">
-<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="5"/>
-<path id="line" d="M60 78 L14 74" stroke-width="3"/>
-<path id="wave" d="M72 76 C84 56 96 92 110 72 S128 66 132 76" stroke-width="2.5"/>
-<path id="hook" d="M70 12 L98 12 C106 12 106 34 92 34 L78 34" stroke-width="4"/>
-<path id="loop" d="M34 46 a9 9 0 1 1 -0.01 0" stroke-width="2"/>
-<path id="slash" d="M58 24 L30 20" stroke-width="3"/>
-<path id="stem" d="M124 20 L126 52" stroke-width="4"/>
-<path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/></g></svg>"""
 NAMES = ("bow", "line", "wave", "hook", "loop", "slash", "stem", "knee")
 
 
@@ -35,7 +25,7 @@ NAMES = ("bow", "line", "wave", "hook", "loop", "slash", "stem", "knee")
 def job(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studio")
     save_brush(studio.known_brush(), folder / "mine.json")
-    (folder / "word.svg").write_text(WORD)
+    (folder / "word.svg").write_text(studio.WORD)
     words = ["convert", folder / "word.svg", folder / "word.json", "--brush", folder / "mine.json", "--quiet"]
     assert main([*map(str, words)]) == 0
     return folder, read_plan(folder / "word.json")
@@ -104,7 +94,7 @@ def test_nothing_amiss_is_nobodys_fault(job, capsys):
 
 
 def test_few_strokes_blame_nobody(job, capsys, tmp_path):
-    few = WORD[: WORD.index('<path id="wave"')] + "</g></svg>"
+    few = studio.WORD[: studio.WORD.index('<path id="wave"')] + "</g></svg>"
     (tmp_path / "few.svg").write_text(few)
     words = ["simulate-photo", str(tmp_path / "few.svg"), str(tmp_path / "few.jpg"), "--quiet"]
     assert main(words) == 0
