@@ -116,10 +116,11 @@ def _parts(stroke, brush) -> list:
         if min(at_mm[at] - at_mm[before], at_mm[after] - at_mm[at])
         > width_mm  # else its ends hide the corner
     ]
-    better = [each[1] for each in neighbours if _is_better_lifted(line, *each, brush)]
-    if not better:
+    neighbours.sort(key=lambda each: line.turn_rad(each[1]))
+    better = next((each[1] for each in neighbours if _is_better_lifted(line, *each, brush)), None)
+    if better is None:
         return [stroke]
-    least_rad = min(map(line.turn_rad, better)) - _LIKE_RAD
+    least_rad = line.turn_rad(better) - _LIKE_RAD
     lifts = [at for at in sharp if line.turn_rad(at) >= least_rad]  # like corners look alike
     if stroke.closed:
         line = line.begun_at(lifts[0])
