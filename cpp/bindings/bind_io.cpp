@@ -1,3 +1,6 @@
+#include <string>
+#include <string_view>
+
 #include "bindings.hpp"
 #include "brush_json.hpp"
 #include "marks_json.hpp"
@@ -5,10 +8,16 @@
 
 void bind_io(py::module_& m) {
     const auto unlocked = py::call_guard<Unlocked>();
-    m.def("read_brush", &brushsvg::io::read_brush, py::arg("text"), unlocked, "brush.json; Error names the key.");
+    m.def(
+        "read_brush", [](std::string_view text) { return brushsvg::io::read_brush(std::string(text)); },
+        py::arg("text"), unlocked, "brush.json; Error names the key.");
     m.def("write_brush", &brushsvg::io::write_brush, py::arg("brush"), unlocked, "The text of a brush.json.");
-    m.def("read_plan", &brushsvg::io::read_plan, py::arg("text"), unlocked, "plan.json; Error names the key.");
+    m.def(
+        "read_plan", [](std::string_view text) { return brushsvg::io::read_plan(std::string(text)); }, py::arg("text"),
+        unlocked, "plan.json; Error names the key.");
     m.def("write_plan", &brushsvg::io::write_plan, py::arg("plan"), unlocked, "The text of a plan.json.");
-    m.def("read_marks", &brushsvg::io::read_marks, py::arg("text"), unlocked, "marks.json; Error names the key.");
+    m.def(
+        "read_marks", [](std::string_view text) { return brushsvg::io::read_marks(std::string(text)); },
+        py::arg("text"), unlocked, "marks.json; Error names the key.");
     m.def("write_marks", &brushsvg::io::write_marks, py::arg("marks"), unlocked, "The text of a marks.json.");
 }

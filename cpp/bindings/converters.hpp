@@ -101,6 +101,14 @@ struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> 
     }
 };
 
+/// Without bytes, which need not be letters: what is kept could not be read again. A whole file is a std::string_view.
+template <>
+struct type_caster<std::string> : string_caster<std::string> {
+    bool load(handle source, bool convert) {
+        return PyUnicode_Check(source.ptr()) && string_caster<std::string>::load(source, convert);
+    }
+};
+
 /// Without the generators, sets and dicts that pybind11 would make a tuple of.
 template <std::size_t N>
 struct type_caster<std::array<double, N>> : array_caster<std::array<double, N>, double, false, N> {

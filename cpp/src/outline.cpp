@@ -36,7 +36,8 @@ Outline::Outline(const Rings& rings) {
         std::vector<Vector2i> points;
         for (Index i = 0; i < ring.rows(); ++i) {
             const Vector2d p = kUnitsPerMm * ring.row(i).transpose();
-            if (!(p.cwiseAbs().maxCoeff() < 2e9)) throw Error("geometry-out-of-range", "a ring reaches beyond 20 m");
+            if (!(p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < 2e9))
+                throw Error("geometry-out-of-range", "a ring reaches beyond 20 m");
             const Vector2i point(int(std::lround(p.x())), int(std::lround(p.y())));
             if (points.empty() || points.back() != point) points.push_back(point);
         }

@@ -302,6 +302,7 @@ Rings intersect(const Rings& a, const Rings& b) { return heard(in_common, a, b);
 double area(const Rings& rings) {
     double sum = 0.0;
     for (const Ring& ring : rings) sum += signed_area(ring);
+    if (!std::isfinite(sum)) throw Error("geometry-out-of-range", "a ring has a coordinate that is not finite");
     return sum;
 }
 

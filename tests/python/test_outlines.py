@@ -406,6 +406,14 @@ def test_clearance_is_the_distance_from_the_outline_inside_and_out():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [np.nan, np.inf])
+def test_rings_with_a_number_that_is_none_are_refused(number):
+    ring = np.array([[0, 0], [5, 0], [5, number], [0, 5.0]])
+    for ask in (_core.area, _core.unite, _core.fill, lambda rings: _core.medial_axis(rings, 0.1)):
+        with refused("geometry-out-of-range"):
+            ask([ring])
+
+
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])

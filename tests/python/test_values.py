@@ -444,3 +444,9 @@ def test_a_notebook_has_pictures(tmp_path):
     far = _core.Plan("b", "", (9, 9), [_core.Pass("a", [[NAN, 0, 0], [1, 1, 0]])])
     assert far._repr_svg_() is None
     assert notebook.plan_svg(PLAN).count("<polyline") == 2
+
+
+@pytest.mark.parametrize("name", ["element", "layer", "colour"])
+def test_bytes_are_no_text(name):
+    with pytest.raises(TypeError):
+        STROKE.replaced(**({"id": _core.StrokeId(b"a")} if name == "element" else {name: b"a"}))
