@@ -1,6 +1,12 @@
 """Brushes fitted to strokes that robots painted, and how well they predict strokes they have not seen.
 
-    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes]
+    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings]
+
+A set is a file NAME.npz of FOLDER, all of them unless --sets says which. Its arrays: `intensity` (strokes, rows,
+columns), pixels that are paint above 70, `z_range_m`, and either `ctrl` (strokes, 4, 3 or more), control points of a
+cubic with x, y [m] and depth [shares of z_range_m], with `poses` (how many places the robot went through, else 10),
+`x_range`, `y_range` [m] and `grid_m`; or `path` (strokes, 4, 3 or more), places that a spline goes through, with
+`canvas_w_m` and `canvas_h_m`.
 
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
@@ -12,6 +18,10 @@ laws, with footprints held round as long as the strokes do not speak against it.
 2, the footprint's shape 2, height of the paper 1, the set's displacement 2 (at one depth lag 1, half width 1, no
 height); `edges` also has a shift for each fitted stroke. --machine: ours with the machine's numbers beside, in both:
 lean 2, axes 3.
+
+First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
+equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
+both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
 """
 
 from __future__ import annotations
@@ -47,7 +57,10 @@ SCATTER, ROUND = 0.1, (0.4, 0.3, 0.4)
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAWS = ("lag", "tip_gap", "half_width")
-SETS = ("round_v1", "small_16_20", "loops_constant_depth", "marker_control")
+# Commands are nearly equal: rms distance of their ways as a share of the paint's width, rms distance of their depths
+# as a share of the deepest, the sum of both. Farther apart, what strokes miss no longer grows along a line.
+ALIKE_WIDTHS, ALIKE_DEPTH = 0.5, 0.3
+FEWEST_PAIRS, TENTHS = 60, 10
 
 
 @dataclass(eq=False)
@@ -63,19 +76,18 @@ def load(folder: Path, name: str) -> list[Stroke]:
     data = np.load(folder / f"{name}.npz")
     if "path" in data:
         return _loops(data)
-    count = 30 if name == "round_v1" else 10
+    count = int(data["poses"]) if "poses" in data else 10
     t = np.linspace(0, 1, count)
     weights = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
     deep = 1e3 * float(data["z_range_m"])
-    x0, x1 = -20.0, 70.0
-    y0, y1 = -35.0, 35.0
+    (x0, x1), (y0, y1), px = 1e3 * data["x_range"], 1e3 * data["y_range"], 1e3 * float(data["grid_m"])
     out = []
     for paint, ctrl in zip(data["intensity"], data["ctrl"], strict=True):
         xy = weights @ ctrl[:, :2] * 1e3
         # a marker is pressed to one depth, which is called 1 mm
         depth = np.interp(t, np.linspace(0, 1, 4), ctrl[:, 2]) * deep if deep else np.ones(count)
         poses = np.column_stack([xy, -np.maximum(depth, 0)])
-        out.append(_stroke(poses, paint, (x0, y0, x1 - x0, y1 - y0), 0.25))
+        out.append(_stroke(poses, paint, (x0, y0, x1 - x0, y1 - y0), px))
     return out
 
 
@@ -139,6 +151,60 @@ def scores(strokes, predicted) -> tuple[np.ndarray, np.ndarray, list]:
     fixed = np.array([overlap(p, s.mask) for p, s in zip(predicted, strokes, strict=True)])
     moved = [best_shift(p, s.mask, s.px) for p, s in zip(predicted, strokes, strict=True)]
     return fixed, np.array([m[0] for m in moved]), [m[1] for m in moved]
+
+
+# What can be had ------------------------------------------------------------------------------------
+
+
+def ceiling(strokes) -> tuple[np.ndarray, np.ndarray, int] | None:
+    """Overlap (fixed, shift) of two strokes of one command, its standard errors, and how many pairs of nearly equal
+    commands it is drawn from; None for too few. Standard errors: a tenth of the strokes left out in turn."""
+    at = np.linspace(0, 1, 40)
+    ways = np.array([_along(s.poses, at) for s in strokes])
+    way_mm = np.sqrt(((ways[:, None, :, :2] - ways[None, :, :, :2]) ** 2).sum(-1).mean(-1))
+    depth_mm = np.sqrt(((ways[:, None, :, 2] - ways[None, :, :, 2]) ** 2).mean(-1))
+    alike_mm, deep_mm = ALIKE_WIDTHS * _paint_per_mm(strokes), max(1e-9, -ways[:, :, 2].min())
+    apart = way_mm / alike_mm + depth_mm / (ALIKE_DEPTH * deep_mm)
+    pairs = np.argwhere(np.triu(apart < 1, 1))
+    if len(pairs) < FEWEST_PAIRS:
+        return None
+    terms = np.column_stack(
+        [np.ones(len(pairs)), way_mm[tuple(pairs.T)] / alike_mm, depth_mm[tuple(pairs.T)] / deep_mm]
+    )
+    terms = terms[:, terms.any(axis=0)]
+    missing = np.array([_missing(strokes[a], strokes[b]) for a, b in pairs])
+
+    def at_equal(chosen):
+        return np.linalg.lstsq(terms[chosen], missing[chosen], rcond=None)[0][0]
+
+    kept = [(pairs % TENTHS != k).all(axis=1) for k in range(TENTHS)]
+    without = np.array([at_equal(each) for each in kept])
+    error = np.sqrt((TENTHS - 1) / TENTHS * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
+    return 1 - at_equal(np.ones(len(pairs), bool)), error, len(pairs)
+
+
+def _along(poses, at) -> np.ndarray:
+    steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+    way = np.append(0, np.cumsum(steps)) / max(1e-9, steps.sum())
+    return np.column_stack([np.interp(at, way, column) for column in poses.T])
+
+
+def _missing(a: Stroke, b: Stroke) -> tuple[float, float]:
+    return 1 - overlap(a.mask, b.mask), 1 - best_shift(a.mask, b.mask, a.px)[0]
+
+
+def ceiling_words(strokes) -> str:
+    if len({stroke.mask.shape for stroke in strokes}) > 1:
+        return "what can be had: its strokes lie in different windows"
+    found = ceiling(strokes)
+    if found is None:
+        return "what can be had: too few commands are nearly equal"
+    same, error, pairs = found
+    best, best_error = 1 - (1 - same) / np.sqrt(2), error / np.sqrt(2)
+    return (
+        f"{'what can be had':22s} fixed {best[0]:.3f}  shift {best[1]:.3f}  (+- {best_error[0]:.3f}, "
+        f"{best_error[1]:.3f}; two strokes of one command {same[0]:.3f}, {same[1]:.3f}, from {pairs} pairs)"
+    )
 
 
 # The throw-away models ------------------------------------------------------------------------------
@@ -520,18 +586,22 @@ def _parts(text: str) -> tuple[str, ...]:
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     arguments.add_argument("folder", type=Path)
-    arguments.add_argument("--sets", nargs="*", default=SETS)
+    arguments.add_argument("--sets", nargs="*", metavar="NAME")
+    arguments.add_argument("--ceilings", action="store_true")
     arguments.add_argument("--pictures", type=Path)
     arguments.add_argument("--no-peers", action="store_true")
     arguments.add_argument("--machine", metavar="PARTS", type=_parts, default=(), help="lean,axes")
     args = arguments.parse_args()
-    for name in args.sets:
+    for name in args.sets or sorted(path.stem for path in args.folder.glob("*.npz")):
         strokes = load(args.folder, name)
         seen, unseen = strokes[::2], strokes[1::2]
         print(
             f"\n{name}: {len(seen)} strokes fitted, {len(unseen)} scored; {_paint_per_mm(seen):.2f} and "
             f"{_paint_per_mm(unseen):.2f} mm^2 of paint per mm of way (median)"
         )
+        print(f"  {ceiling_words(strokes)}", flush=True)
+        if args.ceilings:
+            continue
         if not args.no_peers:
             for terms, what in DISCS:
                 x = fit_disc(seen, terms)
