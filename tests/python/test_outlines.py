@@ -56,6 +56,21 @@ def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(sl
     assert (line[-1, 1] < 50 - 40) == (not is_straight)
 
 
+@pytest.mark.parametrize(
+    ("d", "half_mm"),
+    [
+        ("M8 25C8 10 24 6 36 11V18C26 13 15 14 15 25C15 36 26 37 36 32V39C24 44 8 40 8 25Z", 3.0),
+        ("M10 45V24C16 14 26 9 36 9V16C28 16 20 20 17 27V45Z", 3.2),
+    ],
+)
+def test_an_arm_whose_sides_bend_is_as_wide_at_its_cut(d, half_mm):
+    """As of C and r: the axis points past the middle of the cut, and ran on into its corner, 2.0 and 1.8 mm."""
+    (letter,) = painted(path(d))
+    halves = letter.half_width[0][1], letter.half_width[-1][1]
+    at = {x > 30: half for (x, _), half in zip(ends(letter), halves, strict=True)}
+    assert at[True] == pytest.approx(half_mm, abs=0.1)
+
+
 def test_a_last_step_aside_is_left_out():
     """As the axis of an s ends: what squares ends looks for the cut along the last direction."""
     bar = np.array([(0.0, -3.0), (40.0, -3.0), (40.6, 3.0), (0.0, 3.0)])

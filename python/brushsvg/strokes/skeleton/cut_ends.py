@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry.polylines import length
+from ...geometry.rotation import rotation
 from .graph import Piece
 
 # What is looked at back from the end, in half widths there: the axis of a cut at 45 degrees hooks for 3.7 of them.
@@ -19,6 +20,8 @@ LEVEL = 0.06
 # be, in half widths. A brush squares what is no steeper (drawn_cut.cpp).
 ASIDE, STRAIGHT, BENT, STEEPEST = 0.92, 0.12, 0.5, 1.3
 FLICK = 0.25  # in half widths: a last piece that is no longer is but how the axis ends
+# The axis of an arm whose sides bend as they end, as of an r, points past the middle of its cut by so much.
+TURNS_RAD = np.radians([0, -8, 8, -16, 16])
 UNSEEN_RAD = np.radians(6)  # a last step that turns by less is no hook
 
 
@@ -38,7 +41,8 @@ def _at_last(chain: list[Piece], rings: list[np.ndarray]) -> list[Piece]:
     if line is not last.line or len(chain) == 1:
         return [*chain[:-1], replace(last, line=line)]
     before = chain[-2]
-    both = np.vstack([before.line, last.line])
+    is_shared = np.allclose(before.line[-1, :2], last.line[0, :2])
+    both = np.vstack([before.line, last.line[1:] if is_shared else last.line])
     line = run_to_cut(both, rings)
     is_flick = length(last.line[:, :2]) < FLICK * last.line[-1, 2]
     if line is both or (
@@ -72,13 +76,17 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
         if not half > 0 or before[2] > (1 + LEVEL) * half:
             continue
         here = np.array([x, y])
-        ahead = (here - before[:2]) / np.hypot(*(here - before[:2]))
+        axis = (here - before[:2]) / np.hypot(*(here - before[:2]))
         if k == 0:
-            if _turn(back[0, :2] - back[1, :2], ahead) < UNSEEN_RAD:
+            if _turn(back[0, :2] - back[1, :2], axis) < UNSEEN_RAD:
                 return line
             continue
-        cut = _cut(here, ahead, half, rings)
-        if cut is None:
+        for turn_rad in TURNS_RAD:
+            ahead = rotation(turn_rad).T @ axis
+            cut = _cut(here, ahead, half, rings)
+            if cut and abs(np.arctan(cut[1]) - turn_rad) < np.arctan(STEEPEST):
+                break
+        else:
             continue
         to_cut_mm, slope = cut
         on_mm = to_cut_mm - half * np.hypot(1, slope)
