@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnostics import refused
 from programs import program
 
 from brushsvg import _core, find_brush, read_plan, write_program
@@ -17,6 +18,7 @@ from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
 from brushsvg.machine.rounding import as_written
 from brushsvg.verification.readback import read_program
+from brushsvg.verification.readback.gcode import read_gcode
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
@@ -131,6 +133,20 @@ def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name
         if line.startswith("G0 X"):
             assert feed == 60 * find_cell(name).speeds.travel_mm_s
     assert feed
+
+
+@pytest.mark.parametrize(
+    ("name", "is_read"), [("marlin-3axis", False), ("klipper-3axis", False), ("grbl-3axis", True)]
+)
+def test_a_command_with_a_sign_is_none_to_printers(name, is_read):
+    """The others read G-0 as G0; a printer leaves the line out, and what comes next runs from where it stands."""
+    damaged, count = re.subn(r"(?m)^G0 X", "G-0 X", text_of(*TWO, cell=name), count=1)
+    assert count
+    if is_read:
+        read_gcode(damaged, find_cell(name))
+        return
+    with refused("line-unread line G-0"):
+        read_gcode(damaged, find_cell(name))
 
 
 HALF_TURNS = [(40 + 4 * np.cos(a), 30 + 4 * np.sin(a), -2.0) for a in np.linspace(0, np.pi, 12)]

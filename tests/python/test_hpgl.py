@@ -206,6 +206,7 @@ def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
         (r"PD;\nPA", "PD;\nSP2;\nPA", "line-unread"),
         (r"PU;\nPU;\nSP0", "SP0", "line-unread"),
         (r"VS2;\n", "", "line-incomplete"),
+        (r"VS2;", "VS0;", "line-unread"),
     ],
 )
 def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, told):

@@ -144,7 +144,7 @@ class _Reader:
         if line == self.dialect.stops[-1]:
             self.out.acts.append(Act(number, "text", line))
             return
-        words = _words(line)
+        words = () if line[1:2] == "-" else _words(line)  # G-0 is G0 to others, to these no command
         first = f"{words[0][0]}{words[0][1]:g}" if words else ""
         values = dict(words[1:])
         if (

@@ -11,7 +11,8 @@ from ...machine.posts.hpgl import CM_S, HELD_UP, comment
 from . import Act, Readback, Step
 
 _CODE = re.compile(
-    r"(IN|PU|PD|PA|PR|SP(-?0|\d{1,2})|VS(\d{1,3})|P[AUD](-?\d{1,7}),(-?\d{1,7})) *;?", re.IGNORECASE
+    r"(IN|PU|PD|PA|PR|SP(-?0|\d{1,2})|VS(0{0,2}[1-9]\d{0,2})|P[AUD](-?\d{1,7}),(-?\d{1,7})) *;?",
+    re.IGNORECASE,
 )
 _COMMENT = re.compile(r'CO "([^"]*)";')
 
