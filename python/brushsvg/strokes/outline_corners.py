@@ -92,7 +92,8 @@ def _cut(stroke, line: Line, at_mm: list[float]) -> list:
         if corner is None:
             return []
         halves = _halves(line, (at - away[0]) / length_mm, (at + away[1]) / length_mm)
-        sides = _sides(left, corner, first[1], second[1], halves, first[0])
+        before, after = _swept(line, begin_mm, at), _swept(line, at, length_mm)
+        sides = _sides(left, corner, first[1], second[1], halves, first[0], before, after)
         if sides is None:
             return []
         done, left, shared = sides
@@ -130,8 +131,17 @@ def _meet(first, second) -> np.ndarray | None:
     return a + along * (off[0] * onward[1] - off[1] * onward[0]) / cross
 
 
-def _sides(shape, corner, along, onward, halves, before):
-    """A shape cut from its inner to its outer corner: what lies before, what after, and what both legs have."""
+def _swept(line: Line, from_mm: float, to_mm: float):
+    """What discs as wide as the line cover between two arc lengths."""
+    from .. import _core
+    from .contour_fill import region
+
+    return region(_core.wanted_outline(line_stroke(Line(*line.stretch(from_mm, to_mm))), 0.01))
+
+
+def _sides(shape, corner, along, onward, halves, before_at, before, after):
+    """A shape cut from its inner to its outer corner: what lies before, what after, and what both legs have. Where the
+    second leg runs back to the first, as of P, the cut leaves one piece: that is shared out by what the legs cover."""
     import shapely
     import shapely.ops
 
@@ -139,10 +149,13 @@ def _sides(shape, corner, along, onward, halves, before):
     inwards = (onward - along) / np.hypot(*(onward - along))
     knife = shapely.LineString([corner - 2.2 * half * inwards, corner + 2.2 * half * inwards])
     parts = shapely.get_parts(shapely.ops.split(shape, knife)) if shape.geom_type == "Polygon" else []
-    if len(parts) != 2:
+    if len(parts) == 1:
+        parts = _shared_out(shape, before, after)
+    elif len(parts) != 2:
         return None
     first = int(
-        shapely.distance(parts[1], shapely.Point(before)) < shapely.distance(parts[0], shapely.Point(before))
+        shapely.distance(parts[1], shapely.Point(before_at))
+        < shapely.distance(parts[0], shapely.Point(before_at))
     )
     sine = abs(along[0] * onward[1] - along[1] * onward[0])
     a, b = 1.05 * halves[1] / sine * along, 1.05 * halves[0] / sine * onward
@@ -150,6 +163,15 @@ def _sides(shape, corner, along, onward, halves, before):
         shape, shapely.Polygon([corner + a + b, corner + a - b, corner - a - b, corner - a + b])
     )
     return parts[first], parts[1 - first], both
+
+
+def _shared_out(shape, before, after) -> list:
+    import shapely
+
+    rest = shapely.difference(shape, before)
+    ours = [part for part in shapely.get_parts(rest) if shapely.area(shapely.intersection(part, after)) > 0]
+    second = shapely.union_all(ours)
+    return [shapely.difference(shape, second), second]
 
 
 def _end(shape, place, half_mm: float) -> np.ndarray | None:
