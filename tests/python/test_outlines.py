@@ -71,6 +71,19 @@ def test_an_arm_whose_sides_bend_is_as_wide_at_its_cut(d, half_mm):
     assert at[True] == pytest.approx(half_mm, abs=0.1)
 
 
+def test_a_corner_in_which_two_strokes_end_belongs_to_both():
+    """Neither had a straight end in its part, and both ended round. Where a bar runs into a stem, nothing is added."""
+    dee = painted(path("M20 5H35Q55 5 55 25Q55 45 35 45H20ZM28 11V39H35Q48 39 48 25Q48 11 35 11Z"))
+    assert len(dee) == 2
+    for y in (5.1, 44.7):
+        corner = np.array([(20.1, y), (20.3, y), (20.3, y + 0.2), (20.1, y + 0.2)])
+        for stroke in dee:
+            assert _core.area(_core.intersect(stroke.wanted_mm, [corner])) == pytest.approx(0.04, abs=1e-4)
+    tee = painted(path("M10 10H50V16H33V45H27V16H10Z"))
+    parts = sum(_core.area(stroke.wanted_mm) for stroke in tee)
+    assert parts < _core.area(wanted(tee)) + 6 * 6 + 1
+
+
 def test_a_last_step_aside_is_left_out():
     """As the axis of an s ends: what squares ends looks for the cut along the last direction."""
     bar = np.array([(0.0, -3.0), (40.0, -3.0), (40.6, 3.0), (0.0, 3.0)])

@@ -99,7 +99,24 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
 def _cut(
     here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
 ) -> tuple[float, float] | None:
-    """How far ahead the outline is cut across, in mm, and its slope; None where that is no straight cut."""
+    """The same, of a line with straight sides up to there."""
+    cut = straight_cut(here, ahead, half, rings)
+    if cut is None:
+        return None
+    left = np.array([-ahead[1], ahead[0]])
+    for side in (-1, 1):
+        for on_mm in np.linspace(0.0, 0.9 * (cut[0] + cut[1] * side * ASIDE * half), 4):
+            at = here + on_mm * ahead + 0.7 * half * side * left  # inside, on either side of a slanted cut
+            if abs(_left_ahead(at, side * left, ahead, 0.0, rings) - 0.3 * half) > BENT * half:
+                return None
+    return cut
+
+
+def straight_cut(
+    here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
+) -> tuple[float, float] | None:
+    """How far ahead of a place the outline of rings is cut straight across, in mm, and its slope; None where it is
+    not, over the width of a line of this half width."""
     left = np.array([-ahead[1], ahead[0]])
     aside = ASIDE * half * np.linspace(-1.0, 1.0, 7)
     reached = np.array([_left_ahead(here, ahead, left, y, rings) for y in aside])
@@ -109,11 +126,6 @@ def _cut(
     middle = (reached[0] + reached[-1]) / 2
     if abs(slope) > STEEPEST or (np.abs(middle + slope * aside - reached) > STRAIGHT * half).any():
         return None
-    for side, up_to_mm in ((-left, reached[0]), (left, reached[-1])):
-        for on_mm in np.linspace(0.0, 0.9 * up_to_mm, 4):
-            at = here + on_mm * ahead + 0.7 * half * side  # inside, on either side of a slanted cut
-            if abs(_left_ahead(at, side, ahead, 0.0, rings) - 0.3 * half) > BENT * half:
-                return None
     return float(middle), float(slope)
 
 

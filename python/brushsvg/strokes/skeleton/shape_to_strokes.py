@@ -15,6 +15,7 @@ from ...errors import Error
 from ...geometry.rings import with_holes
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
+from .shared_corners import with_shared_corners
 from .writing_order import in_rows, joined, ordered
 
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
@@ -67,7 +68,8 @@ def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[
     if len(chains) == 1:
         return [_stroke(chains[0], area)]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT
-    return [_stroke(chain, _part(chain, found, area if cuts else None)) for chain in chains]
+    strokes = [_stroke(chain, _part(chain, found, area if cuts else None)) for chain in chains]
+    return with_shared_corners(strokes, area) if cuts else strokes
 
 
 def _part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
