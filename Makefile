@@ -133,7 +133,7 @@ bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	cmake --preset release >/dev/null
 	cmake --build --preset release --target advance_bench
-	$(BIN)/python benchmarks/table.py
+	$(BIN)/python benchmarks/table.py $(TABLE)
 	build/release/benchmarks/advance_bench
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
@@ -144,6 +144,8 @@ bench: setup
 	$(BIN)/python benchmarks/preview.py
 
 # The same script over both trees: that of REV is built beside ours and stays there, so that the next time is quick.
+# TABLE: what else the script is told, such as TABLE='--rounds 1 --only word'.
+TABLE ?=
 bench-compare: setup
 	@: "$${REV:?which revision? make bench-compare REV=main}"
 	$(MAKE) --no-print-directory $(VENV)/.dev
@@ -154,7 +156,7 @@ bench-compare: setup
 	for tree in . "$$that"; do
 	  (cd "$$tree"; cmake --preset release >/dev/null; cmake --build --preset release --target advance_bench)
 	done
-	$(BIN)/python benchmarks/table.py --against "$$that"
+	$(BIN)/python benchmarks/table.py --against "$$that" $(TABLE)
 
 docs: setup
 	@$(BIN)/pip install -q --no-build-isolation -e ".[docs]"

@@ -168,7 +168,8 @@ def preview(drawing: Path) -> Callable[[Path], Spent]:
     return lambda tree: run([SYSTEM_PYTHON, PREVIEW, f"--executable={command(tree)}", drawing])[0]
 
 
-def rows(folder: Path) -> list[Row]:
+def rows(folder: Path, only: str = "") -> list[Row]:
+    """Those with a word in their names; a chart is painted for a row that fits it alone."""
     word, large, part = ROOT / "examples" / "vincent.svg", folder / "page.svg", folder / "part.svg"
     lines = page.page().splitlines()
     large.write_text("\n".join(lines), encoding="utf-8")
@@ -176,7 +177,8 @@ def rows(folder: Path) -> list[Row]:
     program, page_svg, word_program = folder / "p.ngc", folder / "p.svg", folder / "word.ngc"
     alphabet, chart = folder / "abc.svg", folder / "chart.json"
     letters(alphabet)
-    marks = painted_chart(chart)
+    fit = "fit of a chart's marks"
+    marks = painted_chart(chart) if only in fit else 0
     subprocess.run([command(ROOT), "convert", word, word_program, "--quiet"], check=True)
     start = here(code("import numpy"))
     xml = here(code(f"from xml.etree import ElementTree; ElementTree.parse({str(large)!r})"))
@@ -187,7 +189,7 @@ def rows(folder: Path) -> list[Row]:
     numpy_starts = "floor: Python and numpy start"
     refine = ("--compensation", "refined")
     found = [
-        Row(f"fit of a chart's {marks} marks", "s", "5", brushsvg("calibrate", chart, "-o", folder / "b.json")),
+        Row(f"{fit}, {marks} of them", "s", "5", brushsvg("calibrate", chart, "-o", folder / "b.json")),
         Row(of_page + "convert", "s", "1.0", brushsvg("convert", large, program), "floor: Python reads the XML", xml),
         Row(of_page + "report", "s", "1.0", brushsvg("report", large), numpy_starts, start),
         Row(of_page + "predict .svg", "s", "2", brushsvg("predict", large, page_svg), "peer: svgpathtools reads", peer),
@@ -203,7 +205,7 @@ def rows(folder: Path) -> list[Row]:
     ]  # fmt: skip
     if shutil.which(SYSTEM_PYTHON) and not subprocess.run([SYSTEM_PYTHON, "-c", "import lxml"]).returncode:
         found.append(Row("Inkscape's preview of the word, its process", "s", "0.5", preview(word)))
-    return found
+    return [row for row in found if only in row.name]
 
 
 def least(works: list[Callable[[], Spent]], rounds: int) -> list[Spent]:
@@ -240,9 +242,7 @@ def main() -> None:
     print("|" + " | ".join(titles) + " |\n" + "|---" * len(titles) + "|")
     slower = []
     with tempfile.TemporaryDirectory() as folder:
-        for row in rows(Path(folder)):
-            if options.only not in row.name:
-                continue
+        for row in rows(Path(folder), options.only):
             works = [lambda row=row: row.measure(ROOT)]
             if options.against:
                 works.append(lambda row=row: row.measure(options.against.resolve()))

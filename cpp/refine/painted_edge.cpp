@@ -10,6 +10,9 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
+/// What is rounded where a box is held against an edge [mm].
+constexpr double kRounding = 1e-9;
+
 /// Corners that a polyline cannot do without: the others are no farther from it than the tolerance (Douglas, Peucker).
 void keep_corners(const Ring& ring, Index first, Index last, double tolerance, std::vector<bool>& keep) {
     double most = tolerance;
@@ -57,8 +60,6 @@ Edges::Edges(const Rings& rings) {
     }
     over_length2_ = (bx_.square() + by_.square()).max(1e-18).inverse();
     x_per_y_ = (by_.abs() > 1e-12).select(bx_ / by_, 0.0);
-    centre_ = {ax_.mean(), ay_.mean()};
-    radius_ = std::sqrt(((ax_ - centre_.x()).square() + (ay_ - centre_.y()).square()).maxCoeff());
 }
 
 EdgePoint Edges::nearest(const Vector2d& p) const {
@@ -109,11 +110,15 @@ PaintedEdge::PaintedEdge(const Brush& brush, double tolerance_mm) : brush_(brush
 void PaintedEdge::place(const PatchSamples& samples) {
     samples_ = samples;
     footprints_.resize(samples.size());
+    boxes_.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double c = std::cos(samples[i].heading_rad), s = std::sin(samples[i].heading_rad);
         Eigen::Matrix2d turn;  // of rows
         turn << c, s, -s, c;
-        Ring ring = outline_about_contact(few_, brush_, samples[i].depth_mm) * turn;
+        const Ring outline = outline_about_contact(few_, brush_, samples[i].depth_mm);
+        const Eigen::RowVector2d least = outline.colwise().minCoeff(), most = outline.colwise().maxCoeff();
+        boxes_[i] = {samples[i].contact_mm, {c, s}, least.x(), most.x(), least.y(), most.y()};
+        Ring ring = outline * turn;
         ring.rowwise() += samples[i].contact_mm.transpose();
         footprints_[i] = Edges({ring});
     }
@@ -123,9 +128,7 @@ EdgePoint PaintedEdge::nearest(const Vector2d& p, std::size_t near) const {
     EdgePoint best = footprints_[near].nearest(p);
     best.sample = near;
     for (std::size_t i = 0; i < footprints_.size(); ++i) {
-        // outside no nearer than its circle; inside no deeper than the point lies in the circle
-        const double reach = best.distance_mm + footprints_[i].radius();
-        if (reach <= 0.0 || (p - footprints_[i].centre()).squaredNorm() >= reach * reach || i == near) continue;
+        if (i == near || boxes_[i].at_least_mm(p) >= best.distance_mm + kRounding) continue;
         EdgePoint other = footprints_[i].nearest(p);
         if (other.distance_mm >= best.distance_mm) continue;
         best = other;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "brushsvg/brush.hpp"
@@ -29,13 +30,22 @@ class Edges {
     }
     /// Unit vector from the inside to the outside where a point was found to lie.
     Eigen::Vector2d outwards(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
-    const Eigen::Vector2d& centre() const { return centre_; }
-    double radius() const { return radius_; }
 
  private:
     Eigen::ArrayXd ax_, ay_, bx_, by_, over_length2_, x_per_y_;
-    Eigen::Vector2d centre_;
-    double radius_ = 0.0;
+};
+
+/// A box along the heading, about what a footprint paints.
+struct HeadedBox {
+    Eigen::Vector2d contact_mm, heading;
+    double back_mm, front_mm, right_mm, left_mm;  ///< from the contact, along the heading and across
+
+    /// No place in the box is nearer to the point; where the point is inside, none of its edge deeper.
+    double at_least_mm(const Eigen::Vector2d& point_mm) const {
+        const Eigen::Vector2d from = point_mm - contact_mm;
+        const double along = from.dot(heading), across = heading.x() * from.y() - heading.y() * from.x();
+        return std::max(std::max(back_mm - along, along - front_mm), std::max(right_mm - across, across - left_mm));
+    }
 };
 
 /// How a distance grows when the patch is moved, turned, pressed.
@@ -68,6 +78,7 @@ class PaintedEdge {
     FootprintTable few_;
     PatchSamples samples_;
     std::vector<Edges> footprints_;
+    std::vector<HeadedBox> boxes_;  ///< about each
 };
 
 }  // namespace brushsvg::fit

@@ -65,14 +65,9 @@ class Line {
         Eigen::Index i = std::upper_bound(start_.begin(), start_.end(), s) - start_.begin() - 1;
         i = std::clamp<Eigen::Index>(i, 0, stroke_.middle_mm.rows() - 1);
         const double target = s - start_[i], whole = start_[i + 1] - start_[i];
-        double a = 0.0, b = 1.0;
         if (target <= 0.0) return at({i, 0.0}, start_[i]);
         if (target >= whole) return at({i, 1.0}, start_[i + 1]);
-        for (int k = 0; k < 60 && b - a > 1e-14; ++k) {
-            const double t = 0.5 * (a + b);
-            (arc_length(stroke_.middle_mm, i, 0.0, t) < target ? a : b) = t;
-        }
-        return at({i, b}, s);
+        return at({i, parameter_at(stroke_.middle_mm, i, target)}, s);
     }
     Sample between(const Sample& a, const Sample& b, double c) const {
         const Place place{a.place.cubic, a.place.t + c * (b.place.t - a.place.t)};

@@ -14,6 +14,7 @@
 #include "brushsvg/error.hpp"
 #include "meanwhile.hpp"
 #include "nearest_on_polyline.hpp"
+#include "star_union.hpp"
 
 namespace brushsvg {
 namespace {
@@ -113,15 +114,43 @@ void require_finite(const Ring& ring) {
     if (!ring.allFinite()) throw Error("not-finite", "a ring has a coordinate that is not finite");
 }
 
+/// Numbers of the points from left to right, from below where one is above the other. Corners of convex rings, which
+/// points mostly are, run there and back: such runs are merged.
+std::vector<Eigen::Index> from_left_to_right(const Ring& points) {
+    const Eigen::Index n = points.rows();
+    const auto is_before = [&](Eigen::Index a, Eigen::Index b) {
+        return points(a, 0) < points(b, 0) || (points(a, 0) == points(b, 0) && points(a, 1) < points(b, 1));
+    };
+    std::vector<Eigen::Index> order(n), other(n);
+    std::iota(order.begin(), order.end(), Eigen::Index(0));
+    std::vector<Eigen::Index> begins;
+    for (Eigen::Index i = 0; i < n;) {
+        begins.push_back(i);
+        const Eigen::Index first = i;
+        const bool rises = ++i < n && !is_before(i, i - 1);
+        while (i < n && is_before(i, i - 1) != rises) ++i;
+        if (!rises) std::reverse(order.begin() + first, order.begin() + i);
+    }
+    begins.push_back(n);
+    while (begins.size() > 2) {
+        checkpoint(int(n / 50));
+        std::vector<Eigen::Index> fewer;
+        for (std::size_t k = 0; k + 1 < begins.size(); k += 2) {
+            const Eigen::Index middle = begins[k + 1], end = k + 2 < begins.size() ? begins[k + 2] : middle;
+            std::merge(order.begin() + begins[k], order.begin() + middle, order.begin() + middle, order.begin() + end,
+                       other.begin() + begins[k], is_before);
+            fewer.push_back(begins[k]);
+        }
+        fewer.push_back(n);
+        begins = std::move(fewer);
+        order.swap(other);
+    }
+    return order;
+}
+
 /// Numbers of the points that are corners of their convex hull, counter-clockwise.
 std::vector<Eigen::Index> hull_order(const Ring& points) {
-    std::vector<Eigen::Index> order(points.rows());
-    std::iota(order.begin(), order.end(), Eigen::Index(0));
-    unsigned compared = 0;
-    std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-        if (++compared % 1000 == 0) checkpoint(20);
-        return points(a, 0) < points(b, 0) || (points(a, 0) == points(b, 0) && points(a, 1) < points(b, 1));
-    });
+    std::vector<Eigen::Index> order = from_left_to_right(points);
     std::vector<Eigen::Index> hull;
     if (order.empty()) return hull;
     const auto turns_right = [&](Eigen::Index c) {
@@ -291,7 +320,10 @@ double common_share(const Rings& a, const Rings& b) {
 
 }  // namespace
 
-Rings unite(const Rings& rings) { return heard(united, rings); }
+Rings unite(const Rings& rings) {
+    require_outer_rings(rings);
+    return heard(united, united_in_sight(rings));
+}
 
 Rings fill(const Rings& outlines, FillRule rule) {
     return heard([rule](const Rings& rings) { return filled_by(rings, rule); }, outlines);
@@ -332,10 +364,12 @@ Rings pieces_between(const Rings& chain) {
     for (const Ring& ring : chain) require_finite(ring);
     if (chain.size() < 2) return chain;
     using Numbers = std::vector<Eigen::Index>;
-    std::vector<Numbers> hulls;  // of F_i and F_i+1, whose corners are numbered behind those of F_i
+    Rings pairs;                 // F_i and F_i+1
+    std::vector<Numbers> hulls;  // of these; corners of F_i+1 are numbered behind those of F_i
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
         checkpoint(10);
-        hulls.push_back(hull_order(both(chain[i], chain[i + 1])));
+        pairs.push_back(both(chain[i], chain[i + 1]));
+        hulls.push_back(hull_order(pairs.back()));
     }
     // Between two corners of F_i that stay, others of F_i can go: what they enclose lies in F_i, so in the hull before.
     // So can corners of F_i+1 that are none of the next hull: what they enclose is in that, and is not what it loses.
@@ -356,8 +390,10 @@ Rings pieces_between(const Rings& chain) {
         const std::size_t m = hull.size();
         // corners of the same shape next to each, before and behind it: twice around, for the ends meet
         std::vector<std::size_t> before(m, 0), behind(m, 0);
-        for (std::size_t k = 1; !is_one && k < 2 * m; ++k) {
-            const std::size_t a = (k - 1) % m, b = k % m, c = (2 * m - k) % m, d = (2 * m - k - 1) % m;
+        for (std::size_t k = 1, b = 0, d = m - 1; !is_one && k < 2 * m; ++k) {
+            const std::size_t a = b, c = d;
+            b = b + 1 == m ? 0 : b + 1;
+            d = d == 0 ? m - 1 : d - 1;
             before[b] = (hull[a] >= n) == (hull[b] >= n) ? before[a] + 1 : 0;
             behind[d] = (hull[c] >= n) == (hull[d] >= n) ? behind[c] + 1 : 0;
         }
@@ -369,9 +405,8 @@ Rings pieces_between(const Rings& chain) {
                 kept.push_back(hull[k]);
         }
         // a shape that grows or turns in place leaves strips so thin that rounding would fray the outline
-        Ring piece = rows_of(both(chain[i], chain[i + 1]), kept);
-        if (kept.size() < 3 || signed_area(piece) < kThinnest * length_around(piece))
-            piece = rows_of(both(chain[i], chain[i + 1]), hull);
+        Ring piece = rows_of(pairs[i], kept);
+        if (kept.size() < 3 || signed_area(piece) < kThinnest * length_around(piece)) piece = rows_of(pairs[i], hull);
         pieces.push_back(std::move(piece));
     }
     return pieces;

@@ -201,16 +201,19 @@ class Tracer {
         const bool turns_in_place = !a.state.taut && a.state.heading.dot(b.state.heading) < 1.0 - 1e-8;
         if (!grows && !turns_in_place) return 0.0;
         // along the normals of the middle outline's edges: long flanks show it, and only there
-        const Ring from = outline_of(a), to = outline_of(b), between = outline_of(c);
+        using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;  // read along x and y, once for each normal
+        const Columns from = outline_of(a), to = outline_of(b), between = outline_of(c);
+        const auto reach = [](const Columns& outline, const Vec2<double>& normal) {
+            return (outline.col(0) * normal.x() + outline.col(1) * normal.y()).maxCoeff();
+        };
         double gap = 0.0;
         for (Eigen::Index k = 0, n = between.rows(); k < n; ++k) {
             const Eigen::Index j = k + 1 == n ? 0 : k + 1;
-            const Vec2<double> edge = (between.row(j) - between.row(k)).transpose();
+            const Vec2<double> edge = (between.row(j) - between.row(k)).matrix().transpose();
             const double length = edge.norm();
             if (length < 4.0 * tolerance_) continue;  // too short to open a gap of the tolerance
             const Vec2<double> normal(edge.y() / length, -edge.x() / length);
-            const double mean = 0.5 * ((from * normal).maxCoeff() + (to * normal).maxCoeff());
-            gap = std::max(gap, std::abs((between * normal).maxCoeff() - mean));
+            gap = std::max(gap, std::abs(reach(between, normal) - 0.5 * (reach(from, normal) + reach(to, normal))));
         }
         return gap;
     }

@@ -21,6 +21,9 @@ using Eigen::Vector2d;
 /// Lines that are joined meet within as much. What is farther apart would be painted straight across.
 constexpr double kGapMm = 0.01;
 
+/// What parameters at a length are told to: 47 halves of a cubic, less than a hair of a metre of it.
+constexpr double kParameterStep = 0x1p-47;
+
 void require_cubic(const Cubics& c, Index i) {
     if (i < 0 || i >= c.rows())
         throw Error("out-of-range",
@@ -30,12 +33,19 @@ void require_cubic(const Cubics& c, Index i) {
 
 Vector2d control(const Cubics& c, Index i, int k) { return c.row(i).segment<2>(2 * k).transpose(); }
 
-Vector2d derivative(const Cubics& c, Index i, double t) {
-    const Vector2d a = control(c, i, 1) - control(c, i, 0), b = control(c, i, 2) - control(c, i, 1),
-                   d = control(c, i, 3) - control(c, i, 2);
-    const double u = 1.0 - t;
-    return 3.0 * (u * u * a + 2.0 * u * t * b + t * t * d);
-}
+/// B'(t) of one cubic.
+struct Derivative {
+    Vector2d a, b, d;
+
+    Derivative(const Cubics& c, Index i)
+        : a(control(c, i, 1) - control(c, i, 0)),
+          b(control(c, i, 2) - control(c, i, 1)),
+          d(control(c, i, 3) - control(c, i, 2)) {}
+    Vector2d operator()(double t) const {
+        const double u = 1.0 - t;
+        return 3.0 * (u * u * a + 2.0 * u * t * b + t * t * d);
+    }
+};
 
 }  // namespace
 
@@ -53,10 +63,11 @@ Vector2d tangent_at(const Cubics& c, const Place& place) {
     double size = 0.0;
     for (int k = 1; k < 4; ++k) size = std::max(size, (control(c, i, k) - control(c, i, 0)).norm());
     if (size == 0.0) return Vector2d::Zero();
-    Vector2d d = derivative(c, i, place.t);
+    const Derivative derivative(c, i);
+    Vector2d d = derivative(place.t);
     if (d.norm() <= 1e-9 * size) {
         const double inside = place.t < 0.5 ? 1e-4 : -1e-4;
-        d = derivative(c, i, place.t + inside);
+        d = derivative(place.t + inside);
     }
     return d.norm() > 0.0 ? Vector2d(d.normalized()) : Vector2d::Zero();
 }
@@ -68,13 +79,37 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
     static constexpr double w[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                     0.2369268850561891};
     require_cubic(c, i);
+    const Derivative derivative(c, i);
     const int n = int(std::clamp(std::ceil(std::abs(t1 - t0) * 8.0 - 1e-9), 1.0, 1000.0));
     double sum = 0.0;
     for (int k = 0; k < n; ++k) {
         const double a = t0 + (t1 - t0) * k / n, half = 0.5 * (t1 - t0) / n;
-        for (int j = 0; j < 5; ++j) sum += w[j] * half * derivative(c, i, a + half * (1.0 + x[j])).norm();
+        for (int j = 0; j < 5; ++j) sum += w[j] * half * derivative(a + half * (1.0 + x[j])).norm();
     }
     return sum;
+}
+
+double parameter_at(const Cubics& c, Index i, double length_mm) {
+    if (!(length_mm > 0.0)) return 0.0;
+    const double whole = arc_length(c, i, 0.0, 1.0);
+    if (!(length_mm < whole)) return 1.0;
+    const auto is_before = [&](double t) { return arc_length(c, i, 0.0, t) < length_mm; };
+    // Newton's way to it; at a cusp it leads nowhere
+    const Derivative derivative(c, i);
+    double t = length_mm / whole, step = 1.0;
+    for (int k = 0; k < 8 && std::abs(step) > 1e-11; ++k) {
+        step = (length_mm - arc_length(c, i, 0.0, t)) / derivative(t).norm();
+        t += step;
+        if (!(t > 0.0 && t < 1.0)) break;
+    }
+    // never before the place, not by a rounding error: a lever that is drawn out by none is loose for a move
+    double a = std::floor(t / kParameterStep) * kParameterStep, b = a + kParameterStep;
+    if (!(a >= 0.0 && b <= 1.0 && is_before(a) && !is_before(b))) a = 0.0, b = 1.0;
+    while (b - a > kParameterStep) {
+        const double middle = 0.5 * (a + b);
+        (is_before(middle) ? a : b) = middle;
+    }
+    return b;
 }
 
 double half_width_at(const Stroke& stroke, double fraction) {

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <random>
 
 #include "brushsvg/error.hpp"
 #include "round6.hpp"
@@ -33,6 +34,26 @@ TEST_CASE("points, tangents and lengths of a quarter circle") {
     CHECK(arc_length(s.middle_mm, 0, 0.0, 1.0) == doctest::Approx(5 * kPi).epsilon(3e-4));
     CHECK(arc_length(s.middle_mm, 0, 0.0, 0.3) + arc_length(s.middle_mm, 0, 0.3, 1.0) ==
           doctest::Approx(arc_length(s.middle_mm, 0, 0.0, 1.0)).epsilon(1e-9));
+}
+
+TEST_CASE("the parameter at a length is where the length is, and never before it") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> any(0.0, 1.0);
+    for (int trial = 0; trial < 300; ++trial) {
+        CAPTURE(trial);
+        Cubics c(1, 8);
+        for (int k = 0; k < 8; ++k) c(0, k) = 20.0 * any(random);
+        if (trial % 5 == 0) c.leftCols(2) = c.middleCols(2, 2);  // a handle of no length
+        if (trial % 7 == 0) c << 0, 0, 10, 10, 0, 10, 10, 0;     // a cusp
+        const double whole = arc_length(c, 0, 0.0, 1.0), length = any(random) * whole;
+        const double t = parameter_at(c, 0, length);
+        CHECK(arc_length(c, 0, 0.0, t) >= length);
+        CHECK(arc_length(c, 0, 0.0, t - 1e-14) < length);
+    }
+    const Cubics c = quarter(10.0).middle_mm;
+    CHECK(parameter_at(c, 0, -1.0) == 0.0);
+    CHECK(parameter_at(c, 0, 100.0) == 1.0);
+    CHECK(parameter_at(Cubics::Ones(1, 8), 0, 0.0) == 0.0);
 }
 
 TEST_CASE("a tangent where the handle has no length is the limit from inside") {

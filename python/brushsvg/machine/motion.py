@@ -140,7 +140,7 @@ def duration_s(program: Program) -> float:
         if isinstance(step, Wait):
             total_s += step.seconds or 0.0
             continue
-        total_s += time_of_way_s(float(distances(step, here)[-1]), step.speed_mm_s, program.cell)
+        total_s += time_of_way_s(length_mm(step, here), step.speed_mm_s, program.cell)
         here = step.points_mm[-1]
     return total_s
 
@@ -149,7 +149,7 @@ def painting_mm(program: Program) -> float:
     """Length of the tool's path on the paper, circles as they are run."""
     total_mm, here = 0.0, None
     for move in (move for section in program.sections() for move in section.moves):
-        total_mm += float(distances(move, here)[-1]) if move.meaning == "paint" else 0.0
+        total_mm += length_mm(move, here) if move.meaning == "paint" else 0.0
         here = move.points_mm[-1]
     return total_mm
 
@@ -162,6 +162,18 @@ def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
         if length_mm > speed_mm_s**2 / a
         else 2 * (length_mm / a) ** 0.5
     )
+
+
+def length_mm(move: Move, here: np.ndarray | None) -> float:
+    """Of the path from where the tool is to the last point of the move, as distances() has it; moves have few points,
+    for which arrays take ten times as long."""
+    path = move.points_mm.tolist()
+    path.insert(0, path[0] if here is None else list(here))
+    steps = map(math.dist, path, path[1:])
+    if move.arc is None:
+        return sum(steps)
+    across = 2 * sum(math.dist(point[:2], move.arc.centre_mm) for point in path) / len(path)
+    return sum(across * math.asin(min(step / across, 1.0)) for step in steps) if across else 0.0
 
 
 def distances(move: Move, here: np.ndarray | None) -> np.ndarray:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain
-from math import ceil, dist, inf, tau
+from itertools import accumulate, chain, pairwise
+from math import atan2, ceil, dist, hypot, inf, tau
 
 import numpy as np
 
@@ -113,9 +113,10 @@ def _told(arcs, poses: np.ndarray, told_by: str, cell: Cell) -> tuple[list, list
 def _parts(arc, poses: np.ndarray, least_mm: float) -> Iterator:
     """A circle whose end is its beginning, or rounded may be, would be none at all, and one that goes on beyond it
     would lose a turn: both in parts."""
-    spokes = poses[arc.first : arc.last + 1, :2] - arc.centre_mm
-    steps = np.diff(np.arctan2(spokes[:, 1], spokes[:, 0])) * arc.direction
-    turned = np.cumsum([0.0, *((steps + BACK_RAD) % tau - BACK_RAD)])
+    x, y = arc.centre_mm  # circles have few poses, for which arrays take longer
+    angles = [atan2(b - y, a - x) for a, b in poses[arc.first : arc.last + 1, :2].tolist()]
+    turns = ((after - before) * arc.direction for before, after in pairwise(angles))
+    turned = list(accumulate(((turn + BACK_RAD) % tau - BACK_RAD for turn in turns), initial=0.0))
     first, ends = 0, dist(poses[arc.first, :2], poses[arc.last, :2])
     if turned[-1] >= tau or ends < least_mm:
         share = turned[-1] / max(2, ceil(turned[-1] / PART_RAD)) - 1e-6
@@ -135,7 +136,7 @@ PART_RAD, MOST_RAD = (
 
 def _is_round(spokes: np.ndarray, cell: Cell) -> bool:
     """Whether the firmware takes a circle with the spokes (2, 2) to its ends for one, and keeps near it."""
-    first, last = np.linalg.norm(spokes, axis=1).tolist()
+    first, last = (hypot(*spoke) for spoke in spokes.tolist())
     near_mm = RADII_MM.get(cell.language, inf) - 1.5 * unit_mm(cell)  # its centre is rounded, too
     sagitta_mm = cell.arc_segment_mm**2 / (8 * max(first, 1e-9))
     return abs(first - last) <= near_mm and sagitta_mm <= OFF_MM

@@ -1,0 +1,89 @@
+#include "star_union.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "brushsvg/region.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+double length_around(const Rings& rings) {
+    double length = 0.0;
+    for (const Ring& ring : rings)
+        for (Eigen::Index i = 0, n = ring.rows(); i < n; ++i) length += (ring.row((i + 1) % n) - ring.row(i)).norm();
+    return length;
+}
+
+/// How far the outlines of two shapes are apart in the mean [mm], by unions that know nothing of stars.
+double apart(const Rings& a, const Rings& b) {
+    const Rings one = fill(a, FillRule::nonzero), other = fill(b, FillRule::nonzero);
+    return (area(one) + area(other) - 2.0 * area(intersect(one, other))) / length_around(one);
+}
+
+Ring both(const Ring& a, const Ring& b) {
+    Ring points(a.rows() + b.rows(), 2);
+    points << a, b;
+    return points;
+}
+
+}  // namespace
+
+TEST_CASE("rings in sight of a point become one, whatever edges and corners they share") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    std::size_t before = 0, after = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        CAPTURE(trial);
+        Rings rings;
+        for (int i = 0; i < 2 + trial % 9; ++i) {
+            const double x = 30.0 + 0.3 * any(random), y = 20.0 + 0.3 * any(random), angle = 3.0 * any(random);
+            const double length = 1.0 + 0.9 * any(random), width = 0.3 + 0.25 * any(random);
+            Ring points(3 + trial % 17, 2);
+            for (Eigen::Index k = 0; k < points.rows(); ++k) {
+                const double u = length * any(random), v = width * any(random);
+                points.row(k) << x + u * std::cos(angle) - v * std::sin(angle),
+                    y + u * std::sin(angle) + v * std::cos(angle);
+            }
+            if (trial % 3 == 0) points = ((4.0 * points).array().round() / 4.0).matrix().eval();  // on a grid
+            const Ring hull = convex_hull(points);
+            if (hull.rows() < 3) continue;
+            rings.push_back(hull);
+            const std::size_t n = rings.size();
+            if (trial % 4 == 0 && n > 1)
+                rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbours share edges
+        }
+        if (rings.empty()) continue;
+        const Rings fewer = united_in_sight(rings);
+        before += rings.size();
+        after += fewer.size();
+        CHECK(apart(rings, fewer) < 1e-5);
+        CHECK(fill(rings, FillRule::nonzero).size() == fill(fewer, FillRule::nonzero).size());
+    }
+    CHECK(after < 0.65 * double(before));
+}
+
+TEST_CASE("what sees no common point stays, and so do holes and what they lie in") {
+    Ring box(4, 2), far(4, 2);
+    box << 0, 0, 4, 0, 4, 4, 0, 4;
+    far = box.array() + 10.0;
+    Ring hole = (0.25 * box).array() + 1.0;
+    hole = hole.colwise().reverse().eval();
+    CHECK(united_in_sight({}).empty());
+    CHECK(united_in_sight({box, box, box}).size() == 1);
+    CHECK(area(united_in_sight({box, box, box})) == doctest::Approx(16.0));
+    CHECK(united_in_sight({box, far}).size() == 2);
+    const Rings with_hole = united_in_sight({box, box, hole, box});
+    CHECK(with_hole.size() == 4);
+    CHECK(area({with_hole[2]}) == doctest::Approx(-1.0));
+    Ring twice(8, 2);  // round the same way again: no star, though all of it turns to the left
+    twice << box, box;
+    CHECK(united_in_sight({twice, box}).size() == 2);
+    const double nan = std::nan("");
+    Ring broken = box;
+    broken(2, 1) = nan;
+    CHECK(united_in_sight({broken, box}).size() == 2);
+}
