@@ -121,6 +121,27 @@ def outliers(depths_mm: list[float], residual_mm, free: int, powers_from: int) -
     }
 
 
+def outliers_of_kinds(
+    residual_mm: np.ndarray, spare: np.ndarray, scatter_mm: np.ndarray, freedom: np.ndarray
+) -> dict[int, Outlier]:
+    """The same for values of several kinds in one fit: each against the scatter of its kind without it.
+
+    All (n,): spare, the share of a value that the others do not fix; scatter_mm and freedom, of its kind.
+    """
+    apart = np.maximum(spare, 1e-9)
+    found = {}
+    for k, (left, one, scatter, values) in enumerate(
+        zip(residual_mm, apart, scatter_mm, freedom, strict=True)
+    ):
+        if values - 1.0 < 1.0:
+            continue
+        others = max((values * scatter**2 - left**2 / one) / (values - 1.0), 1e-18)
+        size = float(_core.as_normal(abs(left) / math.sqrt(one * others), values - 1.0))
+        if size > OUTLYING:
+            found[k] = Outlier(size, float(left / one))
+    return found
+
+
 def outliers_above_floor(
     depths_mm, values_mm, range_mm: tuple[float, float], degree: int
 ) -> dict[int, Outlier]:
