@@ -31,8 +31,8 @@ def calibrate(
     measured: the path, or what stands in such a .json, without format and version if you like. name: of the brush,
     where the measurements do not say one; else the file's own. absolute: least absolute residuals instead of squares;
     total: total least squares for series of angles. machine: of painted marks, what else to find: "lean", "axes",
-    "tilt", "backlash". Returns what was found: brush, a Brush [mm] that save_brush writes; of numbers laws and remarks, too, of
-    marks what moved and what is left.
+    "tilt", "backlash". Returns what was found: brush, a Brush [mm] that save_brush writes; of numbers laws and
+    remarks, too, of marks what moved and what is left.
 
     Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
     """
