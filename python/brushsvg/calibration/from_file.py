@@ -7,6 +7,7 @@ import os
 
 import numpy as np
 
+from .. import _core
 from ..errors import Error, need
 from ..files import read_bytes
 from .from_marks import MarkCalibration, calibrate_marks, options_for
@@ -28,11 +29,11 @@ def calibrate(
 ) -> Calibration | MarkCalibration:
     """A brush of what was measured: numbers (.csv, .json) or painted marks (.json), as docs/calibration.md has them.
 
-    measured: the path, or what stands in such a .json, without format and version if you like. name: of the brush,
-    where the measurements do not say one; else the file's own. absolute: least absolute residuals instead of squares;
-    total: total least squares for series of angles. machine: of painted marks, what else to find: "lean", "axes",
-    "tilt", "backlash". Returns what was found: brush, a Brush [mm] that save_brush writes; of numbers laws and
-    remarks, too, of marks what moved and what is left.
+    measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
+    for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
+    own. absolute: least absolute residuals instead of squares; total: total least squares for series of angles.
+    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash". Returns what was found: brush, a
+    Brush [mm] that save_brush writes; of numbers laws and remarks, too, of marks what moved and what is left.
 
     Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
     """
@@ -77,6 +78,10 @@ def _json(measured: dict) -> bytes:
 def _plain(value):
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
+    if isinstance(value, _core.Plan):
+        return json.loads(_core.write_plan(value))
+    if isinstance(value, _core.Marks):
+        return [{"stroke": each.stroke, "outline_mm": list(each.outline_mm)} for each in value.passes]
     raise TypeError
 
 
