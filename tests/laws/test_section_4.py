@@ -23,7 +23,7 @@ SHIPPED = Path(brushsvg.__file__).parent / "data" / "brushes"
 FOOTPRINTS = {"tip_to_widest": values(DEPTHS, widest(DEPTHS)), "width": WIDTHS}
 
 
-def middle(depth, every=1):
+def middle(depth, widest=widest):
     """Of the mark, around the corner: the second line along +x, the first along +y; (n, 2)."""
     tcp, contact = corner(depth)
     heading = (tcp - contact) / np.hypot(*(tcp - contact).T)[:, None]
@@ -31,11 +31,12 @@ def middle(depth, every=1):
     seen = contact + e * heading
     before = [[-lag(depth) - k, 0.0] for k in (3.0, 2.0, 1.0)]
     seen = np.vstack([before, seen])  # the handle goes along +x to the origin, then along +y
-    return seen[::every] @ np.array([[0.0, 1.0], [1.0, 0.0]])
+    return seen @ np.array([[0.0, 1.0], [1.0, 0.0]])
 
 
-def lines(depths=DEPTHS, rng=None, noise=0.0):
-    shaken = [middle(d) + (rng.normal(0, noise, middle(d).shape) if rng else 0.0) for d in depths]
+def lines(depths=DEPTHS, rng=None, noise=0.0, widest=widest):
+    exact = [middle(d, widest) for d in depths]
+    shaken = [each + (rng.normal(0, noise, each.shape) if rng else 0.0) for each in exact]
     return [
         {"depth_mm": float(d), "points_mm": points.tolist()} for d, points in zip(depths, shaken, strict=True)
     ]
@@ -50,6 +51,22 @@ def test_footprints_and_centre_lines_alone_give_lag_and_tip_gap():
     single = [read_turn(row["points_mm"]).turning_mm for row in lines()]
     with refused("law-undetermined angular centre_line", "angular"):
         calibrate(from_dict(angular=values(DEPTHS, single), **FOOTPRINTS), "b")
+
+
+def test_the_sign_of_a_shallow_lever_is_decided_by_all_lines():
+    """Of the article's brush e < 0 at depth 1; in noise one line allows -e as well, 0.7 mm off."""
+
+    def of_article(depth):
+        return np.maximum(0.0, np.polynomial.polynomial.polyval(depth, [-2.35, 2.75, -0.42, 0.024]))
+
+    rng = np.random.default_rng(4)
+    rows = {"tip_to_widest": values(DEPTHS, of_article(DEPTHS) + rng.normal(0, 0.1, 10)), "width": WIDTHS}
+    seen = lines(DEPTHS, rng, 0.1, of_article)
+    shallow = read_turn(seen[0]["points_mm"])
+    assert shallow.other and shallow.turning_mm < lag(1.0) < lag(1.0) + GAP < shallow.other.turning_mm + 0.3
+    made = calibrate(from_dict(centre_line=seen, **rows), "b")
+    assert made.brush.lag(1.0) == pytest.approx(lag(1.0), abs=0.15)
+    assert made.brush.tip_gap(5.0) == pytest.approx(GAP * 5.0, abs=0.15)
 
 
 @pytest.mark.parametrize("turned", [np.diag([1.0, -1.0]), np.eye(2)])

@@ -14,19 +14,22 @@ from ..errors import Error
 PLACES = np.concatenate([np.arange(0.0, 4.0, 0.03), np.arange(4.0, 12.1, 0.25)])
 MOST_POINTS = 500  # of one line that count: one in so many, evenly
 UNSURE = 0.5  # share of the lag: less is known of it by a line that ends too early
-CLEARLY = 16.0  # times the variance by which e < 0 must fit better than e > 0
+CLEARLY = 16.0  # times the variance by which one sign of e must fit better, or the other is possible as well
 OFF = 0.15  # of the lag: lines that lie farther off on the mean are no turns
 
 
 @dataclass(frozen=True)
 class Turn:
     """Lag r and r - e [mm], e the lever from centre of friction to widest section, their covariance (2, 2) [mm^2] by
-    the points of this line alone, and how far these lie off, root mean square [mm]."""
+    the points of this line alone, and how far these lie off, root mean square [mm].
+
+    other: the reading with the other sign of e, where the points allow both; this one then is that of e > 0."""
 
     lag_mm: float
     turning_mm: float
     covariance_mm2: np.ndarray
     rmse_mm: float
+    other: Turn | None = None
 
 
 def middle_of_turn(lag_mm: float, turning_mm: float, s_mm: np.ndarray) -> np.ndarray:
@@ -84,17 +87,15 @@ def read_turn(points_mm, where: str = "") -> Turn:
         return least_squares(off, start, bounds=bounds, x_scale="jac", diff_step=1e-5)
 
     # Far from the corner r - e shows as (r - e) exp(-(r - e)/r) alone, which one length below r has and one above: the
-    # points by the corner decide. In noise of 0.1 mm they may not; then e > 0, as it is but for the shallowest strokes.
+    # points by the corner decide. In noise of 0.1 mm they often do not; e > 0 but for the shallowest strokes.
     freedom = len(points) - 2
-    best, above = fitted((0.55, 0.75, 0.95), 0.1, 1.0), fitted((1.05, 1.3, 1.6), 1.0, 2.0)
-    if best.cost - above.cost > CLEARLY * above.cost / freedom:
-        best = above
+    below, above = fitted((0.55, 0.75, 0.95), 0.1, 1.0), fitted((1.05, 1.3, 1.6), 1.0, 2.0)
+    least = min(below.cost, above.cost)
+    both = abs(below.cost - above.cost) <= CLEARLY * least / freedom
+    best = below if both or below.cost == least else above
     lag, share = map(float, best.x)
     turning = share * lag
-    variance = 2.0 * best.cost / freedom
-    to_lengths = np.array([[1.0, 0.0], [share, lag]])
-    covariance = variance * to_lengths @ np.linalg.pinv(best.jac.T @ best.jac) @ to_lengths.T
-    rmse = float(np.sqrt(variance))
+    covariance, rmse = _spread(best, freedom)
     if rmse > OFF * lag:
         raise Error(
             f"the points lie {rmse:.2g} mm off any brush's turn, which would have a lag of {lag:.3g} mm: the corner of "
@@ -110,4 +111,15 @@ def read_turn(points_mm, where: str = "") -> Turn:
             where,
             code="law-undetermined",
         )
-    return Turn(lag, turning, covariance, rmse)
+    other = Turn(float(above.x[0]), float(above.x.prod()), *_spread(above, freedom)) if both else None
+    return Turn(lag, turning, covariance, rmse, other)
+
+
+def _spread(fit, freedom: int) -> tuple[np.ndarray, float]:
+    """Covariance of lag and r - e, and how far the points lie off; of a fit of lag and (r - e) / r."""
+    lag, share = fit.x
+    variance = 2.0 * fit.cost / freedom
+    to_lengths = np.array([[1.0, 0.0], [share, lag]])
+    return variance * to_lengths @ np.linalg.pinv(fit.jac.T @ fit.jac) @ to_lengths.T, float(
+        np.sqrt(variance)
+    )

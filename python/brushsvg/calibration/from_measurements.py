@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,6 +32,7 @@ FLOOR_PER_HALF = 0.3  # nearer to the tip the widest section is not drawn: the f
 SUMS = ("angular", "straight", "side_view", "video")  # these say how long r + b is, and nothing of either
 FROM_TOUCH = ("side_view", "video")  # counted from first touch
 OUTLINES = 10
+MOST_CHANGES = 5  # of the signs that centre lines are read with
 
 
 @dataclass(frozen=True)
@@ -215,10 +216,31 @@ class _Maker:
                 self._fit(law, [Point(r.where, r.depth_mm, v) for r, v in zip(rows, less, strict=True)])
         widest = any(row.kind not in FROM_TOUCH for row in rows)
         laws = ("lag", "tip_gap", "tip_to_widest") if widest else ("lag", "tip_gap")
+        absolute = self.norm == _core.Norm.absolute
         readings = self._readings(laws, points, rows)
         start = {law: self._to_start_from(law, readings) for law in laws}
-        self.joint = fit_together(readings, start, self.range_mm, self.norm == _core.Norm.absolute)
+        self.joint = fit_together(readings, start, self.range_mm, absolute)
+        for _ in range(MOST_CHANGES):
+            if not self._change_turns():
+                break
+            readings = self._readings(laws, points, rows)
+            self.joint = fit_together(readings, start, self.range_mm, absolute)
         self._take(readings, shown="tip_gap" if points["lag"] else "lag")
+
+    def _change_turns(self) -> bool:
+        """Whether a centre line that allows both signs of e was read with the other one, which the laws agree with."""
+        changed = False
+        laws = self.joint.laws
+        for row in self.measured.rows.get("centre_line", []):
+            turn = self.turns[row.where]
+            if turn.other is None or "tip_to_widest" not in laws:
+                continue
+            d = row.depth_mm
+            told = laws["lag"](d) + laws["tip_gap"](d) - laws["tip_to_widest"](d)
+            if abs(turn.other.turning_mm - told) < abs(turn.turning_mm - told):
+                self.turns[row.where] = replace(turn.other, other=replace(turn, other=None))
+                changed = True
+        return changed
 
     def _to_start_from(self, law: str, readings: list[Reading]) -> _core.Profile:
         """The law that was found alone, of the degree that all that speaks of it allows."""
