@@ -145,10 +145,10 @@ def test_pictures_stand_beside_their_file(picture, tmp_path):
 
 
 def video(way=1.0, up=120.0, noise=0.0, rng=None):
-    """Ferrule and tip, frame by frame: three in the air, first touch, then lower by 0.25 mm a frame."""
+    """Ferrule and tip, frame by frame: three in the air, straight, first touch, then lower by 0.25 mm a frame."""
     depth = np.concatenate([[-3.0, -2.0, -1.0], np.arange(0, 10.01, 0.25)])
     pressed = np.maximum(depth, 0.0)
-    behind = np.where(depth > 0, lag(pressed) + GAP * pressed - lag(0.0), 0.0)
+    behind = np.where(depth >= 0, lag(pressed) + GAP * pressed, 0.0)
     x = 5.0 + way * np.arange(len(depth)) * 2.0
     tip = x - way * (behind - 0.7)  # the tip was not quite below the ferrule
     shaken = rng.normal(0, noise, len(depth)) if rng else 0.0

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..brush import footprint_shapes
+from ..brush.confidence import half_interval_mm
 from ..errors import Error
 from ..laws.fitted import need_fits
 from . import plausibility
@@ -213,7 +214,8 @@ class _Maker:
                 other = self.done["tip_gap" if law == "lag" else "lag"].fit.law
                 self._refuse_no_touch(law)
                 less = [self._sum(row) - other(row.depth_mm) for row in rows]
-                self._fit(law, [Point(r.where, r.depth_mm, v) for r, v in zip(rows, less, strict=True)])
+                left = [Point(r.where, r.depth_mm, v) for r, v in zip(rows, less, strict=True)]
+                self._fit(law, left, to_start_from=True)
         widest = any(row.kind not in FROM_TOUCH for row in rows)
         laws = ("lag", "tip_gap", "tip_to_widest") if widest else ("lag", "tip_gap")
         absolute = self.norm == _core.Norm.absolute
@@ -251,6 +253,20 @@ class _Maker:
         found = alone.fit.law
         more = [0.0] * (degree + 1 - len(found.coefficients))
         return _core.Profile([*found.coefficients, *more], floor=found.floor)
+
+    def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: JointLaw) -> None:
+        """Error for values that lie below 0 on the whole, by more than the law's interval."""
+        mean = float(np.mean([point.value_mm for point in points]))
+        depths = np.array([point.depth_mm for point in points])
+        half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
+        if law in ("lag", "tip_gap") and fit.held and mean < -half:
+            raise Error(
+                f"the {law} is {mean:.3g} mm on the mean of {len(points)} values, the others taken away; it cannot be "
+                "negative",
+                points[0].where,
+                mean,
+                code="law-negative",
+            )
 
     def _refuse_no_touch(self, law: str) -> None:
         kind = next((kind for kind in FROM_TOUCH if self.measured.rows.get(kind)), None)
@@ -337,6 +353,7 @@ class _Maker:
                 held=found.held,
             )
             outliers = plausibility.outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
+            self._refuse_negative(law, points, fit)
             self.done[law] = Fitted(law, points, fit, self.done[law].remarks, outliers)
         told = ", ".join(
             f"{kind.name} ({kind.count}, scatter {' and '.join(f'{mm:.2f}' for mm in kind.scatter_mm)} mm)"
@@ -349,12 +366,14 @@ class _Maker:
                 "range"
             )
 
-    def _fit(self, law: str, points: list[Point]) -> None:
+    def _fit(self, law: str, points: list[Point], to_start_from: bool = False) -> None:
         depths, values = [p.depth_mm for p in points], [p.value_mm for p in points]
         worst = min(points, key=lambda point: point.value_mm)
         # a short tip gap may come out below 0 once by its noise, not on the whole
-        if worst.value_mm < 0 and (
-            law in ("lag", "half_width") or (law == "tip_gap" and np.mean(values) < 0)
+        if (
+            worst.value_mm < 0
+            and not to_start_from
+            and (law in ("lag", "half_width") or (law == "tip_gap" and np.mean(values) < 0))
         ):
             sentence = (
                 f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative"

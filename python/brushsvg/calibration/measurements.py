@@ -354,7 +354,7 @@ def _video(kind: str, row: dict, where: str) -> list[Row]:
         raise Error("this is the number of a frame, the first being 0", f"{where}.touch", code="wrong-type")
     touch = int(touch)
     apart = [f[0] - t[0] for f, t in zip(ferrule, tip, strict=True)]
-    at_touch = sum(apart[: touch + 1]) / (touch + 1)  # in the air the brush is straight as well
+    at_touch = apart[touch]
     way = 1.0 if apart[-1] >= at_touch else -1.0  # swept to the left, the ferrule leads there
     found = []
     for i in range(touch + 1, len(ferrule)):
