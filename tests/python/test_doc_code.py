@@ -80,6 +80,11 @@ def test_python_of_a_page_runs(page, folder, capsys):
             exec(compiled, names)
 
 
+def test_the_program_of_the_page_for_cpp_is_the_example():
+    example = (HOUSE / "examples" / "02_brush_file_to_gcode.cpp").read_text().split("\n", 1)[1].strip()
+    assert example in [code.strip() for _, code in blocks(HOUSE / "docs" / "cpp.md")]
+
+
 def test_tables_of_cells_are_tables():
     tables = [code for page in PAGES for language, code in blocks(page) if language == "toml"]
     assert len(tables) >= 3
