@@ -187,17 +187,20 @@ def test_in_one_fit_all_that_was_measured_counts():
     """Sums sharpen laws that were measured each; the intervals stay honest."""
     rng, at = np.random.default_rng(5), np.array([2.0, 5.0, 9.0])
     truth = {"lag": lag, "tip_gap": lambda d: GAP * d, "tip_to_widest": widest}
-    held, alone, together = [], [], []
+    held, alone, together, outlying = [], [], [], 0
     for _ in range(100):
         rows = whole(rng)
         without = {kind: rows[kind] for kind in ("width", "tip_to_widest", "lag", "tip_gap")}
-        apart, brush = (calibrate(from_dict(**some), "b").brush for some in (without, rows))
+        made = calibrate(from_dict(**rows), "b")
+        apart, brush = calibrate(from_dict(**without), "b").brush, made.brush
+        outlying += sum(len(law.outliers) for law in made.laws)
         for law, exact in truth.items():
             half, _ = law_band(brush, law, at)
             held.append(np.abs(getattr(brush, law)(at) - exact(at)) <= half)
         alone.append(law_band(apart, "lag", at)[0])
         together.append(law_band(brush, "lag", at)[0])
     assert 0.92 <= np.mean(held) <= 0.985
+    assert outlying <= 3  # of 6,000 normal values
     assert np.median(together) < 0.6 * np.median(alone)
 
 

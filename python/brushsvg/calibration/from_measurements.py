@@ -322,7 +322,7 @@ class _Maker:
         """What was found together: each value is shown at the law that it is of, sums at this one, less the others."""
         found, at = self.joint, 0
         shown_at: dict[str, list] = {law: [] for law in found.laws}
-        freedom = {kind.name: (kind.freedom, kind.scatter_mm) for kind in found.kinds}
+        freedom = {kind.name: (kind.freedom, kind.weighed_by_mm) for kind in found.kinds}
         for reading in readings:
             for k, of in enumerate(reading.sums):
                 law = next(iter(of)) if len(of) == 1 else shown

@@ -37,12 +37,13 @@ class Reading:
 
 @dataclass(frozen=True)
 class Kind:
-    """What measurements of one kind say: how many values, their scatter about the laws [mm], one for each length of a
-    measurement, and on how many values to spare it rests."""
+    """What measurements of one kind say: how many, their scatter about the laws [mm], one for each length of a
+    measurement, the one that they were weighed by, and on how many values to spare that rests."""
 
     name: str
     count: int
     scatter_mm: tuple[float, ...]
+    weighed_by_mm: tuple[float, ...]
     freedom: float
 
 
@@ -103,7 +104,7 @@ def fit_together(
     worth = 0.5 * np.pi if absolute else 1.0  # what the median costs against the mean
     covariance = worth * inverse
     parts = [inverse @ (white[at].T @ white[at]) @ inverse for at in (group.rows for group in groups)]
-    freedoms = [kind.freedom + BORROWED for kind in kinds]
+    freedoms = [kind.freedom for kind in kinds]
     scale = unknowns.scale
     laws = {}
     for name, law in start.items():
@@ -251,21 +252,18 @@ def _scatters(groups, left: np.ndarray, spare: np.ndarray, absolute: bool) -> tu
         return np.diag(len(part) * deviation**2)
 
     sums = [scatter(left[group.at]) for group in groups]
-    freedoms = [float(spare[group.rows].sum()) / group.at.shape[1] for group in groups]
-    lengths = [group.at.shape[1] for group in groups]
-    mean = sum(np.trace(s) for s in sums) / max(
-        sum(f * n for f, n in zip(freedoms, lengths, strict=True)), 1.0
-    )
+    freedoms = [spare[group.at].sum(axis=0) for group in groups]  # of each length
+    mean = sum(np.trace(each) for each in sums) / max(sum(each.sum() for each in freedoms), 1.0)
     whites, kinds = [], []
     for group, squares, freedom in zip(groups, sums, freedoms, strict=True):
-        size = group.at.shape[1]
-        # scatter without what is borrowed is told; with it, it weighs
-        borrowed = (squares + BORROWED * mean * np.eye(size)) / (freedom + BORROWED) + EXACT_MM**2 * np.eye(
-            size
-        )
+        known = np.sqrt(freedom + BORROWED)
+        borrowed = (squares + BORROWED * mean * np.eye(len(known))) / np.outer(known, known)
+        borrowed += EXACT_MM**2 * np.eye(len(known))
         whites.append(np.linalg.inv(np.linalg.cholesky(borrowed)))
-        own = np.sqrt(np.diag(squares) / freedom) if freedom > 1e-9 else np.zeros(size)
-        kinds.append(Kind(group.name, len(group.at), tuple(own.tolist()), freedom))
+        own = np.sqrt(np.diag(squares) / np.maximum(freedom, 1e-9)) * (freedom > 1e-6)
+        weighed = np.sqrt(np.diag(borrowed))
+        few = float(freedom.min()) + BORROWED
+        kinds.append(Kind(group.name, len(group.at), tuple(own.tolist()), tuple(weighed.tolist()), few))
     return whites, tuple(kinds)
 
 

@@ -126,19 +126,21 @@ def outliers_of_kinds(
 ) -> dict[int, Outlier]:
     """The same for values of several kinds in one fit: each against the scatter of its kind without it.
 
-    All (n,): spare, the share of a value that the others do not fix; scatter_mm and freedom, of its kind.
+    All (n,): spare, the share of a value that the others do not fix; scatter_mm, of its kind with it, from so many
+    values to spare.
     """
     apart = np.maximum(spare, 1e-9)
+    inside = residual_mm / (
+        scatter_mm * np.sqrt(apart)
+    )  # its square is never more than freedom in least squares
     found = {}
-    for k, (left, one, scatter, values) in enumerate(
-        zip(residual_mm, apart, scatter_mm, freedom, strict=True)
-    ):
-        if values - 1.0 < 1.0:
+    for k, (t, many) in enumerate(zip(inside, freedom, strict=True)):
+        if many < 3.0:
             continue
-        others = max((values * scatter**2 - left**2 / one) / (values - 1.0), 1e-18)
-        size = float(_core.as_normal(abs(left) / math.sqrt(one * others), values - 1.0))
+        outside = abs(t) * math.sqrt((many - 1.0) / max(many - t**2, 1e-6))
+        size = float(_core.as_normal(outside, many - 1.0))
         if size > OUTLYING:
-            found[k] = Outlier(size, float(left / one))
+            found[k] = Outlier(size, float(residual_mm[k] / apart[k]))
     return found
 
 
