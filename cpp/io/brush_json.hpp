@@ -4,7 +4,8 @@
 
 #include "brushsvg/brush.hpp"
 
-namespace brushsvg::io {
+namespace [[gnu::visibility("default")]] brushsvg {
+namespace io {
 
 /// Reads a brush.json: its shape (keys, types, intervals, counts), not its physics; check(brush) judges that.
 /// Unknown keys go to Profile::extra and Brush::extra; those of "footprints" and of single outlines to
@@ -15,4 +16,5 @@ Brush read_brush(const std::string& text);
 /// would refuse.
 std::string write_brush(const Brush& brush);
 
-}  // namespace brushsvg::io
+}  // namespace io
+}  // namespace brushsvg

@@ -4,7 +4,8 @@
 
 #include "brushsvg/marks.hpp"
 
-namespace brushsvg::io {
+namespace [[gnu::visibility("default")]] brushsvg {
+namespace io {
 
 /// Reads a marks.json. The file has neither the TCP nor the pull: tcp_mm comes back empty, pull all 1. Throws
 /// Error with `where` = key path.
@@ -14,4 +15,5 @@ Marks read_marks(const std::string& text);
 /// numbers that are not finite.
 std::string write_marks(const Marks& marks);
 
-}  // namespace brushsvg::io
+}  // namespace io
+}  // namespace brushsvg

@@ -4,7 +4,8 @@
 
 #include "brushsvg/plan.hpp"
 
-namespace brushsvg::io {
+namespace [[gnu::visibility("default")]] brushsvg {
+namespace io {
 
 /// Reads a plan.json. A pose above the paper (z > 0) inside a pass is refused with stroke, pose (counted from 0)
 /// and value. Unknown keys go to Pass::extra and Plan::extra. Throws Error with `where` = key path.
@@ -13,4 +14,5 @@ Plan read_plan(const std::string& text);
 /// The same plan as text, poses in plain decimals rounded to 1e-7 mm. Throws Error for what read_plan would refuse.
 std::string write_plan(const Plan& plan);
 
-}  // namespace brushsvg::io
+}  // namespace io
+}  // namespace brushsvg

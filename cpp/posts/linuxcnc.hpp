@@ -5,7 +5,8 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/plan.hpp"
 
-namespace brushsvg::posts {
+namespace [[gnu::visibility("default")]] brushsvg {
+namespace posts {
 
 /// A machine of three axes whose work zero is the sheet's lower left corner, z = 0 where the unbent brush just touches.
 /// Lengths in mm, speeds in mm/s. The defaults are those of the cell linuxcnc-3axis.
@@ -29,4 +30,5 @@ struct FlatCell {
 /// place or a speed out of its range, an arc that is none, a brush that is never pressed.
 std::string linuxcnc(const Plan& plan, const Brush& brush, const FlatCell& cell = {});
 
-}  // namespace brushsvg::posts
+}  // namespace posts
+}  // namespace brushsvg

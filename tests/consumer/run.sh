@@ -16,6 +16,7 @@ consume consumer -DEXAMPLE="$source/examples/01_word_to_program.cpp"
 "$work/consumer/consumer"
 version=$(sed -n 's/^project(brushsvg VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 consume consumer -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp" -DVERSION="$version"
+libraries=$(dirname "$(find "$work/prefix" -name libbrushsvg_core.a)")
 brush=$source/python/brushsvg/data/brushes/round-6.json
 "$work/consumer/consumer" "$brush" "$work/one.ngc"
 grep -q "^M2$" "$work/one.ngc"
@@ -34,7 +35,22 @@ fi
 for how in add_subdirectory FetchContent; do
   cmake -S "$source/tests/consumer/embedded" -B "$work/$how" -G Ninja -DHOW=$how -DBRUSHSVG="$source" >/dev/null
   cmake --build "$work/$how" --target program >/dev/null
+  # the library itself is built once, elsewhere
+  c++ "$(find "$work/$how" -path '*program.dir*' -name '*.o')" -L"$libraries" -lbrushsvg_io -lbrushsvg_posts -lbrushsvg_core -pthread -o "$work/by_$how"
+  "$work/by_$how" "$brush" "$work/three.ngc"
+  cmp "$work/one.ngc" "$work/three.ngc"
 done
+if grep -q "^BRUSHSVG_SHARED:BOOL=ON" "$build/CMakeCache.txt"; then
+  consume shared -DSHARED=ON -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp"
+  "$work/shared/consumer" "$brush" "$work/four.ngc"
+  cmp "$work/one.ngc" "$work/four.ngc"
+  offered=$(nm -DC --defined-only "$libraries/libbrushsvg.so" | grep -v " A BRUSHSVG_${version%.*}$")
+  if grep -v " [A-Zu] \(typeinfo for \|typeinfo name for \|vtable for \|\)brushsvg::.*@@BRUSHSVG_${version%.*}$" <<<"$offered"; then echo "libbrushsvg.so offers more than names of brushsvg" >&2; exit 1; fi
+  grep -q " brushsvg::compensate(" <<<"$offered"
+  if grep "choose_ends\|squared_end\|nlohmann\|boost" <<<"$offered"; then echo "libbrushsvg.so offers what is private" >&2; exit 1; fi
+  readelf -d "$libraries/libbrushsvg.so" | grep -q "SONAME.*libbrushsvg.so.${version%.*}\]"
+  if ldd "$libraries/libbrushsvg.so" | grep -i ceres; then echo "libbrushsvg.so needs Ceres" >&2; exit 1; fi
+fi
 if grep -q "^BRUSHSVG_FIT:BOOL=ON" "$build/CMakeCache.txt"; then
   consume fit -DFIT=ON
   "$work/fit/fit"

@@ -253,7 +253,18 @@ ARGUMENTS = {
     "batch": [[[], [("a", OPEN + "</svg>")], *([path] for path in PATHS)], [FOLDER / "many", *PATHS]],
     "brush_like": [["mine", *TEXTS], brushes],
     "brush_names": [],
-    "calibrate": [[FOLDER / "m.csv", *PATHS, FOLDER / "broken.json"], ["a", *TEXTS]],
+    "calibrate": [
+        [
+            FOLDER / "m.csv",
+            *PATHS,
+            FOLDER / "broken.json",
+            {},
+            {"lag": object()},
+            {(1, 2): 3},
+            {"video": [{}]},
+        ],
+        ["a", *TEXTS],
+    ],
     "cell_names": [],
     "chart": [
         lambda: brushes(),

@@ -52,6 +52,16 @@ def drag(depth):
     }
 
 
+def line(depth):
+    s = np.linspace(0, 2.5, 12) * float(ROUND.lag(depth))
+    turning = float(ROUND.lag(depth) - ROUND.tip_to_widest(depth) + ROUND.tip_gap(depth))
+    after = s / float(ROUND.lag(depth))
+    points = np.column_stack([s - turning * np.tanh(after), -turning / np.cosh(after)])
+    return {"depth_mm": depth, "points_mm": points.tolist()}
+
+
+FERRULE = np.array([[0.0, 100.0], *([10.0 * d, 100.0 - d] for d in DEPTHS)])
+TIP = FERRULE * [1.0, 0.0] - np.array([[0.0, 0.0], *([ROUND.lag(d) + 0.52 * d - 3.1, 0.0] for d in DEPTHS)])
 WIDTHS = {"width": rows(ROUND.half_width, 2.0)}
 LAG = {"lag": rows(ROUND.lag)}
 ABOUT = {"depth_range_mm": [0.0, 10.0], "max_speed_mm_s": 25.0}
@@ -66,6 +76,10 @@ MEASURED = {
             {"depth_mm": d, "path_mm": 60.0, "distance_mm": 60.0 - float(ROUND.lag(d))} for d in DEPTHS
         ]
     },
+    "lines": HEAD
+    | WIDTHS
+    | {"tip_to_widest": rows(ROUND.tip_to_widest), "centre_line": [line(d) for d in DEPTHS]}
+    | {"video": [{"ferrule_mm": FERRULE.tolist(), "tip_mm": TIP.tolist(), "touch": 0}]},
 }
 
 

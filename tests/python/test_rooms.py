@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import re
 import sys
+import tomllib
 from functools import cache
 from pathlib import Path
 
@@ -412,3 +413,20 @@ def test_what_is_allowed_is_not_named():
 def test_an_import_that_cannot_be_followed_is_refused():
     with pytest.raises(AssertionError, match="cannot be followed"):
         complaints(PACKAGE / "evaluation" / "report.py", "import importlib\nimportlib.import_module(name)")
+
+
+def test_every_package_that_is_asked_for_says_what_it_is_for():
+    """pyproject's names in the first column of the table of dependencies, and CMake's."""
+    page = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8").split("## Dependencies")[1]
+    told = " ".join(re.findall(r"^\| (.*?) \|", page, re.MULTILINE)).lower()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    asked = [*project["build-system"]["requires"], *project["project"]["dependencies"]]
+    asked += [each for extra in project["project"]["optional-dependencies"].values() for each in extra]
+    named = {re.match(r"[\w-]+", each)[0].lower() for each in asked} | {
+        "eigen",
+        "ceres",
+        "boost",
+        "nlohmann_json",
+    }
+    spelt = {"opencv-python-headless": "opencv", "myst-parser": "myst"}
+    assert sorted(name for name in named if spelt.get(name, name) not in told) == []

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// What holds at the bristle's sliding end besides w'(1) = 0.
 enum class SlidingEnd {

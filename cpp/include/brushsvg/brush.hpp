@@ -8,7 +8,7 @@
 #include "brushsvg/footprint.hpp"
 #include "brushsvg/profile.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// A measured (or assumed) brush: four laws against depth and its footprints. All lengths in mm.
 struct Brush {

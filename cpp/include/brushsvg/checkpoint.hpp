@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Thrown out of what was running when it is to be given up.
 class Cancelled : public std::exception {

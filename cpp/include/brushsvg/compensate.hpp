@@ -12,7 +12,7 @@
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/tracking_error.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 enum class Compensation {
     none,      ///< TCP on the middle line, pressed and lifted on the spot

@@ -8,7 +8,7 @@
 #include "brushsvg/marks.hpp"
 #include "brushsvg/region.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Fraction of each pixel that is painted; row 0 is the top of the window.
 using Coverage = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

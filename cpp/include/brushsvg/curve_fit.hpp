@@ -6,7 +6,7 @@
 
 #include "brushsvg/stroke.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// x, y and half width [mm] per row: a middle line as it was found, with its noise.
 using WideLine = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;

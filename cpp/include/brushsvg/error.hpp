@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// A refusal in one full sentence. `code` says of what kind it is (docs/diagnostics.md), `where` names the element (a
 /// stroke id, a key of a file), `value` and `range` carry the offending number and what is allowed, where there are

@@ -4,7 +4,7 @@
 
 #include "brushsvg/ring.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Contact patch outline measured at one depth: unclosed, counter-clockwise, first vertex the tip at (0, 0),
 /// axis +x towards the TCP.

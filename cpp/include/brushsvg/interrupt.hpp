@@ -3,7 +3,7 @@
 /// The name until 0.2: paint_loads.hpp.
 #include "brushsvg/paint_loads.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 using InterruptOptions = PaintLoadOptions;
 

@@ -13,7 +13,7 @@
 
 // How the contact patch trails the handle. Everything is a template on the scalar T: double, or a dual number with
 // the value in a member `a` and derivatives in `v` (a solver's jet). Angles in radians, lengths in mm.
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 template <class T>
 using Vec2 = Eigen::Matrix<T, 2, 1>;

@@ -4,7 +4,7 @@
 
 // How the contact patch trails the handle on a circular arc at constant depth: the two rules of lag.hpp, each in closed
 // form. With k = 1/R, signed, r the lag and psi the angle from the direction of motion to the heading.
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 template <class T>
 Vec2<T> turned_by(const Vec2<T>& v, const T& angle) {

@@ -3,7 +3,7 @@
 // Definitions of the templates declared in lag.hpp; include that one.
 #include "brushsvg/lag.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 namespace detail {
 
 template <int N>

@@ -5,7 +5,7 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/stroke.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// What strokes should become and what was painted, laid over each other: shares of the same pixels, row 0 at the top.
 struct MarkOverlap {

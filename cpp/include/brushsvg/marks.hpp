@@ -5,7 +5,7 @@
 
 #include "brushsvg/ring.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// What the patch does during one pass. Rows are parallel. depth_mm < 0 marks rows where the brush is lifted.
 struct PassMarks {

@@ -5,7 +5,7 @@
 
 #include "brushsvg/ring.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Places on the medial axis, one per row: x, y and distance to the outline [mm].
 using AxisLine = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;

@@ -3,7 +3,7 @@
 /// The name until 0.2: mark_overlap.hpp.
 #include "brushsvg/mark_overlap.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 using Overlay = MarkOverlap;
 inline MarkOverlap overlay(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted,

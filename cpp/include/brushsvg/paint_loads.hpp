@@ -5,7 +5,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/plan.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 struct PaintLoadOptions {
     double first_mm = 0.0;      ///< path of the TCP on the paper that the paint on the brush still lasts

@@ -9,7 +9,7 @@
 #include "brushsvg/settings.hpp"
 #include "brushsvg/stroke_id.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// TCP poses, one per row: x, y, z [mm] in the paper frame; z = -depth while painting.
 using Poses = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// One brush parameter [mm] against press depth [mm]:
 ///     value(d) = max(floor + floor_slope d, c0 + c1 d + c2 d^2 + ...)

@@ -2,7 +2,7 @@
 
 #include "brushsvg/ring.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Union of shapes: each counter-clockwise ring fills, the clockwise rings behind it are its holes. Coordinates are
 /// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross. Throws Error where clockwise rings outweigh.

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Points in the plane, one per row [mm]; as an outline unclosed.
 using Ring = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// What a drawing says of an element to brushsvg itself (docs/drawings.md), carried from there to the plan. What it
 /// does not say is empty.

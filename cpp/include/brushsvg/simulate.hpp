@@ -6,7 +6,7 @@
 #include "brushsvg/marks.hpp"
 #include "brushsvg/plan.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Forward: what the brush does when the TCP follows a pass. Rows stand at every pose, at every event (loosening,
 /// tightening, touching, lifting) and in between as closely as `tolerance_mm` asks: half way between two

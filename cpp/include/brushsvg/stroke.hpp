@@ -8,7 +8,7 @@
 #include "brushsvg/settings.hpp"
 #include "brushsvg/stroke_id.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Cubic Bezier segments, one per row: x0 y0 x1 y1 x2 y2 x3 y3 [mm], end to end.
 using Cubics = Eigen::Matrix<double, Eigen::Dynamic, 8, Eigen::RowMajor>;

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Where in a drawing a stroke comes from. What belongs together is told by these fields; the name is made of them for
 /// people and never taken apart again: an element may be called "icon/1".

@@ -5,7 +5,7 @@
 
 #include "brushsvg/mark_overlap.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Where paint and drawing differ most: a square's middle [mm], whether paint is missing there (else there is too
 /// much), and how much of it [mm^2].

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Half of a 95 % interval in standard deviations: the quantile of Student's t where the deviation was itself found
 /// from so many spare values, or of the normal distribution where nobody says from how many.

@@ -3,7 +3,7 @@
 #include "brushsvg/region.hpp"
 #include "brushsvg/stroke.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Rings of the wanted mark: `wanted_mm` where given, else the union of discs of the stroke's half width along its
 /// middle line (the path with its width, round caps and round joins). No point of the outline is farther than

@@ -3,7 +3,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/plan.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// The pass with fewer poses: stretches in which the brush is taut are passed in longer straight moves, as long as the
 /// mark's middle and its edges stay within the tolerance of where they were. The tolerance is one of the mark and not

@@ -6,7 +6,7 @@
 #include "brushsvg/plan.hpp"
 #include "brushsvg/stroke.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Distance of the widest point from the middle line, found by simulating the plan: from the first taut row to the
 /// last, so that the landing and a slack lift do not count and a turn in place does.

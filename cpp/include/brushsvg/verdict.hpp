@@ -3,7 +3,7 @@
 /// The name until 0.2: stroke_score.hpp.
 #include "brushsvg/stroke_score.hpp"
 
-namespace brushsvg {
+namespace [[gnu::visibility("default")]] brushsvg {
 
 using Verdict = StrokeScore;
 inline StrokeScore verdict(const PassMarks& painted, const Stroke& wanted, const Brush& brush) {

@@ -26,8 +26,7 @@ and by nothing else; it needs matplotlib. Each script below runs as it stands an
 difference. An empty cell was not printed. Lengths are in mm, z is the press depth. Where the print is wrong:
 [equations.md](equations.md).
 
-Not drawn: figures 5 (a flow chart), 7 and 8 (photographs of a set-up and of the brush), 16 (the liner brush: neither
-points nor laws are printed) and 18 (four painted words; of the distances only the greatest, 5 mm, is printed).
+Not drawn: figures 5 (a flow chart) and 8 (photographs of a set-up and of the brush).
 """
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 
+import numpy as np
+
+from .. import _core
 from ..errors import Error, need
 from ..files import read_bytes
 from .from_marks import MarkCalibration, calibrate_marks, options_for
@@ -11,11 +15,12 @@ from .from_measurements import Calibration
 from .from_measurements import calibrate as calibrate_measured
 from .machine_found import ask_for
 from .mark_input import read_painted
-from .measurements import read_measurements
+from .measurements import FORMAT, Measurements, Row, read_measurements
+from .turn_picture import centre_line
 
 
 def calibrate(
-    path: str | os.PathLike,
+    measured: str | os.PathLike | dict,
     name: str = "",
     *,
     absolute: bool = False,
@@ -24,28 +29,68 @@ def calibrate(
 ) -> Calibration | MarkCalibration:
     """A brush of what was measured: numbers (.csv, .json) or painted marks (.json), as docs/calibration.md has them.
 
-    name: of the brush, where the file does not say one; else the file's own. absolute: least absolute residuals instead
-    of squares; total: total least squares for series of angles. machine: of painted marks, what else to find: "lean",
-    "axes", "tilt", "backlash". Returns what was found: brush, a Brush [mm] that save_brush writes; of numbers laws and
-    remarks, too, of marks what moved and what is left.
+    measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
+    for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
+    own. absolute: least absolute residuals instead of squares; total: total least squares for series of angles.
+    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash". Returns what was found: brush, a
+    Brush [mm] that save_brush writes; of numbers laws and remarks, too, of marks what moved and what is left.
 
     Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
     """
-    need(path, (str, os.PathLike), "a path")
+    need(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
     need(name, str, "the name of a brush")
-    path = os.fspath(path)
-    stem, suffix = os.path.splitext(os.path.basename(path))
-    measured = read_measurements(read_bytes(path), suffix.lower())
-    name = measured.name or name or stem
-    if measured.marks is None:
+    if isinstance(measured, dict):
+        folder, stem = "", "measured"
+        found = read_measurements(_json(measured), ".json")
+    else:
+        path = os.fspath(measured)
+        folder, (stem, suffix) = os.path.dirname(path), os.path.splitext(os.path.basename(path))
+        found = read_measurements(read_bytes(path), suffix.lower())
+
+    def read(file: str) -> bytes:
+        return read_bytes(os.path.join(folder, file))
+
+    name = found.name or name or stem
+    if found.marks is None:
         if machine:
             raise Error(
                 "--machine needs painted marks: measured numbers say nothing of the machine",
                 code="options-contradict",
             )
-        return calibrate_measured(measured, name, bool(absolute), bool(total))
-    folder = os.path.dirname(path)
-    painted = read_painted(measured.plan, measured.marks, lambda file: read_bytes(os.path.join(folder, file)))
-    options = options_for(measured.expected)
+        _read_pictures(found, read)
+        return calibrate_measured(found, name, bool(absolute), bool(total))
+    painted = read_painted(found.plan, found.marks, read)
+    options = options_for(found.expected)
     ask_for(options, machine)
-    return calibrate_marks(painted, name, measured.depth_range_mm, measured.max_speed_mm_s, options)
+    return calibrate_marks(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
+
+
+def _json(measured: dict) -> bytes:
+    try:
+        return json.dumps({"format": FORMAT, "version": 1} | measured, default=_plain).encode()
+    except (TypeError, ValueError, RecursionError):
+        raise Error(
+            "measurements are numbers, texts, lists and dicts, as docs/calibration.md has them",
+            code="wrong-type",
+        ) from None
+
+
+def _plain(value):
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, _core.Plan):
+        return json.loads(_core.write_plan(value))
+    if isinstance(value, _core.Marks):
+        return [{"stroke": each.stroke, "outline_mm": list(each.outline_mm)} for each in value.passes]
+    raise TypeError
+
+
+def _read_pictures(found: Measurements, read) -> None:
+    """Pictures of angular strokes to the points of their centre lines."""
+    lines = found.rows.get("centre_line", [])
+    for i, row in enumerate(lines):
+        if "picture" in row.numbers:
+            seen = dict(row.numbers)
+            data = read(seen.pop("picture"))
+            points = centre_line(data, **seen, where=row.where)
+            lines[i] = Row(row.kind, row.where, row.depth_mm, {"points_mm": points})

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .. import _core
 from ..brush import footprint_shapes
-from ..brush.confidence import places
+from ..brush.confidence import half_interval_mm
 from ..errors import Error
 from ..laws.fitted import need_fits
 from . import plausibility
+from .centre_lines import Turn, read_turn
 from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, outlines_assumed
+from .joint_fit import Reading, Together, fit_together
 from .measurements import Measurements, Row
 
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -27,8 +30,10 @@ ASSUMED = {
     "tip_to_widest": (WIDEST_PER_HALF, "The widest section"),
 }
 FLOOR_PER_HALF = 0.3  # nearer to the tip the widest section is not drawn: the flanks would fold into a line
-SUMS = ("angular", "straight", "side_view")  # these say how long r + b is, and nothing of either
+SUMS = ("angular", "straight", "side_view", "video")  # these say how long r + b is, and nothing of either
+FROM_TOUCH = ("side_view", "video")  # counted from first touch
 OUTLINES = 10
+MOST_CHANGES = 5  # of the signs that centre lines are read with
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,18 @@ class Point:
     where: str
     depth_mm: float
     value_mm: float
+
+
+@dataclass(frozen=True)
+class JointLaw:
+    """One law of those that were fitted together: what a LawFit says of one that was fitted alone. residual_mm (n,): of
+    its points, measured less law."""
+
+    law: _core.Profile
+    covariance: np.ndarray
+    residual_mm: np.ndarray
+    r_squared: float
+    held: bool
 
 
 @dataclass(frozen=True)
@@ -78,8 +95,12 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     """
     need_fits()
     plausibility.refuse_halves_as_widths(measured.rows)
-    maker = _Maker(measured, absolute)
-    points, remarks = _direct(measured, total)
+    turns = {
+        row.where: read_turn(row.numbers["points_mm"], row.where)
+        for row in measured.rows.get("centre_line", [])
+    }
+    maker = _Maker(measured, absolute, turns)
+    points, remarks = _direct(measured, total, turns)
     maker.fit("half_width", points)
     if "half_width" not in maker.done:
         raise Error(
@@ -93,7 +114,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     maker.fit_sums(points)
     if "lag" not in maker.done:
         raise Error(
-            "no lag was measured: add lag, angles or angular, one row per depth",
+            "no lag was measured: add lag, centre_line, angles or angular, one row per depth",
             "lag",
             code="measurement-missing",
         )
@@ -105,14 +126,18 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     return Calibration(brush, laws, tuple([*remarks, *maker.remarks, *plausibility.odd(brush, laws)]))
 
 
-def _direct(measured: Measurements, total: bool) -> tuple[dict[str, list[Point]], list[str]]:
-    """Values of single laws, those of angle series included."""
+def _direct(
+    measured: Measurements, total: bool, turns: dict[str, Turn]
+) -> tuple[dict[str, list[Point]], list[str]]:
+    """Values of single laws, those of angle series and of the decay of turns included."""
     points: dict[str, list[Point]] = {law: [] for law in LAWS}
     remarks = []
     for law in LAWS:
         points[law] = [Point(r.where, r.depth_mm, r.numbers["value_mm"]) for r in measured.rows.get(law, [])]
     for row in measured.rows.get("width", []):
         points["half_width"].append(Point(row.where, row.depth_mm, row.numbers["value_mm"] / 2))
+    for row in measured.rows.get("centre_line", []):
+        points["lag"].append(Point(row.where, row.depth_mm, turns[row.where].lag_mm))
     for row in measured.rows.get("angles", []):
         found = _of_angles(row, total)
         points["lag"].append(Point(row.where, row.depth_mm, found["lag_mm"]))
@@ -124,6 +149,18 @@ def _direct(measured: Measurements, total: bool) -> tuple[dict[str, list[Point]]
             )
             remarks.append(f"{row.where}: {sentence}")
     return points, remarks
+
+
+def _degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
+    """Of a law that so many values speak of, and a remark where it is less than usual."""
+    different = plausibility.different(depths_mm)
+    # two values for each coefficient, or the law would follow their noise
+    coefficients = min(different, max(2, math.ceil(len(depths_mm) / 2)))
+    degree = min(DEGREES[law], coefficients if law in FROM_ZERO else coefficients - 1)
+    if degree == DEGREES[law]:
+        return degree, []
+    few = f"{different} depths" if coefficients == different else f"{len(depths_mm)} values"
+    return degree, [f"of degree {degree} instead of {DEGREES[law]}, for there are {few}"]
 
 
 def _of_angles(row: Row, total: bool) -> dict:
@@ -145,70 +182,198 @@ def _of_angles(row: Row, total: bool) -> dict:
 
 
 class _Maker:
-    def __init__(self, measured: Measurements, absolute: bool):
+    def __init__(self, measured: Measurements, absolute: bool, turns: dict[str, Turn]):
         self.measured = measured
         self.range_mm = measured.depth_range_mm or (0.0, measured.depths_mm[-1])
         self.norm = _core.Norm.absolute if absolute else _core.Norm.squares
         self.done: dict[str, Fitted] = {}
         self.remarks: list[str] = []
-        self.corrected = ""  # the law that was found from sums
-        self.pulls: dict[
-            str, np.ndarray
-        ] = {}  # law it was corrected by -> change of coefficients per change of those
+        self.turns = turns
+        self.joint: Together | None = None
 
     def fit(self, law: str, points: dict[str, list[Point]]) -> None:
         if points[law]:
             self._fit(law, points[law])
 
     def fit_sums(self, points: dict[str, list[Point]]) -> None:
-        """r from r + b where b is known, else b from r + b where r is."""
+        """Lag, tip gap and widest section anew, in one fit to all that speaks of them, where sums do."""
         rows = [row for kind in SUMS for row in self.measured.rows.get(kind, [])]
+        if "tip_to_widest" in self.done:
+            rows += self.measured.rows.get("centre_line", [])
         if not rows:
             return
         if "tip_gap" not in self.done and "lag" not in self.done:
             raise Error(
-                "angular, straight and side_view all measure the sum of lag and tip gap, so the two cannot be told "
-                "apart: add angles, or rows of lag or tip_gap",
+                "angular, straight, side_view and video all measure the sum of lag and tip gap, so the two cannot be "
+                "told apart: add centre_line, angles, or rows of lag or tip_gap",
                 next(kind for kind in SUMS if kind in self.measured.rows),
                 code="law-undetermined",
             )
-        wanted, known = ("lag", "tip_gap") if "tip_gap" in self.done else ("tip_gap", "lag")
-        if "lag" in self.done and "tip_gap" in self.done:
-            self.remarks.append(
-                "angular, straight and side_view are not used: lag and tip gap were measured each"
-            )
-            return
-        law = self.done[known].fit.law
-        if self.measured.rows.get("side_view") and wanted == "lag":
+        for law in ("lag", "tip_gap"):
+            if law not in self.done:  # to start from: the sums less the other
+                other = self.done["tip_gap" if law == "lag" else "lag"].fit.law
+                self._refuse_no_touch(law)
+                less = [self._sum(row) - other(row.depth_mm) for row in rows]
+                left = [Point(r.where, r.depth_mm, v) for r, v in zip(rows, less, strict=True)]
+                self._fit(law, left, to_start_from=True)
+        widest = any(row.kind not in FROM_TOUCH for row in rows)
+        laws = ("lag", "tip_gap", "tip_to_widest") if widest else ("lag", "tip_gap")
+        absolute = self.norm == _core.Norm.absolute
+        readings = self._readings(laws, points, rows)
+        start = {law: self._to_start_from(law, readings) for law in laws}
+        self.joint = fit_together(readings, start, self.range_mm, absolute)
+        for _ in range(MOST_CHANGES):
+            if not self._change_turns():
+                break
+            readings = self._readings(laws, points, rows)
+            self.joint = fit_together(readings, start, self.range_mm, absolute)
+        self._take(readings, shown="tip_gap" if points["lag"] else "lag")
+
+    def _change_turns(self) -> bool:
+        """Whether a centre line that allows both signs of e was read with the other one, which the laws agree with."""
+        changed = False
+        laws = self.joint.laws
+        for row in self.measured.rows.get("centre_line", []):
+            turn = self.turns[row.where]
+            if turn.other is None or "tip_to_widest" not in laws:
+                continue
+            d = row.depth_mm
+            told = laws["lag"](d) + laws["tip_gap"](d) - laws["tip_to_widest"](d)
+            if abs(turn.other.turning_mm - told) < abs(turn.turning_mm - told):
+                self.turns[row.where] = replace(turn.other, other=replace(turn, other=None))
+                changed = True
+        return changed
+
+    def _to_start_from(self, law: str, readings: list[Reading]) -> _core.Profile:
+        """The law that was found alone, of the degree that all that speaks of it allows."""
+        alone = self.done[law]
+        depths = [reading.depth_mm for reading in readings if any(law in of for of in reading.sums)]
+        degree, remarks = _degree(law, depths)
+        self.done[law] = Fitted(law, alone.points, alone.fit, tuple(remarks))
+        found = alone.fit.law
+        more = [0.0] * (degree + 1 - len(found.coefficients))
+        return _core.Profile([*found.coefficients, *more], floor=found.floor)
+
+    def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: JointLaw) -> None:
+        """Error for values that lie below 0 on the whole, by more than the law's interval."""
+        mean = float(np.mean([point.value_mm for point in points]))
+        depths = np.array([point.depth_mm for point in points])
+        half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
+        if law in ("lag", "tip_gap") and fit.held and mean < -half:
             raise Error(
-                "side_view needs the lag at depth 0: add rows of lag or angles",
-                "side_view",
+                f"the {law} is {mean:.3g} mm on the mean of {len(points)} values, the others taken away; it cannot be "
+                "negative",
+                points[0].where,
+                mean,
+                code="law-negative",
+            )
+
+    def _refuse_no_touch(self, law: str) -> None:
+        kind = next((kind for kind in FROM_TOUCH if self.measured.rows.get(kind)), None)
+        if law == "lag" and kind:
+            raise Error(
+                f"{kind} needs the lag at depth 0: add rows of lag, angles or centre_line",
+                kind,
                 code="measurement-missing",
             )
-        new = [Point(row.where, row.depth_mm, self._sum(row) - law(row.depth_mm)) for row in rows]
-        self._fit(wanted, new)
-        self._carry(wanted, known, rows)
 
     def _sum(self, row: Row) -> float:
-        """r + b at a depth. angular reads the middle of the mark, which is e = x_w - b nearer to the TCP's second line
-        than the centre of friction; straight: (17) with the lag it lacks; side_view: (18), counted from first touch.
+        """r + b at a depth. The middle of the mark, which angular and centre_line read, is e = x_w - b nearer to the
+        TCP's second line than the centre of friction; straight: (17) with the lag it lacks; side_view, video: (18),
+        counted from first touch.
         """
-        if "value_mm" in row.numbers and row.kind == "side_view":
+        if row.kind in FROM_TOUCH:
             return row.numbers["value_mm"] + self.done["lag"].fit.law(0.0)
         if "tip_to_widest" not in self.done:
             sentence = "this needs the widest section of the footprint: add rows of tip_to_widest"
             raise Error(sentence, row.where, code="law-undetermined")
         widest = self.done["tip_to_widest"].fit.law(row.depth_mm)  # as it was measured, not as it is drawn
-        if "path_mm" in row.numbers:
-            return row.numbers["path_mm"] - row.numbers["distance_mm"] + widest
-        return row.numbers["value_mm"] + widest
+        return self._reading(row) + widest
 
-    def _fit(self, law: str, points: list[Point]) -> None:
+    def _reading(self, row: Row) -> float:
+        """The same less the widest section, as it was read."""
+        if row.kind == "centre_line":
+            return self.turns[row.where].turning_mm
+        if row.kind == "straight":
+            return row.numbers["path_mm"] - row.numbers["distance_mm"]
+        return row.numbers["value_mm"]
+
+    def _readings(self, laws, points: dict[str, list[Point]], rows: list[Row]) -> list[Reading]:
+        alone = {
+            row.where for row in rows if row.kind == "centre_line"
+        }  # these come with what they say of the sum
+        out = []
+        for law in laws:
+            for point in points[law]:
+                if point.where not in alone:
+                    of = point.where.split("[")[0]
+                    kind = f"{law} of {of}" if of in ("angles", "centre_line") else law
+                    out.append(Reading(kind, point.where, point.depth_mm, (point.value_mm,), ({law: 1},)))
+        both = {"lag": 1, "tip_gap": 1}
+        for row in rows:
+            touch = row.kind in FROM_TOUCH
+            values, sums = (self._reading(row),), (both if touch else both | {"tip_to_widest": -1},)
+            if row.kind == "centre_line":
+                values, sums = (self.turns[row.where].lag_mm, *values), ({"lag": 1}, *sums)
+            out.append(Reading(row.kind, row.where, row.depth_mm, values, sums, touch))
+        return out
+
+    def _take(self, readings: list[Reading], shown: str) -> None:
+        """What was found together: each value is shown at the law that it is of, sums at this one, less the others."""
+        found, at = self.joint, 0
+        shown_at: dict[str, list] = {law: [] for law in found.laws}
+        freedom = {kind.name: (kind.freedom, kind.weighed_by_mm) for kind in found.kinds}
+        for reading in readings:
+            for k, of in enumerate(reading.sums):
+                law = next(iter(of)) if len(of) == 1 else shown
+                left, spare = float(found.residual_mm[at]), float(found.spare[at])
+                point = Point(reading.where, reading.depth_mm, found.laws[law](reading.depth_mm) + left)
+                spread = (freedom[reading.kind][0], freedom[reading.kind][1][k])
+                shown_at[law].append((point, left, spare, *spread))
+                at += 1
+        for law, rows in shown_at.items():
+            points, left, spare, freedoms, scatter = zip(*rows, strict=True)
+            left, spare = np.array(left), np.array(spare)
+            profile = found.laws[law]
+            spread = np.array([point.value_mm for point in points])
+            total = float(((spread - spread.mean()) ** 2).sum())
+            place = found.places[law]
+            fit = JointLaw(
+                law=_core.Profile(
+                    profile.coefficients,
+                    floor=profile.floor,
+                    calibrated_mm=profile.calibrated_mm,
+                    half_interval_95=profile.half_interval_95,
+                    rmse_mm=float(np.sqrt(left @ left / max(spare.sum(), 1e-9))),
+                    degrees_of_freedom=profile.degrees_of_freedom,
+                ),
+                covariance=found.covariance[place, place],
+                residual_mm=left,
+                r_squared=1.0 - float(left @ left) / total if total > 0.0 else 1.0,
+                held=found.held,
+            )
+            outliers = plausibility.outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
+            self._refuse_negative(law, points, fit)
+            self.done[law] = Fitted(law, points, fit, self.done[law].remarks, outliers)
+        told = ", ".join(
+            f"{kind.name} ({kind.count}, scatter {' and '.join(f'{mm:.2f}' for mm in kind.scatter_mm)} mm)"
+            for kind in found.kinds
+        )
+        self.remarks.append(f"lag, tip gap and what they are read with were fitted together: {told}")
+        if found.held:
+            self.remarks.append(
+                "fitted with a constraint: without it the lag or the tip gap is not positive somewhere in the depth "
+                "range"
+            )
+
+    def _fit(self, law: str, points: list[Point], to_start_from: bool = False) -> None:
         depths, values = [p.depth_mm for p in points], [p.value_mm for p in points]
         worst = min(points, key=lambda point: point.value_mm)
         # a short tip gap may come out below 0 once by its noise, not on the whole
-        if worst.value_mm < 0 and (
-            law in ("lag", "half_width") or (law == "tip_gap" and np.mean(values) < 0)
+        if (
+            worst.value_mm < 0
+            and not to_start_from
+            and (law in ("lag", "half_width") or (law == "tip_gap" and np.mean(values) < 0))
         ):
             sentence = (
                 f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative"
@@ -226,13 +391,7 @@ class _Maker:
             plausibility.refuse_no_lag(points)
         if law in ("lag", "half_width"):
             plausibility.refuse_falling(law, points)
-        # two values for each coefficient, or the law would follow their noise
-        coefficients = min(different, max(2, math.ceil(len(points) / 2)))
-        degree = min(DEGREES[law], coefficients if law in FROM_ZERO else coefficients - 1)
-        remarks = []
-        if degree < DEGREES[law]:
-            few = f"{different} depths" if coefficients == different else f"{len(points)} values"
-            remarks.append(f"of degree {degree} instead of {DEGREES[law]}, for there are {few}")
+        degree, remarks = _degree(law, depths)
         widest = law == "tip_to_widest"
         shape = _core.LawShape(
             self.range_mm,
@@ -259,67 +418,21 @@ class _Maker:
             outliers = plausibility.outliers(depths, fit.residual_mm, free, first)
         self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), outliers)
 
-    def _carry(self, wanted: str, known: str, rows: list[Row]) -> None:
-        """What the law found from sums inherits from those it was corrected by: with sums y = S - K k + W w its
-        coefficients P y, P = (X^T X)^-1 X^T, change by -P K per change of k and by P W per change of w."""
-        depths = np.array([row.depth_mm for row in rows])
-        size, first = len(self.done[wanted].fit.law.coefficients), int(wanted in FROM_ZERO)
-        inverse = np.linalg.pinv(np.vander(depths, size, increasing=True)[:, first:])
-
-        def pull(law: str, rate: np.ndarray) -> None:
-            self.pulls[law] = np.zeros((size, rate.shape[1]))
-            self.pulls[law][first:] = inverse @ rate
-
-        seen_aside = np.array([row.kind == "side_view" for row in rows])
-        rate = -np.vander(depths, len(self.done[known].fit.law.coefficients), increasing=True)
-        rate[seen_aside, 0] = 0.0  # r(d) - r(0)
-        self.corrected = wanted
-        pull(known, rate)
-        if "tip_to_widest" in self.done:
-            law = self.done["tip_to_widest"].fit.law
-            rate = np.vander(depths, len(law.coefficients), increasing=True)
-            floored = rate @ law.coefficients < law.floor  # there the law does not move
-            rate[seen_aside | floored] = 0.0
-            pull("tip_to_widest", rate)
-
     def covariance(self) -> np.ndarray | None:
         """Over all coefficients in the order of the laws; None where a fitted law has no value to spare."""
         sizes = [len(self._law(law).coefficients) for law in LAWS]
-        starts = dict(zip(LAWS, np.cumsum([0, *sizes]).tolist()[:-1], strict=True))
-        out = np.zeros((sum(sizes), sum(sizes)))
+        ends = np.cumsum([0, *sizes]).tolist()
+        place = {law: slice(a, b) for law, a, b in zip(LAWS, ends[:-1], ends[1:], strict=True)}
+        out = np.zeros((ends[-1], ends[-1]))
         for law, fitted in self.done.items():
             block = np.array(fitted.fit.covariance)
             if not block.size:
                 return None
-            at = slice(starts[law], starts[law] + len(block))
-            out[at, at] = block
-        place = {law: slice(starts[law], starts[law] + size) for law, size in zip(LAWS, sizes, strict=True)}
-        for law, pull in self.pulls.items():
-            a, b = place[self.corrected], place[law]
-            out[a, a] += pull @ out[b, b] @ pull.T
-            out[a, b] = pull @ out[b, b]
-            out[b, a] = out[a, b].T
+            out[place[law], place[law]] = block
+        if self.joint:
+            for a, b in itertools.product(self.joint.places, repeat=2):
+                out[place[a], place[b]] = self.joint.covariance[self.joint.places[a], self.joint.places[b]]
         return out
-
-    def _widened(self, brush: _core.Brush, covariance: np.ndarray) -> _core.Profile:
-        """The law that was found from sums with intervals that hold what it inherits, by the fewest values to spare of
-        all that it rests on: rather too wide."""
-        law = getattr(brush, self.corrected)
-        rests_on = [self.done[name].fit.law.degrees_of_freedom for name in (self.corrected, *self.pulls)]
-        freedom = min(rests_on)
-        half_intervals = _core.deviations_of_95(freedom) * np.sqrt(
-            np.diag(covariance)[places(brush)[self.corrected]]
-        )
-        return _core.Profile(
-            law.coefficients,
-            floor=law.floor,
-            floor_slope=law.floor_slope,
-            calibrated_mm=law.calibrated_mm,
-            source=law.source,
-            half_interval_95=half_intervals,
-            rmse_mm=law.rmse_mm,
-            degrees_of_freedom=freedom,
-        )
 
     def _law(self, law: str) -> _core.Profile:
         half = self.done["half_width"].fit.law
@@ -354,8 +467,6 @@ class _Maker:
         covariance = self.covariance()
         if covariance is not None:
             brush.covariance = covariance.tolist()
-            if self.corrected:
-                setattr(brush, self.corrected, self._widened(brush, covariance))
         depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
         brush.footprints = _core.FootprintTable([_outline(brush, depth) for depth in depths])
         brush.extra = outlines_assumed("drops whose widest section and width are those of the laws.")

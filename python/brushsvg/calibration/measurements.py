@@ -26,8 +26,13 @@ KINDS = {
     "side_view": ("value_mm",),
     "straight": ("path_mm", "distance_mm"),
     "angles": ("alpha0_deg",),
+    "centre_line": (),
+    "video": (),
 }
 _SERIES = ("s_mm", "alpha_deg", "beta_deg")
+_OF_LINE = ("points_mm", "picture", "mm_per_px", "corner_px", "towards")
+TOWARDS = ("right", "left", "up", "down")
+LEAST_POINTS = 6  # of a centre line, from which two lengths are read
 _TABLE = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
 _ABOUT = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
 _PAINTED = ("plan", "marks", "expected")  # whole marks: see painted
@@ -105,7 +110,7 @@ def _read_table(text: str) -> Measurements:
                 where,
                 code="measurement-kind",
             )
-        rows.setdefault(kind, []).append(_row(kind, row, where))
+        rows.setdefault(kind, []).extend(_row(kind, row, where))
     return Measurements(rows)
 
 
@@ -192,7 +197,8 @@ def _read_json(text: str) -> Measurements:
     rows = {}
     for kind in KINDS:
         if listed := json_fields.objects(content.get(kind, []), kind):
-            rows[kind] = [_row(kind, row, f"{kind}[{i}]") for i, row in enumerate(listed)]
+            read = _READERS.get(kind, _row)
+            rows[kind] = [one for i, row in enumerate(listed) for one in read(kind, row, f"{kind}[{i}]")]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
         raise Error("name and about must be text", "name", code="wrong-type")
@@ -239,7 +245,7 @@ def _expected(given) -> dict:
     return {key: json_fields.number(value, f"expected.{key}", 0, 30) for key, value in given.items()}
 
 
-def _row(kind: str, row: dict, where: str) -> Row:
+def _row(kind: str, row: dict, where: str) -> list[Row]:
     names = ("depth_mm", *KINDS[kind])
     series = _SERIES if kind == "angles" else ()
     json_fields.refuse_unknown(row, (*names, *series, "note"), where)
@@ -252,13 +258,7 @@ def _row(kind: str, row: dict, where: str) -> Row:
         values = row.get(name, [] if name == "beta_deg" else None)
         numbers[name] = json_fields.numbers(values, f"{where}.{name}")
     depth = numbers.pop("depth_mm")
-    if not 0 < depth <= LONGEST_MM:
-        raise Error(
-            f"the depth {depth:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
-            where,
-            depth,
-            code="depth-out-of-range",
-        )
+    _refuse_depth(depth, where)
     for name, value in numbers.items():
         most, unit = (LONGEST_MM, "mm") if name.endswith("_mm") else (WHOLE_TURN_DEG, "degrees")
         for i, each in enumerate(value if isinstance(value, tuple) else (value,)):
@@ -271,4 +271,103 @@ def _row(kind: str, row: dict, where: str) -> Row:
                     f"{each:g} mm is outside the range [0, {most:g}] mm: s counts from the first reading on"
                 )
                 raise Error(sentence, at, each, code="out-of-range")
-    return Row(kind, where, depth, numbers)
+    return [Row(kind, where, depth, numbers)]
+
+
+def _refuse_depth(depth_mm: float, where: str) -> None:
+    if not 0 < depth_mm <= LONGEST_MM:
+        raise Error(
+            f"the depth {depth_mm:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+            where,
+            depth_mm,
+            code="depth-out-of-range",
+        )
+
+
+def _places(values, where: str) -> tuple[tuple[float, ...], ...]:
+    """[[x, y], ...] in mm."""
+    if not isinstance(values, list):
+        raise Error("this must be a list of [x, y] in mm", where, code="wrong-type")
+    found = tuple(json_fields.numbers(place, f"{where}[{i}]", 2) for i, place in enumerate(values))
+    for i, place in enumerate(found):
+        if max(map(abs, place)) > LONGEST_MM:
+            sentence = f"({place[0]:g}, {place[1]:g}) mm is farther than the {LONGEST_MM:g} mm that are taken for true"
+            raise Error(sentence, f"{where}[{i}]", code="out-of-range")
+    return found
+
+
+def _centre_line(kind: str, row: dict, where: str) -> list[Row]:
+    """The middle of an angular stroke's mark: points, or a picture of it."""
+    json_fields.refuse_unknown(row, ("depth_mm", *_OF_LINE, "note"), where)
+    missing = [name for name in ("depth_mm",) if name not in row]
+    if "points_mm" not in row:
+        missing += [name for name in ("picture", "mm_per_px", "corner_px") if name not in row]
+        if "picture" in missing:
+            raise Error("one of the keys points_mm and picture is needed", where, code="key-missing")
+    if missing:
+        raise Error(f"the key {missing[0]} is missing", where, code="key-missing")
+    depth = json_fields.number(row["depth_mm"], f"{where}.depth_mm")
+    _refuse_depth(depth, where)
+    if "points_mm" in row:
+        if "picture" in row:
+            raise Error("points_mm and picture exclude each other", where, code="options-contradict")
+        points = _places(row["points_mm"], f"{where}.points_mm")
+        if len(points) < LEAST_POINTS:
+            raise Error(
+                f"a centre line of {len(points)} points tells no turn: give {LEAST_POINTS} or more",
+                f"{where}.points_mm",
+                len(points),
+                code="measurement-missing",
+            )
+        return [Row(kind, where, depth, {"points_mm": points})]
+    if not isinstance(row["picture"], str):
+        raise Error("this must be the path of a picture", f"{where}.picture", code="wrong-type")
+    towards = row.get("towards", TOWARDS[0])
+    if towards not in TOWARDS:
+        raise Error(f"this must be one of {', '.join(TOWARDS)}", f"{where}.towards", code="choice-unknown")
+    seen = {
+        "picture": row["picture"],
+        "mm_per_px": json_fields.number(row["mm_per_px"], f"{where}.mm_per_px", 1e-3, 10.0),
+        "corner_px": json_fields.numbers(row["corner_px"], f"{where}.corner_px", 2),
+        "towards": towards,
+    }
+    return [Row(kind, where, depth, seen)]
+
+
+def _video(kind: str, row: dict, where: str) -> list[Row]:
+    """Section 2.5: places of ferrule and tip, frame by frame, to side views. Depth z_i = z_f0 - z_fi, value d_i =
+    |x_fi - x_ti| less the same at first touch; (18) prints z_i with x and another sign."""
+    json_fields.refuse_unknown(row, ("ferrule_mm", "tip_mm", "touch", "note"), where)
+    for name in ("ferrule_mm", "tip_mm"):
+        if name not in row:
+            raise Error(f"the key {name} is missing", where, code="key-missing")
+    ferrule, tip = (_places(row[name], f"{where}.{name}") for name in ("ferrule_mm", "tip_mm"))
+    if len(ferrule) != len(tip) or len(ferrule) < 2:
+        raise Error(
+            f"there are {len(ferrule)} places of the ferrule and {len(tip)} of the tip; each frame needs both, and two "
+            "frames are the least",
+            where,
+            code="sizes-differ",
+        )
+    touch = json_fields.number(row.get("touch", 0), f"{where}.touch", 0, len(ferrule) - 2)
+    if touch != int(touch):
+        raise Error("this is the number of a frame, the first being 0", f"{where}.touch", code="wrong-type")
+    touch = int(touch)
+    apart = [f[0] - t[0] for f, t in zip(ferrule, tip, strict=True)]
+    at_touch = apart[touch]
+    way = 1.0 if apart[-1] >= at_touch else -1.0  # swept to the left, the ferrule leads there
+    found = []
+    for i in range(touch + 1, len(ferrule)):
+        depth = ferrule[touch][1] - ferrule[i][1]
+        if depth > 0:
+            found.append(Row(kind, f"{where}, frame {i}", depth, {"value_mm": way * (apart[i] - at_touch)}))
+    if not found:
+        raise Error(
+            "the ferrule never comes lower than at first touch: z counts upwards, in mm",
+            f"{where}.ferrule_mm",
+            code="measurement-missing",
+        )
+    return found
+
+
+_READERS = {"centre_line": _centre_line, "video": _video}

@@ -121,6 +121,29 @@ def outliers(depths_mm: list[float], residual_mm, free: int, powers_from: int) -
     }
 
 
+def outliers_of_kinds(
+    residual_mm: np.ndarray, spare: np.ndarray, scatter_mm: np.ndarray, freedom: np.ndarray
+) -> dict[int, Outlier]:
+    """The same for values of several kinds in one fit: each against the scatter of its kind without it.
+
+    All (n,): spare, the share of a value that the others do not fix; scatter_mm, of its kind with it, from so many
+    values to spare.
+    """
+    apart = np.maximum(spare, 1e-9)
+    inside = residual_mm / (
+        scatter_mm * np.sqrt(apart)
+    )  # its square is never more than freedom in least squares
+    found = {}
+    for k, (t, many) in enumerate(zip(inside, freedom, strict=True)):
+        if many < 3.0:
+            continue
+        outside = abs(t) * math.sqrt((many - 1.0) / max(many - t**2, 1e-6))
+        size = float(_core.as_normal(outside, many - 1.0))
+        if size > OUTLYING:
+            found[k] = Outlier(size, float(residual_mm[k] / apart[k]))
+    return found
+
+
 def outliers_above_floor(
     depths_mm, values_mm, range_mm: tuple[float, float], degree: int
 ) -> dict[int, Outlier]:
