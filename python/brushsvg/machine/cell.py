@@ -238,7 +238,19 @@ class Arm:
         1e4,
         default=(),
     )
+    numbers: tuple = _key(
+        "of the joints, as the pendant counts them, where one more is held still; none: 1, 2, ...",
+        (None,),
+        1,
+        9,
+        default=(),
+    )
     prebuilt: str = _key("an arm of the same links that the library ssik has ready", "text", default="")
+
+
+def joint_number(arm: Arm, joint: int) -> int:
+    """What the pendant calls a joint, counted from 0."""
+    return int(arm.numbers[joint]) if arm.numbers else joint + 1
 
 
 @dataclass(frozen=True)

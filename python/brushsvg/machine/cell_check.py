@@ -99,10 +99,13 @@ def _check_arm(cell: Cell) -> None:
         raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
     if len(arm.dh) != JOINTS:
         raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
-    for key in ("limits_deg", "speeds_deg_s", "posture_deg"):
+    for key in ("limits_deg", "speeds_deg_s", "posture_deg", "numbers"):
         if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
             sentence = f"{len(given)} values are given for {JOINTS} joints"
             raise Error(sentence, where=f"arm.{key}", code="cell-arm")
+    if any(number % 1 or number <= before for before, number in pairwise((0, *arm.numbers))):
+        sentence = f"{[*arm.numbers]} are no numbers of joints, each larger than the one before"
+        raise Error(sentence, where="arm.numbers", code="cell-arm")
     for number, (low, high) in enumerate(arm.limits_deg, 1):
         if not low < high:
             sentence = f"joint {number}: the least angle {low:g} must be below the greatest, {high:g} degrees"
