@@ -156,6 +156,14 @@ def test_all_angles_that_are_found_put_the_flange_where_it_was_asked_for(name):
         assert np.abs(turns).max(axis=1).min() < 1e-6
 
 
+def test_near_a_singularity_angles_are_as_exact():
+    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad beside where they should be."""
+    arm = find_cell("xarm6").arm
+    wanted = frames(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
+    there = frames(arm, joints_of(arm).solutions(wanted))[:, -1]
+    assert there == pytest.approx(np.broadcast_to(wanted, there.shape), abs=1e-8)
+
+
 @pytest.mark.parametrize("name", ARMS)
 def test_another_library_finds_the_same_angles(name):
     is_xarm = name.startswith("xarm")
