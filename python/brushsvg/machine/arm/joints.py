@@ -115,8 +115,8 @@ def _of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _on_these_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
-    """Angles found for links that are rounded otherwise, on those of the cell: two steps of Newton's are enough, but near
-    a singularity."""
+    """Angles found for links that are rounded otherwise, on those of the cell: two steps of Newton's are enough, more
+    near a singularity."""
     return towards(arm, angles, flange, 5, MOST_STEP_RAD)[0]
 
 
