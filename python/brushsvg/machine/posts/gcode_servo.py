@@ -148,7 +148,7 @@ def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.
     part = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)
     is_steep = speed_mm_s > fastest_mm_s * part + 1e-9
     part = np.where(part > 0.1, np.floor(100 * part + 1e-9) / 100, part)
-    slower = [
-        feed_mm_min(fastest_mm_s * each) if steep else 0.0 for each, steep in zip(part, is_steep, strict=True)
-    ]
-    return np.where(is_steep, slower, feed_mm_min(speed_mm_s))
+    feeds = np.full(len(way), feed_mm_min(speed_mm_s))
+    for k in np.flatnonzero(is_steep):
+        feeds[k] = feed_mm_min(fastest_mm_s * part[k])
+    return feeds
