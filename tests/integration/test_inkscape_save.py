@@ -46,7 +46,8 @@ def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, entry):
     assert saved.read_bytes() == (tmp_path / f"typed.{extension}").read_bytes()
 
 
-@pytest.mark.parametrize("cell", cell_names())
+# an xArm 7's angles take half a minute to prepare, once for each home: its language is xArm 6's
+@pytest.mark.parametrize("cell", [name for name in cell_names() if name != "xarm7"])
 def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     extension = POSTS[find_cell(cell).language].extensions[0]
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved{extension}"
@@ -64,7 +65,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".ebb": "ebb",
         ".hpgl": "hpgl",
     }.get(extension, "gcode")
-    pen = {f"save.{entry}__brush": "rigid"} if entry == "hpgl" else {}  # which has one depth
+    pen = {f"save.{entry}__brush": "rigid"} if find_cell(cell).pen else {}  # which has one depth
     chosen = entry if entry == "hpgl" else ""  # Inkscape has an entry of its own for it
     plugin.set(**{f"save.{entry}__cell": cell}, **pen)
     try:

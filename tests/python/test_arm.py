@@ -71,6 +71,18 @@ DESCRIBED = {
         ],
         (0, 0, 0),
     ),
+    "xarm7": (  # its joint 3 is held at 0
+        [
+            ((0, 0, 267), (0, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (-1, 0, 0), (0, 0, 1)),
+            ((0, -293, 0), (1, 0, 0), (0, 0, 1)),
+            ((52.5, 0, 0), (1, 0, 0), (0, 0, 1)),
+            ((77.5, -342.5, 0), (1, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (1, 0, 0), (0, 0, 1)),
+            ((76, 97, 0), (-1, 0, 0), (0, 0, 1)),
+        ],
+        (0, 0, 0),
+    ),
     "cr5": (
         [
             ((0, 0, 147), (0, 0, 0), (0, 0, 1)),
@@ -116,6 +128,8 @@ def described(name, joints_rad):
     """(4, 4) the flange [mm]."""
     rows, flange = DESCRIBED[name]
     here = np.eye(4)
+    if len(rows) > len(joints_rad):
+        joints_rad = np.insert(joints_rad, 2, 0.0)
     for (xyz, rpy, axis), angle in zip(rows, joints_rad, strict=True):
         here = here @ placed(xyz, rpy) @ about(axis, angle)
     return here @ placed((0, 0, 0), flange)
@@ -142,12 +156,22 @@ def test_all_angles_that_are_found_put_the_flange_where_it_was_asked_for(name):
         assert np.abs(turns).max(axis=1).min() < 1e-6
 
 
+def test_near_a_singularity_angles_are_as_exact():
+    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad beside where they should be."""
+    arm = find_cell("xarm6").arm
+    wanted = frames(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
+    there = frames(arm, joints_of(arm).solutions(wanted))[:, -1]
+    assert there == pytest.approx(np.broadcast_to(wanted, there.shape), abs=1e-8)
+
+
 @pytest.mark.parametrize("name", ARMS)
 def test_another_library_finds_the_same_angles(name):
-    told = compare(name, 60, seed=3)
+    is_xarm = name.startswith("xarm")
+    told = compare(name, 15 if is_xarm else 60, seed=3)
     assert told["differ"] == 0
-    assert told["agree"] > 50
-    assert told["judge"] == ("forward chain" if name == "xarm6" else "EAIK")
+    assert told["agree"] > (12 if is_xarm else 50)
+    assert told["judge"] == ("Newton" if is_xarm else "EAIK")
+    assert told["theirs"] >= 0.97 * told["ours"]
 
 
 def test_links_of_another_arm_are_refused():

@@ -26,7 +26,7 @@ from programs import LANGUAGES, program
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
 from brushsvg import _core
-from brushsvg.machine.cell import Blending, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell import Blending, Contact, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.writer import text_of
@@ -67,7 +67,8 @@ def run(text: str, cell, height_mm: float = 300.0) -> Run:
 def stub(cell) -> XArmAPI:
     spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
     tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
-    return XArmAPI((-100.0, -400.0, 300.0), robot_from_paper(cell), spin, tool)
+    feels = cell.contact.sensitivity if cell.contact else 0
+    return XArmAPI((-100.0, -400.0, 300.0), robot_from_paper(cell), spin, tool, feels)
 
 
 def sound(text: str, cell, **at) -> Run:
@@ -360,7 +361,10 @@ def test_every_call_is_one_of_the_vendors_sdk(broken):
     from xarm.wrapper import XArmAPI
 
     cell = replace(
-        on("xarm6", SQUARE), reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),)
+        on("xarm6", SQUARE),
+        reload=Reload("layer"),
+        stations=(Station("hand", (120.0, 50.0), by_hand=True),),
+        contact=Contact(sensitivity=3),
     )
     arm = stub(cell)
     text = text_for(cell)

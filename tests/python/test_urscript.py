@@ -7,14 +7,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnostics import in_json, is_told, refused
 from programs import program
 from urscript_stub import matrix, run
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.cell import Paper, Reload, Station, robot_from_paper
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cell import Contact, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.frames import moved
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
@@ -56,7 +57,7 @@ def rows_of(robot, cell):
     paper_from_robot = np.linalg.inv(robot_from_paper(cell))
     rows = []
     for name, *rest in robot.events:
-        if name in ("sleep", "popup"):
+        if name in ("sleep", "popup", "textmsg"):
             continue
         poses, speed, blend = rest
         for pose in poses:
@@ -196,3 +197,86 @@ def test_the_stub_refuses_broken_programs(old, new):
     assert old in text
     with pytest.raises((AssertionError, NameError, TypeError, SyntaxError)):
         run(text.replace(old, new))
+
+
+WATCHED = replace(CELL, contact=Contact(force_n=10.0))
+
+
+def pressed(height_mm, newtons):
+    """What presses on a tool that is held by somebody's hand with 3 N, and lower than a height with more."""
+    paper_from_robot = np.linalg.inv(robot_from_paper(CELL))
+
+    def force(pose):
+        z = moved(paper_from_robot, 1e3 * np.array([pose[:3]]))[0, 2]
+        return 3.0 + newtons * (z < height_mm)
+
+    return force
+
+
+@pytest.mark.parametrize(("newtons", "halts"), [(9.0, False), (12.0, True)])
+def test_a_tool_that_is_pressed_too_hard_ends_the_program(newtons, halts):
+    robot = run(text_for(WATCHED), force=pressed(0.5, newtons))
+    assert robot.is_halted == halts
+    if halts:
+        what, text = robot.events[-1]
+        assert what == "textmsg" and "10.0 N" in text
+        low = [row[1][2] < 0.5 for row in rows_of(robot, CELL)]
+        assert low == [False] * (len(low) - 1) + [True]
+    else:
+        assert len(robot.events) == len(run(text_for()).events)
+
+
+def test_the_weight_of_the_tool_is_no_contact():
+    high = run(text_for(WATCHED), force=lambda pose: 80.0)
+    assert not high.is_halted and high.none_n == 80.0
+
+
+def test_while_a_hand_is_at_the_brush_nothing_watches():
+    stations = (Station("hand", (120.0, 50.0), by_hand=True),)
+    text = text_for(replace(WATCHED, reload=Reload("layer"), stations=stations))
+    lines = [line.strip() for line in text.splitlines()]
+    at = next(k for k, line in enumerate(lines) if line.startswith("popup"))
+    assert (lines[at - 1], lines[at + 1]) == ("kill watching", "watching = run watch()")
+    assert not run(text, force=lambda pose: 3.0).is_halted
+
+
+@pytest.mark.parametrize(
+    ("name", "contact", "told"),
+    [
+        ("ur5e", Contact(sensitivity=3), "cell-contact force_n"),
+        ("ur5e", Contact(10.0, 3), "cell-contact sensitivity"),
+        ("xarm6", Contact(force_n=10.0), "cell-contact force_n"),
+        ("kr6-r900", Contact(force_n=10.0), "cell-contact krl"),
+    ],
+)
+def test_a_contact_that_a_language_has_no_word_for_is_refused(name, contact, told):
+    with refused(told):
+        parse_cell(write_cell(replace(find_cell(name), contact=contact)))
+
+
+@pytest.mark.parametrize(
+    ("name", "contact", "old", "new"),
+    [
+        ("ur5e", Contact(10.0), "force() > 10.0", "force() > 90.0"),
+        ("ur5e", Contact(10.0), "        halt\n", ""),
+        ("ur5e", Contact(10.0), "  watching = run watch()\n", ""),
+        ("ur5e", Contact(10.0), "  zero_ftsensor()\n", ""),
+        ("xarm6", Contact(sensitivity=4), "sensitivity(4)", "sensitivity(0)"),
+        ("xarm6", Contact(sensitivity=4), "done(arm.set_collision_sensitivity(4))\n", ""),
+    ],
+)
+def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_path, capsys):
+    cell = replace(find_cell(name), contact=contact)
+    (tmp_path / "own.toml").write_text(write_cell(cell))
+    program = tmp_path / f"first{POSTS[cell.language].extensions[0]}"
+    assert in_json(capsys, "first-run", tmp_path / "own.toml", "-o", program)[0] == 0
+    check = ("check", program, "--cell", tmp_path / "own.toml")
+    assert in_json(capsys, *check)[0] == 0
+    text = program.read_text()
+    assert old in text
+    program.write_text(text.replace(old, new))
+    status, _, said = in_json(capsys, *check)
+    assert status == 1 and is_told(said, "program-changed")
+    # nor may it stand in for the program of a cell without
+    program.write_text(text)
+    assert in_json(capsys, "check", program, "--cell", name)[0] == 1

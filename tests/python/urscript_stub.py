@@ -1,5 +1,6 @@
 """A small interpreter of URScript, by the manual's signatures: runs a program and records where the tool goes."""
 
+import contextlib
 import re
 
 import numpy as np
@@ -7,6 +8,12 @@ import numpy as np
 
 class Pose(tuple):
     """p[x, y, z, rx, ry, rz] in metres and as a rotation vector."""
+
+
+CALLS = (
+    *("movel", "movep", "movec", "set_tcp", "sleep", "popup"),
+    *("force", "zero_ftsensor", "run", "kill", "halt", "sync", "textmsg"),
+)
 
 
 class _PoseLiteral:
@@ -32,11 +39,47 @@ def pose_of(frame):
     )
 
 
-class Robot:
-    """events: (name, poses, speed m/s, blend radius m) of each move; ("sleep", s) and ("popup", text)."""
+class HaltedError(Exception):
+    """The program has ended, whichever thread said so."""
 
-    def __init__(self, start=(0.0, -0.4, 0.5, 3.14159265, 0.0, 0.0)):
+
+class _NextFrameError(Exception):
+    """A thread gives the rest of its time away."""
+
+
+class Robot:
+    """events: (name, poses, speed m/s, blend radius m) of each move; ("sleep", s) and ("popup", text).
+
+    force: from a place of the TCP [m] to what presses on it [N]. A thread is run once behind each move.
+    """
+
+    def __init__(self, start=(0.0, -0.4, 0.5, 3.14159265, 0.0, 0.0), force=lambda place: 0.0):
         self.here, self.tcp, self.events = Pose(start), None, []
+        self.presses, self.none_n, self.thread, self.is_halted = force, 0.0, None, False
+
+    def force(self):
+        return abs(self.presses(self.here) - self.none_n)
+
+    def zero_ftsensor(self):
+        self.none_n = self.presses(self.here)
+
+    def run(self, thread):
+        self.thread = thread
+        return thread
+
+    def kill(self, thread):
+        assert self.thread is thread, "no such thread runs"
+        self.thread = None
+
+    def halt(self):
+        self.is_halted = True
+        raise HaltedError
+
+    def sync(self):
+        raise _NextFrameError
+
+    def textmsg(self, text):
+        self.events.append(("textmsg", text))
 
     def movel(self, pose, a=1.2, v=0.25, t=0, r=0):
         self._move("movel", (pose,), a, v, r)
@@ -54,6 +97,9 @@ class Robot:
         assert 0 < a <= 20 and 0 < v <= 3 and 0 <= r < 0.1
         self.events.append((name, poses, v, r))
         self.here = poses[-1]
+        if self.thread:
+            with contextlib.suppress(_NextFrameError):
+                self.thread()
 
     def set_tcp(self, pose):
         assert isinstance(pose, Pose)
@@ -68,16 +114,25 @@ class Robot:
         self.events.append(("popup", s))
 
 
+def _in_python(line):
+    """A thread and what ends one, as Python says it."""
+    line = re.sub(r"^( *)thread (\w+\(\):)$", r"\1def \2", line)
+    line = re.sub(r"^( *)halt$", r"\1halt()", line)
+    line = re.sub(r"^( *)kill (\w+)$", r"\1kill(\2)", line)
+    return re.sub(r"^( *\w+ = )run (\w+)\(\)$", r"\1run(\2)", line)
+
+
 def run(text, **settings):
     """What a program does. AssertionError or a Python error for what the language does not have."""
     robot = Robot(**settings)
     assert text.isascii()
     lines = [line for line in text.splitlines() if line.strip() != "end"]
+    lines = [_in_python(line) for line in lines]
     for line in lines:
         code = line.split("#")[0]
         assert not re.search(r"\d[eE]|-0\.0+\b(?!\d)", re.sub(r'"[^"]*"', "", code)), line
     names = {
-        **{name: getattr(robot, name) for name in ("movel", "movep", "movec", "set_tcp", "sleep", "popup")},
+        **{name: getattr(robot, name) for name in CALLS},
         "p": _PoseLiteral(),
         "True": True,
         "False": False,
@@ -86,5 +141,6 @@ def run(text, **settings):
         "get_actual_tcp_pose": lambda: robot.here,
         "__builtins__": {},
     }
-    exec("\n".join(lines), names)
+    with contextlib.suppress(HaltedError):
+        exec("\n".join(lines), names)
     return robot

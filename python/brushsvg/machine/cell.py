@@ -163,6 +163,28 @@ class Pen:
         "texts",
         default=(),
     )
+    servo_values: tuple = _key(
+        "marlin-servo: values that lift the pen and let it down, in degrees", (2,), 0, 180, default=()
+    )
+    servo_number: int = _key("marlin-servo: which of the board's servos it is", "whole", 0, 3, default=0)
+    settle_s: float = _number(
+        "marlin-servo: wait behind each value until the pen is there", 0, 60, default=0.3
+    )
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What ends the program at once: the tool is pressed harder than any brush is. A brush that bends is not felt."""
+
+    force_n: float = _number(
+        "urscript: more newtons than a brush may be pressed with, and than the sensor is off by",
+        5,
+        100,
+        default=0.0,
+    )
+    sensitivity: int = _key(
+        "xarm: how soon the arm takes a resistance for a collision, 5 the soonest", "whole", 1, 5, default=0
+    )
 
 
 @dataclass(frozen=True)
@@ -216,7 +238,19 @@ class Arm:
         1e4,
         default=(),
     )
+    numbers: tuple = _key(
+        "of the joints, as the pendant counts them, where one more is held still; none: 1, 2, ...",
+        (None,),
+        1,
+        9,
+        default=(),
+    )
     prebuilt: str = _key("an arm of the same links that the library ssik has ready", "text", default="")
+
+
+def joint_number(arm: Arm, joint: int) -> int:
+    """What the pendant calls a joint, counted from 0."""
+    return int(arm.numbers[joint]) if arm.numbers else joint + 1
 
 
 @dataclass(frozen=True)
@@ -284,6 +318,7 @@ class Cell:
     servo: Servo | None = None
     pen: Pen | None = None
     motors: Motors | None = None
+    contact: Contact | None = None
     reload: Reload | None = None
     machine: Machine | None = None
     robodk: RoboDK | None = None
@@ -301,15 +336,22 @@ TABLES = {
     "servo": Servo,
     "pen": Pen,
     "motors": Motors,
+    "contact": Contact,
     "reload": Reload,
     "machine": Machine,
     "robodk": RoboDK,
     "arm": Arm,
 }
-OPTIONAL_TABLES = ("tool", "servo", "pen", "motors", "reload", "machine", "robodk", "arm")
-NEEDED_BY = {"grbl-servo": ("servo",), "ebb": ("servo", "motors"), "hpgl": ("pen",)} | dict.fromkeys(
+OPTIONAL_TABLES = ("tool", "servo", "pen", "motors", "contact", "reload", "machine", "robodk", "arm")
+NEEDED_BY = {
+    "grbl-servo": ("servo",),
+    "ebb": ("servo", "motors"),
+    "hpgl": ("pen",),
+    "marlin-servo": ("pen",),
+} | dict.fromkeys(
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
+CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # how a language is told what ends a program
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 LEAST_SPEED_MM_S = {
     "dobot": 1.0,
@@ -439,6 +481,6 @@ def why_no_waiting(cell: Cell) -> str:
         return "a trajectory cannot wait for a person"
     if cell.motors:
         return "the board cannot wait for a person"
-    if cell.pen:
+    if cell.language == "hpgl":
         return "a pen plotter cannot wait for a person"
     return "a servo's brush falls while the program waits" if cell.servo else ""

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import Error, Notice
 from .cell import (
     ARCS_IN_SEGMENTS,
+    CONTACT_BY,
     FANUC_CONFIGURATION,
     LEAST_ACCELERATION_MM_S2,
     LEAST_SPEED_MM_S,
@@ -70,8 +71,26 @@ def check(cell: Cell) -> None:
             cell, "servo, whose depth goes in steps"
         )  # at which a way would jump aside
     _check_paint(cell)
+    if cell.contact:
+        _check_contact(cell)
     if cell.arm:
         _check_arm(cell)
+
+
+def _check_contact(cell: Cell) -> None:
+    by = CONTACT_BY.get(cell.language)
+    if by is None:
+        raise Error(
+            f"language {cell.language!r} has no word for contact: what stops its arm is set on the controller",
+            where="contact",
+            code="cell-contact",
+        )
+    for key in CONTACT_BY.values():
+        if bool(getattr(cell.contact, key)) != (key == by):
+            says = "needs" if key == by else "is not told"
+            raise Error(
+                f"language {cell.language!r} {says} {key}", where=f"contact.{key}", code="cell-contact"
+            )
 
 
 def _check_arm(cell: Cell) -> None:
@@ -80,10 +99,13 @@ def _check_arm(cell: Cell) -> None:
         raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
     if len(arm.dh) != JOINTS:
         raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
-    for key in ("limits_deg", "speeds_deg_s", "posture_deg"):
+    for key in ("limits_deg", "speeds_deg_s", "posture_deg", "numbers"):
         if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
             sentence = f"{len(given)} values are given for {JOINTS} joints"
             raise Error(sentence, where=f"arm.{key}", code="cell-arm")
+    if any(number % 1 or number <= before for before, number in pairwise((0, *arm.numbers))):
+        sentence = f"{[*arm.numbers]} are no numbers of joints, each larger than the one before"
+        raise Error(sentence, where="arm.numbers", code="cell-arm")
     for number, (low, high) in enumerate(arm.limits_deg, 1):
         if not low < high:
             sentence = f"joint {number}: the least angle {low:g} must be below the greatest, {high:g} degrees"
@@ -94,6 +116,9 @@ OWN = {  # keys that one language has, and why another has none
     "blending.step_mm": ("dobot", "has no steps of blends: they are as fine as its decimals"),
     "blending.ramp_s": ("fanuc", "tells blends in mm, whatever the time to speed"),
     "tool.configuration": ("fanuc", "tells no configuration of the arm"),
+    "pen.servo_values": ("marlin-servo", "sets no servo"),
+    "pen.servo_number": ("marlin-servo", "sets no servo"),
+    "pen.settle_s": ("marlin-servo", "waits for no pen"),
     "tool.base_frame": ("ros2", "names no frames"),
     "tool.flange_frame": ("ros2", "names no frames"),
 }
@@ -252,11 +277,24 @@ def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
     return nearest, farthest
 
 
+PENS = ("hpgl", "marlin-servo")
+
+
 def _check_pen(cell: Cell) -> None:
     pen = cell.pen
-    if cell.language != "hpgl":
-        sentence = f"language {cell.language!r} tells heights: a pen that knows none is for hpgl"
+    if cell.language not in PENS:
+        sentence = (
+            f"language {cell.language!r} tells heights: a pen that knows none is for {' and '.join(PENS)}"
+        )
         raise Error(sentence, where="pen", code="out-of-range")
+    if cell.language == "marlin-servo" and len(set(map(round, pen.servo_values))) != 2:
+        sentence = (
+            "the servo needs two values, whole degrees: one that lifts the pen, another that lets it down"
+        )
+        raise Error(sentence, where="pen.servo_values", code="servo-table")
+    if cell.language == "marlin-servo" and pen.colours:
+        sentence = "the servo holds one pen: it stops for those of other colours"
+        raise Error(sentence, where="pen.colours", code="out-of-range")
     frame = robot_from_paper(cell)
     if abs(frame[2, 3]) > 1e-9 or normal_tilt_deg(frame) > 1e-9:
         sentence = "a pen is up or down over the paper: it must lie level, at z 0"

@@ -61,11 +61,17 @@ def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray
     """(n,) how far before and after each pose the path may leave its moves [mm]: a circle that touches both at
     distance R passes the corner at R tan(angle / 4), at most the tolerance; blends never meet. Robots stop where
     they turn back, where the brush is pressed on the spot and at the ends of circles: there it is 0."""
+    return blends(poses_mm, blending, arcs)[0]
+
+
+def blends(poses_mm: np.ndarray, blending: Blending, arcs=()) -> tuple[np.ndarray, np.ndarray]:
+    """The same, and turns_rad."""
     radii = np.zeros(len(poses_mm))
-    if len(poses_mm) < 3 or not blending.tolerance_mm:
-        return radii
     moves = _moves(poses_mm, arcs)
-    turns = _turns(moves)[1:-1]
+    all_turns = _turns(moves)
+    if len(poses_mm) < 3 or not blending.tolerance_mm:
+        return radii, all_turns
+    turns = all_turns[1:-1]
     quarter = np.tan(turns / 4)
     most = np.divide(blending.tolerance_mm, quarter, out=np.full_like(quarter, np.inf), where=quarter > 0)
     if len(arcs):  # on a circle no farther than its tangent tells where it goes
@@ -77,8 +83,8 @@ def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray
     if blending.radius_mm:
         still = on_the_spot(np.diff(poses_mm, axis=0)) | (moves.bends != 0)
         radii[1:-1][(turns > SHARP_RAD) | still[:-1] | still[1:]] = 0.0
-        return np.minimum(radii, blending.radius_mm)
-    return radii
+        radii = np.minimum(radii, blending.radius_mm)
+    return radii, all_turns
 
 
 def on_the_spot(steps_mm: np.ndarray, sideways_mm: float = ON_THE_SPOT_MM) -> np.ndarray:

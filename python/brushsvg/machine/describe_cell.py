@@ -38,6 +38,9 @@ def cell_page(cell) -> str:
     if cell.pen:
         pens = f", pens of {', '.join(cell.pen.colours)}" if cell.pen.colours else ""
         rows.append(("pen", f"up or at {cell.pen.down_mm:g} mm{pens}"))
+    if cell.contact:
+        hard = f"more than {cell.contact.force_n:g} N" if cell.contact.force_n else "a collision"
+        rows.append(("contact", f"{hard} ends the program"))
     if cell.reload:
         rows.append(("fetches paint", _reload(cell.reload)))
     rows += [("station", f"{each.name} at {_point(each.place_mm)} mm") for each in cell.stations]

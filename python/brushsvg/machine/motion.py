@@ -141,6 +141,8 @@ def duration_s(program: Program) -> float:
             total_s += step.seconds or 0.0
             continue
         total_s += time_of_way_s(length_mm(step, here), step.speed_mm_s, program.cell)
+        if program.cell.pen and program.cell.language == "marlin-servo" and step.meaning in ("land", "lift"):
+            total_s += program.cell.pen.settle_s
         here = step.points_mm[-1]
     return total_s
 

@@ -13,7 +13,7 @@ from ..errors import Error, Notice
 from .arm.joints import is_installed
 from .arm.place import unreachable
 from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
-from .corner_blending import SHARP_RAD, blend_radii, on_the_spot, turns_rad
+from .corner_blending import SHARP_RAD, blends, on_the_spot
 from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, at_told_speeds, rise_over
@@ -260,8 +260,8 @@ def _painting(
     new_run = np.diff(kinds) != 0
     radii = None
     if cell.blending.radius_mm:
-        radii = blend_radii(written.poses_mm, cell.blending, arcs)
-        new_run |= turns_rad(written.poses_mm, arcs)[1:-1] > SHARP_RAD
+        radii, turns_rad = blends(written.poses_mm, cell.blending, arcs)
+        new_run |= turns_rad[1:-1] > SHARP_RAD
     for run in np.split(np.arange(len(steps)), np.flatnonzero(new_run) + 1):
         if not len(run):
             continue

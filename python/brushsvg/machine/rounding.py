@@ -79,11 +79,16 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     """(n,) at which of its rounded places (n, 2) a servo stands: its lift alone names none, and stays where the last
     way ended as long as less than a move is gone beside it."""
-    on, at = places.tolist(), 0
-    stays = np.zeros(len(on), dtype=int)
-    for row in range(1, len(on)):
-        at = at if dist(on[at], on[row]) < least_mm else row
-        stays[row] = at
+    stays = np.arange(len(places))
+    near = np.hypot(*np.diff(places, axis=0).T) < least_mm
+    on, done = places.tolist(), 0
+    for row in (np.flatnonzero(near) + 1).tolist():
+        if row <= done:
+            continue
+        for done in range(row, len(on)):
+            if dist(on[row - 1], on[done]) >= least_mm:
+                break
+            stays[done] = row - 1
     return stays
 
 

@@ -77,6 +77,25 @@ PRINTER = Script(
 SCRIPTS = {
     "marlin": PRINTER,
     "klipper": PRINTER._replace(modes=(*PRINTER.modes, ("PAUSE", "M0"))),
+    "marlin-servo": PRINTER._replace(
+        moves=r"G[01] X|M280",
+        words=(
+            *(
+                ("X", "Y"),
+                ("Y", "X"),
+                ("Y", "Z"),
+                ("G1", "G0"),
+                ("G0", "G1"),
+                ("G1 ", ""),
+                ("G1", "G2"),
+                ("F", "S"),
+            ),
+            *(("P", "S"), ("S", "T"), ("P0", "P1"), ("M280", "M281"), ("M280", "M28"), ("G4", "G1")),
+        ),
+        modes=(*PRINTER.modes, ("M400", ""), ("S90", "S40"), ("S40", "S90"), ("S40", "S140")),
+        offsets=r"^M280|^G4 ",
+        rates=(r"(F)(\d+\.\d+)", r"(G4 P)(\d+)", r"(M280 P0 S)(\d+)"),
+    ),
     "urscript": Script(
         remark="  #",
         moves="  move",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from typing import NamedTuple
 
 from .moves import Leg, RefusedError, Run
 
@@ -19,9 +20,10 @@ IDLE = ("M400", "M105", "M114", "M115")  # wait for the moves, or report
 AXES = "XYZ"
 
 
-def run_printer(text: str, firmware: str, start, has_arcs: bool) -> Run:
-    """firmware: marlin or klipper; start: where the tool is before; has_arcs: whether it was built with G2 and G3."""
-    machine = _Machine(firmware, start, has_arcs)
+def run_printer(text: str, firmware: str, start, has_arcs: bool, pen: Pen | None = None) -> Run:
+    """firmware: marlin or klipper; start: where the tool is before; has_arcs: whether it was built with G2 and G3; pen:
+    of a Marlin with a servo, which is set as soon as its line is read, whatever moves are still held."""
+    machine = _Machine(firmware, start, has_arcs, pen)
     try:
         for number, line in enumerate(text.split("\n"), 1):
             machine.line(number, line)
@@ -31,8 +33,21 @@ def run_printer(text: str, firmware: str, start, has_arcs: bool) -> Run:
     return machine.run
 
 
+class Pen(NamedTuple):
+    """number: of its servo; heights: by the servo's values [mm]; least_s: what it takes to get there."""
+
+    number: int
+    heights: dict[float, float]
+    least_s: float
+
+
+DROPPED_MM_S = 10.0  # of a pen that is let down
+KNOWN_S = 0.01  # how closely anybody knows what a servo takes
+
+
 class _Machine:
-    def __init__(self, firmware: str, start, has_arcs: bool):
+    def __init__(self, firmware: str, start, has_arcs: bool, pen: Pen | None):
+        self.pen, self.is_still, self.moved_s = pen, True, math.inf
         self.run, self.firmware, self.has_arcs = Run(), firmware, has_arcs
         self.at, self.shift = list(start), [0.0, 0.0, 0.0]
         self.absolute, self.mm = False, 25.4  # whatever the last program has left
@@ -81,15 +96,27 @@ class _Machine:
         name, values = f"{words[0][0]}{words[0][1]:g}", dict(words[1:])
         if len(values) + 1 != len(words):
             self._act("a word twice: which one holds?")
-        known = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF", "G4": "PS", "G92": AXES}
+        self.is_still = name == "M400" or (self.is_still and name not in ("G0", "G1"))
+        known = {
+            "M280": "PS",
+            "G0": "XYZF",
+            "G1": "XYZF",
+            "G2": "XYZIJF",
+            "G3": "XYZIJF",
+            "G4": "PS",
+            "G92": AXES,
+        }
         if set(values) - set(known.get(name, "")):
             self._act(f"{name} with words that it has not, or that move another axis")
-        if name in ("G0", "G1", "G2", "G3"):
+        if self.pen and name == "M280":
+            self._servo(values)
+        elif name in ("G0", "G1", "G2", "G3"):
             self._move(name, values)
         elif name == "G4":
             seconds = values.get("S", values.get("P", 0.0) / 1e3)
             if seconds < 0:
                 self._act("a dwell of less than nothing")
+            self.moved_s += seconds
             self.run.legs.append(Leg(self.number, "wait", tuple(self.at), tuple(self.at), seconds=seconds))
         elif name in ("G90", "G91"):
             self.absolute = name == "G90"
@@ -102,6 +129,18 @@ class _Machine:
         elif name not in IDLE:
             self._act(f"{name} is unknown, or does something else")
 
+    def _servo(self, values: dict[str, float]) -> None:
+        if values.get("P") != self.pen.number or values.get("S") not in self.pen.heights:
+            return self._act("a servo's value that is no pen's")
+        if not self.is_still:
+            self._act("a servo set while moves are still held")
+        there = [*self.at[:2], self.pen.heights[values["S"]]]
+        if there != self.at:
+            self.run.legs.append(Leg(self.number, "jump", tuple(self.at), tuple(there), DROPPED_MM_S))
+            self.moved_s = 0.0
+        self.at = there
+        return None
+
     def _move(self, name: str, values: dict[str, float]) -> None:
         if "F" in values:
             if values["F"] <= 0:
@@ -112,8 +151,12 @@ class _Machine:
             if axis in values:
                 there[k] = values[axis] * self.mm + (self.shift[k] if self.absolute else self.at[k])
         start, end = tuple(self.at), tuple(there)
+        if self.pen and "Z" in values:
+            self._act("an axis that this plotter has not")
         if name in ("G0", "G1"):
             if set(AXES) & set(values):
+                if self.pen and self.moved_s < self.pen.least_s - KNOWN_S:
+                    self._act("goes before the pen is there")
                 self.run.legs.append(Leg(self.number, "feed", start, end, self.feed_mm_s))
         elif not self.has_arcs:
             self._act(f"{name}, which this firmware does not know")

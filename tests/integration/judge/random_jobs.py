@@ -14,7 +14,7 @@ from brushsvg.machine.cell_file import find_cell, write_cell
 from .checked import CRASHED, converted, put
 from .random_works import random_brush, random_cell, random_flags, random_svg
 from .verdict import broken, unlike, way_of
-from .works import CELLS, job_for
+from .works import CELLS, PENS, job_for
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
     suffix = CELLS[dialect][1]
     source, toml = put(folder / "drawing.svg", svg), put(folder / "mine.toml", write_cell(cell))
     brush = put(folder / "mine.json", _core.write_brush(random_brush(random)))
-    flags += ("--brush", "rigid" if dialect == "hpgl" else str(brush))  # a pen has one height
+    flags += ("--brush", "rigid" if dialect in PENS else str(brush))  # a pen has one height
     program, plan = folder / f"program{suffix}", folder / "plan.json"
     program.unlink(missing_ok=True)
     try:

@@ -13,7 +13,7 @@ from brushsvg.machine.cell import Blending, Machine, Paper, Reload, Servo, Stati
 from brushsvg.machine.cell_file import find_cell
 
 from .verdict import ROBOTS
-from .works import CELLS, FLAT
+from .works import CELLS, FLAT, PENS
 
 SHEET = (80.0, 60.0)
 
@@ -143,7 +143,7 @@ def _machine(random, dialect: str) -> Machine:
     elif random.random() < 0.5:
         found = replace(found, scale=(1 + pair(0.02, 0.09)[0],) * 2)  # circles stay round
     if random.random() < 0.5:
-        found = found if dialect == "hpgl" else replace(found, height_mm=pair(0.4, 2.0)[0])
+        found = found if dialect in PENS else replace(found, height_mm=pair(0.4, 2.0)[0])
         found = found if is_servo else replace(found, tilt_mm_per_mm=pair(0.005, 0.03))
     if random.random() < 0.4 and not is_servo:
         found = replace(found, map_mm=_map(random, 3.0 if much else 0.6))

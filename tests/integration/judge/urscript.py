@@ -35,14 +35,24 @@ PATTERNS = {
     "popup": re.compile(
         r'popup\("[^"]*", "[^"]*", (?:True|False), (?:True|False), blocking=(True|False)\)|popup\("[^"]*"\)'
     ),
+    "thread": re.compile(r"thread (\w+)\(\):"),
+    "while": re.compile(r"while True:"),
+    "pressed": re.compile(rf"if force\(\) > ({N}):"),
+    "sync": re.compile(r"sync\(\)"),
+    "zero": re.compile(r"zero_ftsensor\(\)"),
+    "run": re.compile(r"(\w+) = run (\w+)\(\)"),
+    "kill": re.compile(r"kill (\w+)"),
     "call": re.compile(r"(\w+)\(\)"),
     "acts": re.compile(r"(?:textmsg|set_\w+|write_output_\w+|socket_\w+|powerdown|halt)\(.*\)|halt"),
 }
 
 
-def run_urscript(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
-    robot = _Robot(start, paper, down, tool)
+def run_urscript(
+    text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, force_n: float = 0.0
+) -> Run:
+    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; force_n: at
+    which the program has to end by itself, 0 where nothing is asked for."""
+    robot = _Robot(start, paper, down, tool, force_n)
     try:
         lines = _compiled(text, robot.run)
         robot.execute(lines)
@@ -83,8 +93,13 @@ def _without_comment(line: str) -> str:
 
 
 class _Robot(Arm):
-    def __init__(self, start, paper, down, tool):
+    """threads: what each ends the program at [N]; watches: the name of the one that runs, with its own."""
+
+    def __init__(self, start, paper, down, tool, force_n):
         super().__init__(start, paper, down, tool, by_radius=True)
+        self.force_n, self.is_zeroed = force_n, False
+        self.threads: dict[str, float] = {}
+        self.watches: tuple[str, float] | None = None
         self.names: dict[str, np.ndarray] = {}
         self.places: dict[str, tuple[str, np.ndarray]] = {}
         self.here: np.ndarray | None = None
@@ -120,7 +135,7 @@ class _Robot(Arm):
     def _end(self, lines, at: int) -> int:
         depth = 0
         for k in range(at, len(lines)):
-            depth += lines[k][1] in ("def", "if")
+            depth += lines[k][1] in ("def", "if", "thread", "while", "pressed")
             depth -= lines[k][1] == "end"
             if depth == 0:
                 return k
@@ -137,6 +152,11 @@ class _Robot(Arm):
                     raise RefusedError(f"line {number}: a function that does not return a place")
                 vector = [float(text) for text in inner[0][2].groups()[1:]]
                 self.places[found[1]] = (inner[0][2][1], turned_vector(vector))
+                at = end + 1
+                continue
+            if what == "thread":
+                end = self._end(lines, at)
+                self.threads[found[1]] = self._newtons(number, lines[at + 1 : end])
                 at = end + 1
                 continue
             if what == "if":
@@ -183,10 +203,45 @@ class _Robot(Arm):
             self.rest(number, "wait", float(found[1]))
         elif what == "popup":
             self.rest(number, "stop" if found[1] == "True" else "wait")
+        elif what == "zero":
+            self.is_zeroed = True
+            self.rest(number, "wait", 0.0)
+        elif what == "run":
+            self._watch(number, *found.groups())
+        elif what == "kill":
+            if self.watches is None or self.watches[0] != found[1]:
+                raise RefusedError(f"line {number}: {found[1]} does not run")
+            self.watches = None
         elif what == "acts":
             self.run.acts.append(f"line {number}: {found[0][:30]}")
         else:
             raise RefusedError(f"line {number}: {what} has no place here")
+
+    def _newtons(self, number: int, lines) -> float:
+        """Of a thread that does nothing but end the program where the tool is pressed harder than that."""
+        lines = [each for each in lines if each[1] != "comment"]
+        lines = [each for each in lines if each[1] != "acts" or not each[2][0].startswith("textmsg")]
+        if [what for _, what, _ in lines] != ["while", "pressed", "acts", "end", "sync", "end"]:
+            raise RefusedError(f"line {number}: a thread that does something else")
+        if lines[2][2][0] != "halt":
+            raise RefusedError(f"line {number}: a thread that ends nothing")
+        return float(lines[1][2][1])
+
+    def _watch(self, number: int, name: str, thread: str) -> None:
+        if thread not in self.threads:
+            raise RefusedError(f"line {number}: no thread {thread}")
+        if self.watches:
+            self.run.acts.append(f"line {number}: two threads at once")
+        if not self.is_zeroed:
+            self.run.acts.append(f"line {number}: the weight of the tool counts as contact")
+        if self.threads[thread] > self.force_n + 0.01:
+            self.run.acts.append(f"line {number}: {self.threads[thread]} N end nothing")
+        self.watches = name, self.threads[thread]
+        self.run.frame.append(f"ends at {self.threads[thread]} N")
+
+    def _watched(self, number: int) -> None:
+        if self.force_n and self.watches is None:
+            self.run.acts.append(f"line {number}: nothing ends a move that presses too hard")
 
     def _known(self, number: int, name: str) -> np.ndarray:
         if name not in self.names:
@@ -218,6 +273,7 @@ class _Robot(Arm):
         return self._known(number, paper) @ frame(place, down)
 
     def _move(self, number: int, found) -> None:
+        self._watched(number)
         target = self._place(number, found[2], found.groups()[2:5])
         if found[1] == "movej":
             self.run.acts.append(f"line {number}: a move of the joints, whose way nobody knows")
@@ -227,6 +283,7 @@ class _Robot(Arm):
             self.run.legs[-1] = self.run.legs[-1]._replace(kind="process")
 
     def _circle(self, number: int, found) -> None:
+        self._watched(number)
         self.run.frame.append(f"circles turn the tool by mode {found[12]}")
         via = self._place(number, found[1], found.groups()[1:4])
         end = self._place(number, found[5], found.groups()[5:8])

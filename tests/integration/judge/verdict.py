@@ -24,7 +24,7 @@ from .hpgl import run_hpgl
 from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
-from .printer import run_printer
+from .printer import Pen, run_printer
 from .rapid import run_rapid
 from .ros2 import run_ros2
 from .urscript import run_urscript
@@ -143,10 +143,20 @@ class Job:
     def interpret(self, text: str) -> Run:
         if robot := ROBOTS.get(self.language):
             more = [self.cell["blending"].get("ramp_s", 0.5)] if self.language == "fanuc" else []
+            more += [
+                self.cell["contact"][key]
+                for key in ("force_n", "sensitivity")
+                if key in self.cell.get("contact", ())
+            ]
             of = self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
             return robot(text, *of, *more)
         if self.language in ("marlin", "klipper"):
             return run_printer(text, self.language, self.start, bool(self.cell.get("arc_segment_mm")))
+        if self.language == "marlin-servo":
+            pen, safe_mm = self.cell["pen"], self.cell["heights"]["safe_mm"]
+            heights = dict(zip(pen["servo_values"], (safe_mm, pen["down_mm"]), strict=True))
+            servo = Pen(pen.get("servo_number", 0), heights, pen.get("settle_s", 0.3))
+            return run_printer(text, "marlin", self.start, False, servo)
         if self.language == "hpgl":
             heights = self.cell["pen"]["down_mm"], self.cell["heights"]["safe_mm"]
             return run_hpgl(text, self.start, *heights, self.cell["speeds"]["travel_mm_s"])

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import Paper, Reload, Station
+from brushsvg.machine.cell import CONTACT_BY, Contact, Paper, Reload, Station
 from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import converted, put
@@ -22,6 +22,7 @@ CELLS = {
     "fluidnc": ("fluidnc-3axis", ".gcode"),
     "marlin": ("marlin-3axis", ".gcode"),
     "klipper": ("klipper-3axis", ".gcode"),
+    "marlin-servo": ("marlin-servo", ".gcode"),
     "urscript": ("ur5e", ".script"),
     "jaka": ("jaka-zu3", ".jks"),
     "rapid": ("irb120", ".mod"),
@@ -34,9 +35,10 @@ CELLS = {
     "ebb": ("axidraw-ebb", ".ebb"),
     "hpgl": ("hpgl-plotter", ".hpgl"),
 }
-FLAT = ("grbl-servo", "ebb", "hpgl")  # on paper that lies level, at z 0
+PENS = ("hpgl", "marlin-servo")  # which have one height
+FLAT = ("grbl-servo", "ebb", *PENS)  # on paper that lies level, at z 0
 LIKE_GRBL = ("klipper", "fluidnc")  # share writer, reader and judge with others
-FEWER = ("marlin", *LIKE_GRBL, "ebb", "hpgl")  # tried less often
+FEWER = ("marlin", *LIKE_GRBL, "ebb", *PENS)  # tried less often
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 
 
@@ -68,7 +70,9 @@ def _with_arcs(cell):
 
 
 def _turned(cell):
-    """On paper that lies askew, and higher."""
+    """On paper that lies askew, and higher; arms that can feel stop where the tool is pressed."""
+    if by := CONTACT_BY.get(cell.language):
+        cell = replace(cell, contact=Contact(**{by: 3 if by == "sensitivity" else 12.5}))
     if cell.language in FLAT:
         near = (15.0, 10.0, 0.0) if cell.motors else (40.0, 30.0, 0.0)  # to where motors begin
         return replace(cell, paper=Paper(origin_mm=near, rotation_deg=(0.0, 0.0, 30.0)))
@@ -103,6 +107,8 @@ def _higher(cell):
 
 
 def _painted(cell):
+    if cell.language == "marlin-servo":  # stops for another one
+        return cell
     if cell.pen:  # takes pens
         return replace(cell, pen=replace(cell.pen, colours=("#000000", "#ff0000")))
     safe = cell.heights.safe_mm
@@ -160,7 +166,7 @@ def cell_of(dialect: str, change=None):
 
 def flags_for(flags: tuple[str, ...], dialect: str) -> tuple[str, ...]:
     """Of a pen, which has one height: without what would tell others."""
-    if dialect != "hpgl":
+    if dialect not in PENS:
         return flags
     pairs = zip(flags[::2], flags[1::2], strict=True)
     pairs = [pair for pair in pairs if pair[0] not in ("--z-offset", "--compensation", "--lag")]

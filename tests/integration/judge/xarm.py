@@ -22,9 +22,12 @@ NOT_READY = 9
 FILE = "<program>"
 
 
-def run_xarm(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
-    return executed(text, XArmAPI(start, paper, down, tool)).run
+def run_xarm(
+    text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, sensitivity: int = 0
+) -> Run:
+    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; sensitivity:
+    that the arm has to have, 0 where nothing is asked for."""
+    return executed(text, XArmAPI(start, paper, down, tool, sensitivity)).run
 
 
 def executed(text: str, arm: XArmAPI) -> XArmAPI:
@@ -87,8 +90,9 @@ def _rpy_deg(turned: np.ndarray) -> list[float]:
 class XArmAPI(Arm):
     """Calls with the parameters that the SDK's have; calls: (name, positional, by name) of all of them."""
 
-    def __init__(self, start, paper, down, tool):
+    def __init__(self, start, paper, down, tool, sensitivity=0):
         super().__init__(start, paper, down, tool, by_radius=True)
+        self.wanted_sensitivity, self.sensitivity = sensitivity, 0
         self.calls: list[tuple[str, tuple, dict]] = []
         self.is_enabled = self.is_closed = False
         self.mode, self.state = 2, 4  # as somebody may have left it
@@ -138,6 +142,13 @@ class XArmAPI(Arm):
         self.state = state
         return 0
 
+    def set_collision_sensitivity(self, value, wait=True):
+        if value not in range(6):
+            return NOT_READY
+        self.sensitivity = value
+        self.run.frame.append(f"stops at a collision, sensitivity {value}")
+        return 0
+
     def set_world_offset(self, offset, is_radian=None, wait=True):
         self.world, self.state = self._pose(offset, is_radian), 4
         return 0
@@ -178,6 +189,8 @@ class XArmAPI(Arm):
         number = _line()
         if not self._ready() or self.is_closed:
             return NOT_READY
+        if self.sensitivity != self.wanted_sensitivity:
+            self.run.acts.append(f"line {number}: another sensitivity of collisions")
         given = [x, y, z, roll, pitch, yaw]
         self.is_waiting = wait
         if given == [None] * 6:
@@ -209,7 +222,7 @@ class XArmAPI(Arm):
 
 SDK = (
     *("motion_enable", "set_mode", "set_state", "set_world_offset", "set_tcp_offset", "set_pause_time"),
-    *("get_position", "set_position", "disconnect"),
+    *("get_position", "set_position", "disconnect", "set_collision_sensitivity"),
 )
 
 

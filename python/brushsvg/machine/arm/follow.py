@@ -15,11 +15,11 @@ from itertools import chain
 import numpy as np
 
 from ...errors import Notice
-from ..cell import Arm, Cell
+from ..cell import Arm, Cell, joint_number
 from ..frames import frame_of_pose, moved
 from ..motion import Program
 from ..posts.script import down
-from .joints import Joints, flange_rates
+from .joints import Joints, flange_rates, rates_at, towards
 
 STEP_MM = 5.0
 # Joints may turn by so much between two places: less would only cost time, more could pass a peak of speed unseen.
@@ -95,18 +95,19 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
     behind = np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
     upright = frame[:3, :3] @ down(cell.tool.spin_deg)
 
-    def find(place: Place) -> _Found:
+    def flange(place: Place) -> np.ndarray:
         tip = np.eye(4)
         tip[:3, :3], tip[:3, 3] = upright, place.robot_mm
-        angles = joints.solutions(tip @ behind)
-        turns = rates(arm, angles, place.robot_mm)
-        most = np.sqrt((turns**2).sum(axis=-1)).max(axis=-1, initial=0.0)
-        return _Found(angles, turns, most, np.sign(np.linalg.det(flange_rates(arm, angles, place.robot_mm))))
+        return tip @ behind
+
+    def find(place: Place) -> _Found:
+        angles = joints.solutions(flange(place))
+        return _found(angles, flange_rates(arm, angles, place.robot_mm))
 
     postures: list[_Posture] | None = None
     before = None
     for number, place in enumerate(places(made)):
-        found = find(place)
+        found = (_gone_on(arm, postures, flange(place), place) if postures else None) or find(place)
         if not len(found.angles_rad):
             return Followed((_out_of_reach(place, arm),), None)
         if postures is None:
@@ -119,8 +120,8 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
             if posture.failure is None:
                 _go_on(posture, before, place, found, find, arm)
                 posture.failed_at, posture.failed = number, place
-            elif posture.failure.code == "singularity":
-                _tell_flip(posture, place, found, arm)
+            elif _may_have_flipped(posture, place.robot_mm):
+                _tell_flip(posture, found, arm)
         before = place
         if not to_the_end and all(posture.failure for posture in postures):
             break
@@ -130,6 +131,27 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
         if posture.failure is None:
             return Followed((), posture.start_rad)
     return Followed((max(postures, key=lambda each: (each.failed_at, -each.beyond_deg)).failure,), None)
+
+
+def _found(angles: np.ndarray, jacobian: np.ndarray) -> _Found:
+    turns = _inverse(jacobian)
+    most = np.sqrt((turns**2).sum(axis=-1)).max(axis=-1, initial=0.0)
+    return _Found(angles, turns, most, np.sign(np.linalg.det(jacobian)))
+
+
+def _gone_on(arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Place) -> _Found | None:
+    """The angles of postures that go on, each by Newton's steps from where it was; None where all angles for a place
+    must be looked for: one comes nowhere near, or a singularity lies behind one."""
+    if any(_may_have_flipped(posture, place.robot_mm) for posture in postures):
+        return None
+    here = [posture.here_rad for posture in postures if posture.failure is None]
+    if not here:
+        return None
+    before = np.array(here)
+    angles, there = towards(arm, before, flange, 5, SAME_RAD)
+    if there is None or np.abs(angles - before).max() > SAME_RAD:
+        return None
+    return _found(angles, rates_at(there, place.robot_mm))
 
 
 def within_limits(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
@@ -213,7 +235,10 @@ def _turned(here_rad: np.ndarray, found: np.ndarray) -> np.ndarray:
 
 def rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
     """(..., 6, 3) how each joint turns [rad] for each mm that the tip goes along x, y or z and does not turn."""
-    jacobian = flange_rates(arm, joints_rad, robot_mm)
+    return _inverse(flange_rates(arm, joints_rad, robot_mm))
+
+
+def _inverse(jacobian: np.ndarray) -> np.ndarray:
     try:
         return np.linalg.inv(jacobian)[..., :3]
     except np.linalg.LinAlgError:  # at a singularity to the last digit: whatever is near it turns as fast
@@ -236,10 +261,10 @@ def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) 
         over = fastest / np.array(arm.speeds_deg_s)
         if over[worst := int(over.argmax())] > 1 + 1e-9:
             sentence = (
-                f"{_near(place)} joint {worst + 1} would turn at {fastest[worst]:.0f} degrees/s, outside the range "
+                f"{_near(place)} {_joint(arm, worst)} would turn at {fastest[worst]:.0f} degrees/s, outside the range "
                 f"[0, {arm.speeds_deg_s[worst]:g}] degrees/s of arm {arm.name}"
             )
-            return Notice(place.name, sentence, code="joint-too-fast", about=str(worst + 1))
+            return Notice(place.name, sentence, code="joint-too-fast", about=str(joint_number(arm, worst)))
     return None
 
 
@@ -260,10 +285,10 @@ def _beyond_limit(place: Place, arm: Arm, joint: int, posture: _Posture) -> Noti
     ):  # at the first place: the nearer end is the reason
         angle -= 360
     sentence = (
-        f"{_near(place)} joint {joint + 1} would turn to {angle:.1f} degrees, outside the range [{low:g}, {high:g}] "
+        f"{_near(place)} {_joint(arm, joint)} would turn to {angle:.1f} degrees, outside the range [{low:g}, {high:g}] "
         f"degrees of arm {arm.name}"
     )
-    return Notice(place.name, sentence, code="joint-limit", about=str(joint + 1))
+    return Notice(place.name, sentence, code="joint-limit", about=str(joint_number(arm, joint)))
 
 
 def _out_of_reach(place: Place, arm: Arm) -> Notice:
@@ -282,17 +307,23 @@ def _through_singularity(place: Place, arm: Arm) -> Notice:
 def _near_singularity(place: Place, arm: Arm, most: float, joints_rad: np.ndarray) -> Notice:
     worst = int(np.linalg.norm(rates(arm, joints_rad, place.robot_mm), axis=1).argmax())
     sentence = (
-        f"{_near(place)} arm {arm.name} comes near a singularity: joint {worst + 1} would turn by "
+        f"{_near(place)} arm {arm.name} comes near a singularity: {_joint(arm, worst)} would turn by "
         f"{np.degrees(most):.1f} degrees for each mm, more than {np.degrees(SINGULAR_RAD_MM):g}"
     )
-    return Notice(place.name, sentence, code="singularity", about=str(worst + 1))
+    return Notice(place.name, sentence, code="singularity", about=str(joint_number(arm, worst)))
 
 
-def _tell_flip(posture: _Posture, place: Place, found: _Found, arm: Arm) -> None:
+def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
+    """Whether a place lies so near to where a posture came to a singularity that its joints tell what became of it."""
+    failure = posture.failure
+    if failure is None or failure.code != "singularity":
+        return False
+    return float(np.linalg.norm(robot_mm - posture.failed.robot_mm)) <= AHEAD_MM
+
+
+def _tell_flip(posture: _Posture, found: _Found, arm: Arm) -> None:
     """The failure at a singularity told as a flip where, calm again behind it, the wrist that bends the same way has
     turned over."""
-    if np.linalg.norm(place.robot_mm - posture.failed.robot_mm) > AHEAD_MM:
-        return
     turns = _turned(posture.calm_rad, found.angles_rad)
     bends = np.sin(found.angles_rad[:, BENDS]) * np.sin(posture.calm_rad[BENDS])
     same = (np.abs(turns[:, :3]).max(axis=1) < SAME_ARM_RAD) & (bends > 0) & (found.most <= CALM_RAD_MM)
@@ -300,11 +331,15 @@ def _tell_flip(posture: _Posture, place: Place, found: _Found, arm: Arm) -> None
         joint = TWISTS[int(np.abs(turn[TWISTS]).argmax())]
         if abs(turn[joint]) > FLIP_RAD:
             sentence = (
-                f"{_near(posture.failed)} the wrist of arm {arm.name} would flip: joint {joint + 1} would turn by "
+                f"{_near(posture.failed)} the wrist of arm {arm.name} would flip: {_joint(arm, joint)} would turn by "
                 f"{np.degrees(abs(turn[joint])):.0f} degrees on the way past a singularity"
             )
             posture.failure = Notice(posture.failed.name, sentence, code="wrist-flip")
             return
+
+
+def _joint(arm: Arm, joint: int) -> str:
+    return f"joint {joint_number(arm, joint)}"
 
 
 def _near(place: Place) -> str:

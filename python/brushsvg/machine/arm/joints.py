@@ -18,6 +18,7 @@ MM = 1e-3  # ssik's lengths are in metres
 # than any arm repeats a place by; a link of another arm is off by more.
 PREBUILT_MM = 0.01
 
+THERE = 1e-8  # how far off, in mm and rad, Newton's steps may end
 MOST_STEP_RAD = 0.02  # a longer one is no rounding: at a singularity it leads anywhere
 
 
@@ -49,31 +50,35 @@ def frames(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
     joints_rad = np.asarray(joints_rad, dtype=float)
     base, links, flange = _fixed(arm)
     theta = joints_rad + np.radians([row[3] for row in arm.dh])
-    here = np.broadcast_to(base, (*joints_rad.shape[:-1], 4, 4))
-    found = [here]
-    for number, link in enumerate(links):
-        turn = np.zeros((*joints_rad.shape[:-1], 4, 4))
-        c, s = np.cos(theta[..., number]), np.sin(theta[..., number])
-        turn[..., 0, 0] = turn[..., 1, 1] = c
-        turn[..., 0, 1], turn[..., 1, 0] = -s, s
-        turn[..., 2, 2] = turn[..., 3, 3] = 1.0
-        here = here @ turn @ link
-        found.append(here)
-    found[-1] = here @ flange
-    return np.stack(found, axis=-3)
+    c, s = np.cos(theta)[..., None], np.sin(theta)[..., None]
+    steps = np.empty((*theta.shape, 4, 4))  # about z by theta, and along the link
+    steps[..., 0, :] = c * links[:, 0] - s * links[:, 1]
+    steps[..., 1, :] = s * links[:, 0] + c * links[:, 1]
+    steps[..., 2:, :] = links[:, 2:]
+    found = np.empty((*theta.shape[:-1], len(links) + 1, 4, 4))
+    found[..., 0, :, :] = base
+    for number in range(len(links)):
+        found[..., number + 1, :, :] = found[..., number, :, :] @ steps[..., number, :, :]
+    found[..., -1, :, :] = found[..., -1, :, :] @ flange
+    return found
 
 
 def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
     """(..., 6, n): how the tip at tip_mm (3,), held by the flange, moves [mm/rad] and turns with each joint."""
-    at = frames(arm, joints_rad)[..., :-1, :, :]
-    axes, arms = at[..., :3, 2], tip_mm - at[..., :3, 3]
-    return np.concatenate([np.cross(axes, arms), axes], axis=-1).swapaxes(-1, -2)
+    return rates_at(frames(arm, joints_rad), tip_mm)
+
+
+def rates_at(there: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
+    """The same for frames (..., n + 1, 4, 4)."""
+    axes, arms = there[..., :-1, :3, 2], tip_mm - there[..., :-1, :3, 3]
+    (u, v, w), (x, y, z) = np.moveaxis(axes, -1, 0), np.moveaxis(arms, -1, 0)
+    return np.stack([v * z - w * y, w * x - u * z, u * y - v * x, u, v, w], axis=-2)
 
 
 @lru_cache(maxsize=64)
-def _fixed(arm: Arm) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
+def _fixed(arm: Arm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What does not turn: the base; of each link along z by d, along x by a, about x by alpha; the flange."""
-    links = [frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh]
+    links = np.array([frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh])
     nowhere = (0.0, 0.0, 0.0)
     return (
         frame_of_pose(arm.base_mm, arm.base_rotation_deg),
@@ -110,20 +115,33 @@ def _of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _on_these_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
-    """Angles found for links that are rounded otherwise, on those of the cell: two steps of Newton's are enough."""
-    if not len(angles):
-        return angles
-    for _ in range(2):
-        there = frames(arm, angles)[:, -1]
-        turned = flange[:3, :3] @ there[:, :3, :3].swapaxes(-1, -2)
+    """Angles found for links that are rounded otherwise, on those of the cell: two steps of Newton's are enough, more
+    near a singularity."""
+    return towards(arm, angles, flange, 5, MOST_STEP_RAD)[0]
+
+
+def towards(
+    arm: Arm, angles: np.ndarray, flange: np.ndarray, steps: int, most_step_rad: float
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Angles (k, 6) that put the flange at (4, 4), from angles that put it near, by at most so many steps of Newton's;
+    a step that would be longer than that is none. And, where all are there, the frames of the joints, else None."""
+    for number in range(steps + 1):
+        there = frames(arm, angles)
+        rates = rates_at(there, flange[:3, 3])
+        turned = flange[:3, :3] @ there[:, -1, :3, :3].swapaxes(-1, -2)
         turn = [turned[:, k - 1, k - 2] - turned[:, k - 2, k - 1] for k in (0, 1, 2)]
-        off = np.concatenate([flange[:3, 3] - there[:, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
+        off = np.concatenate([flange[:3, 3] - there[:, -1, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
+        if np.abs(off).max(initial=0.0) < THERE and np.abs(there[:, -1] - flange).max(initial=0.0) < THERE:
+            return angles, there
+        if number == steps:
+            break
         try:
-            step = np.linalg.solve(flange_rates(arm, angles, flange[:3, 3]), off[..., None])[..., 0]
+            step = np.linalg.solve(rates, off[..., None])[..., 0]
         except np.linalg.LinAlgError:  # at a singularity to the last digit
-            return angles
-        angles = angles + np.where(np.abs(step).max(axis=-1, keepdims=True) < MOST_STEP_RAD, step, 0.0)
-    return angles
+            break
+        longest = np.abs(step).max(axis=-1, keepdims=True)
+        angles = angles + np.where(longest < most_step_rad, step, 0.0)
+    return angles, None
 
 
 def _solver(solve, into: np.ndarray, behind: np.ndarray, theta: np.ndarray):

@@ -51,6 +51,12 @@ def _grbl_servo(program: Program) -> Iterator[str]:
     return grbl_servo(program)
 
 
+def _marlin_servo(program: Program) -> Iterator[str]:
+    from .gcode_pen import marlin_servo
+
+    return marlin_servo(program)
+
+
 def _urscript(program: Program) -> Iterator[str]:
     from .urscript import urscript
 
@@ -159,6 +165,7 @@ POSTS = {  # by the language a cell names
     "marlin": Post("G-code for Marlin", GCODE, _dialect),
     "klipper": Post("G-code for Klipper", GCODE, _dialect),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
+    "marlin-servo": Post("G-code for Marlin, a pen on a servo", GCODE, _marlin_servo, circles_by=""),
     "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
     "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),

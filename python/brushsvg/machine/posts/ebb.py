@@ -109,7 +109,7 @@ class _Writer:
     ) -> str:
         """Straight lines, each in parts on which the height is the one half way along, and in slices of time."""
         cell, ways = self.cell, np.diff(path, axis=0)
-        lengths = np.linalg.norm(ways[:, :2], axis=1)
+        lengths = np.hypot(ways[:, 0], ways[:, 1])
         caps = joint_caps(blends_mm, run + 1, ways[:, :2], lengths, cell.speeds.acceleration_mm_s2)
         counts = servo_parts(ways, cell)
         which = np.repeat(np.arange(len(ways)), counts)
@@ -119,8 +119,7 @@ class _Writer:
         heights = path[which, 2] + ways[which, 2] * (number + 0.5) / counts[which]
         values = value_at(cell.servo, heights)
         parts_mm, tops = (lengths / counts)[which], feeds[which] / 60
-        rows = self._rows(parts_mm.tolist(), inner.tolist(), tops.tolist())
-        part, when_s, done_mm = (np.array(each) for each in zip(*rows, strict=True))
+        part, when_s, done_mm = self._rows(parts_mm.tolist(), inner.tolist(), tops.tolist())
         line = which[part]
         along = (number[part] * parts_mm[part] + done_mm) / lengths[line]
         part, when_s, places = _none_long(
@@ -128,18 +127,21 @@ class _Writer:
         )
         return self._slices(part, when_s, places, values, feeds[which])
 
-    def _rows(
-        self, parts_mm: list[float], caps: list[float], tops: list[float]
-    ) -> Iterator[tuple[int, float, float]]:
-        """(part, when [s], how far on it [mm]): no slice is shorter than a move may be."""
+    def _rows(self, parts_mm: list[float], caps: list[float], tops: list[float]) -> tuple[np.ndarray, ...]:
+        """(n,) part, when [s], how far on it [mm]: no slice is shorter than a move may be."""
         least_mm, last_mm = least_part_mm(self.cell), 0.0
+        part, when, done = [], [], []
         for k, when_s, done_mm in paced(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):
             if done_mm is None:
-                last_mm = 0.0
-                yield k, when_s, parts_mm[k]
+                last_mm, far_mm = 0.0, parts_mm[k]
             elif min(done_mm - last_mm, parts_mm[k] - done_mm) >= least_mm:
-                last_mm = done_mm
-                yield k, when_s, done_mm
+                last_mm = far_mm = done_mm
+            else:
+                continue
+            part.append(k)
+            when.append(when_s)
+            done.append(far_mm)
+        return np.array(part), np.array(when), np.array(done)
 
     def _slices(
         self,
@@ -155,12 +157,12 @@ class _Writer:
         moves = steps[1:] - steps[:-1]
         goes = moves.any(axis=1)  # where it stands, what follows takes the time, too
         part, when_s, moves = part[goes], when_s[goes], moves[goes]
-        ways_mm = np.linalg.norm(places_of(moves, motors), axis=1)
+        ways_mm = np.hypot(*places_of(moves, motors).T)
         # never faster than it may be, whatever rounding makes of ways and times
-        least_s = np.maximum(np.diff(when_s, prepend=0.0), 60 * ways_mm / feeds[part])
+        least_s = np.maximum(_steps(when_s, 0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
         values, feeds = values[part], feeds[part]
-        new_value, new_feed = np.diff(values, prepend=self.value) != 0, np.diff(feeds, prepend=self.feed) != 0
+        new_value, new_feed = _steps(values, self.value) != 0, _steps(feeds, self.feed) != 0
         told = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
         lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in told]
         for k in np.flatnonzero(new_value):
@@ -171,11 +173,18 @@ class _Writer:
         return "".join(lines)
 
 
+def _steps(values: np.ndarray, before: float) -> np.ndarray:
+    """(n,) how far each value lies beyond the one before."""
+    steps = values - before
+    steps[1:] = values[1:] - values[:-1]
+    return steps
+
+
 def _none_long(
     part: np.ndarray, when_s: np.ndarray, places: np.ndarray, start: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same rows, with more where one takes long."""
-    times_s = np.diff(when_s, prepend=0.0)
+    times_s = _steps(when_s, 0.0)
     counts = np.maximum(1, np.ceil(times_s / SLOWEST_S - 1e-9)).astype(int)
     if (counts == 1).all():
         return part, when_s, places

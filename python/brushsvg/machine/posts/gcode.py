@@ -89,6 +89,7 @@ DIALECTS = {  # LinuxCNC's length and radii by trying its version 2.9
     ),
 }
 DIALECTS["grbl-servo"] = DIALECTS["grbl"]
+DIALECTS["marlin-servo"] = DIALECTS["marlin"]
 
 
 def wait(step: Wait, dialect: Dialect) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -57,14 +58,24 @@ def grbl_servo(program: Program) -> Iterator[str]:
 
 def value_at(servo: Servo, height_mm):
     """The servo's value for a height, or for each of an array."""
-    heights, values = zip(*sorted(servo.table), strict=True)
-    return np.rint(np.interp(height_mm, heights, values)).astype(int)
+    return np.rint(np.interp(height_mm, *_by_height(servo.table))).astype(int)
 
 
 def height_at(servo: Servo, value: float) -> float:
     """The height that a value gives."""
-    values, heights = zip(*sorted((value, height) for height, value in servo.table), strict=True)
-    return float(np.interp(value, values, heights))
+    return float(np.interp(value, *_by_value(servo.table)))
+
+
+@lru_cache(maxsize=8)
+def _by_height(table: tuple) -> tuple[np.ndarray, np.ndarray]:
+    heights, values = np.array(sorted(table), dtype=float).T
+    return heights, values
+
+
+@lru_cache(maxsize=8)
+def _by_value(table: tuple) -> tuple[np.ndarray, np.ndarray]:
+    heights, values = np.array(sorted(table, key=lambda row: row[1]), dtype=float).T
+    return values, heights
 
 
 def _lines(
@@ -101,8 +112,7 @@ def lifted(
     told = value_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
     told = np.concatenate([[value], told])
     told = told[np.concatenate([[True], told[1:] != told[:-1]])]
-    values, heights = zip(*sorted((value, height) for height, value in servo.table), strict=True)
-    at_mm = np.interp(told, values, heights)
+    at_mm = np.interp(told, *_by_value(servo.table))
     waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
     return list(zip(told[1:].tolist(), waits_ms.tolist(), strict=True))
 
@@ -124,11 +134,11 @@ def _ways(
         heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
         values = value_at(cell.servo, heights)
         at = feeds[first + which]
-        for run in np.split(np.arange(len(which)), np.flatnonzero(np.diff(at)) + 1):
-            if at[run[0]] != feed:
-                feed = at[run[0]]
-                yield f"F{feed:.1f}\n"
-            yield from rows(pattern, np.column_stack([ends[run], values[run]]), decimals)
+        lines = "".join(rows(pattern, np.column_stack([ends, values]), decimals)).split("\n")
+        for k in np.flatnonzero(np.diff(at, prepend=feed)).tolist():
+            lines[k] = f"F{at[k]:.1f}\n{lines[k]}"
+        feed = at[-1]
+        yield "\n".join(lines)
     return int(values[-1]), feed
 
 
@@ -138,7 +148,7 @@ def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.
     part = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)
     is_steep = speed_mm_s > fastest_mm_s * part + 1e-9
     part = np.where(part > 0.1, np.floor(100 * part + 1e-9) / 100, part)
-    slower = [
-        feed_mm_min(fastest_mm_s * each) if steep else 0.0 for each, steep in zip(part, is_steep, strict=True)
-    ]
-    return np.where(is_steep, slower, feed_mm_min(speed_mm_s))
+    feeds = np.full(len(way), feed_mm_min(speed_mm_s))
+    for k in np.flatnonzero(is_steep):
+        feeds[k] = feed_mm_min(fastest_mm_s * part[k])
+    return feeds

@@ -14,6 +14,7 @@ from .text import number, plain, rows
 LINE_LIMIT = 100
 LEAST_BLEND_M = 5e-6  # what would be written as less is no blend
 M = 1e-3
+WATCHED = "  watching = run watch()\n"
 
 
 def urscript(program: Program) -> Iterator[str]:
@@ -30,10 +31,14 @@ def urscript(program: Program) -> Iterator[str]:
     yield "  def on_paper(x, y, z):\n"
     yield f"    return pose_trans(paper, p[x, y, z, {_vector(down(tool.spin_deg), decimals)}])\n"
     yield "  end\n"
+    contact = program.cell.contact
+    if contact:
+        yield _watch(contact.force_n)
+    begin = f"  zero_ftsensor()\n{WATCHED}" if contact else ""  # held high, where nothing presses
     words = Words(
         lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
-        lambda speed: _rise(program.rise_mm, speed, acceleration, decimals),
-        _wait,
+        lambda speed: _rise(program.rise_mm, speed, acceleration, decimals) + begin,
+        lambda step: _wait(step, contact is not None),
         lambda move: _lines(move, acceleration, decimals),
     )
     yield from body(program, words)
@@ -48,6 +53,22 @@ def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int)
         f"  if here[2] < {height}:\n"
         f"    movel(pose_trans(paper, p[here[0], here[1], {height}, here[3], here[4], here[5]]), "
         f"a={acceleration}, v={number(speed_mm_s * M, 4)})\n"
+        "  end\n"
+    )
+
+
+def _watch(force_n: float) -> str:
+    """A thread beside the moves: the whole program ends where the tool is pressed harder."""
+    newtons = number(force_n, 1)
+    return (
+        "  thread watch():\n"
+        "    while True:\n"
+        f"      if force() > {newtons}:\n"
+        f'        textmsg("brushsvg: the tool is pressed with more than {newtons} N")\n'
+        "        halt\n"
+        "      end\n"
+        "      sync()\n"
+        "    end\n"
         "  end\n"
     )
 
@@ -73,9 +94,10 @@ def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
     yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
 
 
-def _wait(step: Wait) -> str:
+def _wait(step: Wait, is_watched: bool) -> str:
     if step.seconds is None:
-        return f'  popup("{plain(step.message, 60).translate(QUIET)}", "brushsvg", False, False, blocking=True)\n'
+        asks = f'  popup("{plain(step.message, 60).translate(QUIET)}", "brushsvg", False, False, blocking=True)\n'
+        return f"  kill watching\n{asks}{WATCHED}" if is_watched else asks  # a hand may be at the brush
     return f"  sleep({number(step.seconds, 3)})\n"
 
 

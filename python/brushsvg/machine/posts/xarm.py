@@ -60,7 +60,8 @@ arm = XArmAPI(sys.argv[1])
 done(arm.motion_enable(True))
 done(arm.set_world_offset([0, 0, 0, 0, 0, 0], is_radian=False))
 done(arm.set_tcp_offset(TOOL, is_radian=False))
-done(arm.set_mode(0))
+"""
+READY = """done(arm.set_mode(0))
 done(arm.set_state(0))
 """
 AFTER = "arrive()\narm.disconnect()\n"
@@ -77,6 +78,9 @@ def xarm(program: Program) -> Iterator[str]:
     yield f"TOOL = [{tool[0]}, {tool[1]}]\n"
     yield f"MOST = {rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
     yield FUNCTIONS
+    if cell.contact:
+        yield f"done(arm.set_collision_sensitivity({cell.contact.sensitivity}))\n"
+    yield READY
     words = Words(
         comment,
         lambda speed: f"rise({number(program.rise_mm, decimals)}, {rounded_down(speed, SPEED_DECIMALS)})\n",

@@ -246,6 +246,7 @@ _READERS: dict[str, Callable[[str, Cell], Readback]] = {
     "grbl-servo": _gcode,
     "fluidnc": _gcode,
     "marlin": _gcode,
+    "marlin-servo": _gcode,
     "klipper": _gcode,
     "urscript": _urscript,
     "jaka": _jaka,

@@ -82,6 +82,10 @@ class _Reader:
             self.words = dict(FOR_PRINTERS)
             if "M0" in self.dialect.stops:
                 self.words["M0"] = ""
+            if cell.pen:
+                self.words |= {"G0": "XYF", "G1": "XYF", "G2": "", "G3": "", "M280": "PS"}
+        self.pen, self.heights, self.press_mm_s = cell.pen, cell.heights, cell.speeds.press_mm_s
+        self.stands = True  # behind M400, and before any move
         self.known = ALONE | MODES | set(NEEDED)
         if cell.language != "linuxcnc":
             self.known -= UNKNOWN_TO_GRBL
@@ -166,7 +170,32 @@ class _Reader:
             self._move(number, line, first, values)
         elif first == "G4":
             self._wait(number, line, values.get("P", -1.0) / self.dialect.per_s)
-        self.seen.add(first)
+        elif first == "M280":
+            self._pen(number, line, values)
+        self.stands = first == "M400" or (self.stands and first not in WAYS)
+        self.seen |= {first} - {"M400"}  # which sets nothing
+
+    def _pen(self, number: int, line: str, values: dict[str, float]) -> None:
+        """Up or down, at once: what the firmware still holds of moves is run behind it."""
+        ups = [float(round(value)) for value in self.pen.servo_values]
+        if values.get("P") != self.pen.servo_number or values.get("S") not in ups:
+            sentence = f"line {number}: {line[:40]!r} is neither up nor down of the cell's pen"
+            raise Error(sentence, code="servo-out-of-range")
+        if not self.stands:
+            raise Error(f"line {number}: {line[:40]!r} has no M400 before it", code="mode-missing")
+        is_down = values["S"] == ups[1]
+        height_mm = self.pen.down_mm if is_down else self.heights.safe_mm
+        if height_mm == self.at["Z"]:
+            return  # as it was
+        self.at["Z"] = height_mm
+        if math.isnan(self.at["X"]):
+            self.out.rises_mm.append(self.at["Z"])
+        self._go(number, False, {}, None)
+        step = self.out.section().steps[-1]
+        self.out.section().steps[-1] = step._replace(
+            speed_mm_s=min(self.press_mm_s, self.feed_mm_s or math.inf)
+        )
+        self.out.acts.append(Act(number, "text", f"M280 {'down' if is_down else 'up'}"))
 
     def _line(self, number: int, line: str) -> None:
         if not (words := _words(line)):

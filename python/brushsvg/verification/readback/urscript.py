@@ -24,6 +24,8 @@ _OTHER = re.compile(  # the frame around the moves
     rf"|return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)"
     r"|here = pose_trans\(pose_inv\(paper\), get_actual_tcp_pose\(\)\)"
     rf"|if here\[2\] < {_N}:"
+    rf"|thread watch\(\):|while True:|if force\(\) > {_N}:|halt|sync\(\)|zero_ftsensor\(\)|kill watching"
+    rf'|watching = run watch\(\)|textmsg\("brushsvg: the tool is pressed with more than {_N} N"\)'
     r'|popup\("[^"\\]*", "brushsvg", False, False, blocking=True\)'
 )
 

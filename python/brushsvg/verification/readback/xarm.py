@@ -7,13 +7,13 @@ import re
 
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, NAMES_LETTERS, XARM_END, upright_deg
+from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, NAMES_LETTERS, READY, XARM_END, upright_deg
 from . import Act, Readback
 from .script import N, Script, place, read_script
 
 _FIXED = "|".join(
     re.escape(line).replace("\\[0,", "\\[-?0,")
-    for line in dict.fromkeys((BEFORE + FUNCTIONS + AFTER).splitlines())
+    for line in dict.fromkeys((BEFORE + FUNCTIONS + READY + AFTER).splitlines())
     if line
 )
 _LINES = tuple(
@@ -28,7 +28,7 @@ _LINES = tuple(
         ("rise", rf"rise\((?P<height>{N}), (?P<speed>{N})\)"),
         ("most", rf"MOST = (?P<most>{N})"),
         ("text", rf"UPRIGHT = \((?P<turned>{N}, {N}, {N})\)|TOOL = \[{N}(?:, {N}){{5}}\]"),
-        ("text", rf"stop\(\"[^\"\\]*\"\)|{_FIXED}"),
+        ("text", rf"stop\(\"[^\"\\]*\"\)|done\(arm\.set_collision_sensitivity\(\d\)\)|{_FIXED}"),
     )
 )
 
@@ -38,7 +38,7 @@ _LEFT_OUT = re.compile(r"(set_(?:mode|state))\(\)")  # 0 is what the SDK takes t
 # between switching it on and letting it move.
 _ANY_ORDER = (
     re.compile(r"import |from |UPRIGHT = |TOOL = |at most"),
-    re.compile(r"done\(arm\.set_(?:world_offset|tcp_offset|mode)\("),
+    re.compile(r"done\(arm\.set_(?:world_offset|tcp_offset|collision_sensitivity|mode)\("),
 )
 
 

@@ -1,0 +1,42 @@
+#!/usr/bin/python3
+"""In place of LinuxCNC's screen: the program beside the .ini is run once, and where the axes are told to be is written
+down, a row for each millisecond. Started by LinuxCNC, see controller.py."""
+
+import subprocess
+import time
+from pathlib import Path
+
+import linuxcnc
+
+MOST_S = 60
+
+
+def run(program, samples):
+    command, status, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
+
+    def said(*words):
+        getattr(command, words[0])(*words[1:])
+        command.wait_complete()
+
+    with samples.open("w") as out, subprocess.Popen(["halsampler", "-t"], stdout=out) as sampler:
+        said("state", linuxcnc.STATE_ESTOP_RESET)
+        said("state", linuxcnc.STATE_ON)
+        said("home", -1)
+        said("mode", linuxcnc.MODE_AUTO)
+        said("program_open", str(program))
+        command.auto(linuxcnc.AUTO_RUN, 0)
+        end, began = time.monotonic() + MOST_S, False
+        while time.monotonic() < end:
+            status.poll()
+            began = began or status.interp_state != linuxcnc.INTERP_IDLE
+            if began and status.interp_state == linuxcnc.INTERP_IDLE:
+                break
+            time.sleep(0.02)
+        time.sleep(0.2)
+        sampler.terminate()
+    return [error[1] for error in iter(errors.poll, None)]
+
+
+if __name__ == "__main__":
+    folder = Path.cwd()
+    (folder / "errors.txt").write_text("\n".join(run(folder / "program.ngc", folder / "samples.txt")))

@@ -1,0 +1,143 @@
+"""Marlin with a pen on a servo: what is drawn is the plan, and the machine stands while the pen goes."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told, refused
+from judge import printer
+from programs import program
+
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.machine import writer
+from brushsvg.machine.cell import Paper, Pen, Station
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.writer import text_of
+from brushsvg.verification import against_plan, simulate_program
+from brushsvg.verification.readback import read_program
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_marlin_servo.gcode"
+CELL = find_cell("marlin-servo")
+DOWN = CELL.pen.down_mm
+SHEET = (100.0, 60.0)
+
+
+def drawn(*lines, speed=20.0):
+    """A plan: each line (n, 2) at the pen's height, set down and lifted on the spot."""
+    passes = []
+    for number, line in enumerate(lines, 1):
+        flat = np.column_stack([line, np.full(len(line), DOWN)])
+        poses = np.vstack([flat[:1] * (1, 1, 0), flat, flat[-1:] * (1, 1, 0)])
+        passes.append(_core.Pass(f"s{number}", poses, speed))
+    return _core.Plan("rigid", "", SHEET, passes)
+
+
+TWO = drawn([(10, 10), (20.01, 15.555), (40, 24)], [(50, 20), (50, 40)])
+
+
+def text_for(plan, cell=CELL, header=()):
+    return "".join(text_of(POSTS["marlin-servo"], program(plan, find_brush("rigid"), cell, header)))
+
+
+def run(text, cell=CELL):
+    up, down = cell.pen.servo_values
+    heights = {up: cell.heights.safe_mm, down: cell.pen.down_mm}
+    pen = printer.Pen(cell.pen.servo_number, heights, cell.pen.settle_s)
+    found = printer.run_printer(text, "marlin", (0.0, 0.0, 1.0), False, pen)
+    assert not found.refused and not found.acts and not found.frame, (found.refused, found.acts)
+    return found
+
+
+def test_golden():
+    assert text_for(TWO, header=("title: two strokes",)) == GOLDEN.read_text(encoding="ascii")
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_drawn_is_the_plan_and_check_takes_it(seed):
+    rng = np.random.default_rng(seed)
+    cell = replace(
+        CELL,
+        paper=Paper((12.0, 20.0, 0.0), (0.0, 0.0, rng.uniform(0, 360))),
+        pen=replace(CELL.pen, servo_values=(30.0, 120.0), servo_number=2, settle_s=0.45),
+    )
+    count = int(rng.integers(1, 5))
+    lines = [np.array([50, 30]) + np.cumsum(rng.uniform(-1, 1, (30, 2)), axis=0) for _ in range(count)]
+    plan = drawn(*lines, speed=float(rng.uniform(5, 30)))
+    text = "".join(writer.encode(".gcode", plan, find_brush("rigid"), "a (title); x", (), cell))
+    turned = np.radians(cell.paper.rotation_deg[2])
+    turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
+    strokes = []
+    for leg in run(text, cell).legs:
+        if leg.kind == "jump" and leg.end[2] == DOWN:
+            strokes.append([leg.end[:2]])
+        elif leg.kind == "feed" and leg.end[2] == DOWN:
+            strokes[-1].append(leg.end[:2])
+            assert leg.speed_mm_s <= plan.passes[0].speed_mm_s
+    wanted = [line @ turn.T + (12.0, 20.0) for line in lines]
+    assert np.abs(np.array(strokes) - np.array(wanted)).max() <= 0.5e-3 + 1e-9
+    ran = simulate_program.run(read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET)
+    assert ran.problems == []
+    assert against_plan.with_plan(ran, in_loads(plan, find_brush("rigid"), cell), cell)[1] == []
+
+
+def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):
+    (tmp_path / "pens.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80"><g fill="none" '
+        'stroke-width="1"><path d="M30 20h30" stroke="#000000"/><path d="M30 32h30" stroke="#ff0000"/></g></svg>'
+    )
+    cell = ("--cell", "marlin-servo", "--brush", "rigid")
+    assert in_json(capsys, "convert", tmp_path / "pens.svg", tmp_path / "pens.gcode", *cell)[0] == 0
+    legs = run((tmp_path / "pens.gcode").read_text()).legs
+    (stop,) = [leg for leg in legs if leg.kind == "stop"]
+    assert stop.end[2] == CELL.heights.safe_mm
+    check = ("check", tmp_path / "pens.gcode", tmp_path / "pens.svg", *cell)
+    assert in_json(capsys, *check)[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (r"M400\nM280 P0 S40", "M280 P0 S40", "mode-missing"),
+        (r"S40", "S41", "servo-out-of-range"),
+        (r"M280 P0 S40", "M280 P1 S40", "servo-out-of-range"),
+        (r"M280 P0 S40\nG4 P300", "M280 P0 S40", "program-changed"),
+        (r"(?s)(S40.*?)M280 P0 S90\n", r"\1", "never-lifted|touches-miscounted|tool-too-low|program-changed"),
+        (r"G1 X20\.010", "G1 X20.010 Z-3", "line-unread"),
+        (r"G1 X20\.010 Y15\.555", "G2 X20.010 Y15.555", "line-unread"),
+        (r"G1 X20\.010", "G1 X22.010", "path-elsewhere"),
+        (r"\nM400\n; end.*\n", "\n", "program-cut-short"),
+    ],
+)
+def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, told):
+    text = "".join(writer.encode(".gcode", TWO, find_brush("rigid"), "two", (), CELL))
+    (tmp_path / "plan.json").write_text(_core.write_plan(TWO))
+    words = ("check", tmp_path / "two.gcode", tmp_path / "plan.json", "--cell", "marlin-servo")
+    (tmp_path / "two.gcode").write_text(text)
+    assert in_json(capsys, *words)[0] == 0
+    damaged, count = re.subn(old, new, text, count=1)
+    assert count == 1
+    (tmp_path / "two.gcode").write_text(damaged)
+    status, _, said = in_json(capsys, *words)
+    assert status == 1 and any(is_told(said, code) for code in told.split("|")), said
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"pen": None}, "key-missing pen"),
+        ({"pen": Pen(-0.2)}, "servo-table"),
+        ({"pen": Pen(-0.2, servo_values=(40.0, 40.2))}, "servo-table"),
+        ({"pen": Pen(-0.2, ("#000000",), (90.0, 40.0))}, "out-of-range"),
+        ({"language": "hpgl"}, "out-of-range hpgl"),
+        ({"language": "marlin"}, "out-of-range 'pen' marlin"),
+        ({"stations": (Station("ink", (120.0, 10.0), depth_mm=1.0),)}, "cell-station"),
+    ],
+)
+def test_a_cell_that_such_a_pen_cannot_be_is_refused(change, told):
+    with refused(told):
+        parse_cell(write_cell(replace(CELL, **change)))
