@@ -223,7 +223,15 @@ def add_brush(commands) -> None:
         "--lag",
         metavar="MM",
         type=values.lag,
-        help="how far the brush trails the tool; 0 for a pen",
+        help="how far the brush trails the tool, at every depth; 0 for a pen",
+    )
+    new.add_argument(
+        "--lag-at",
+        metavar="DEPTH=MM",
+        action="append",
+        type=values.lag_at,
+        default=[],
+        help="the same at a press depth, for a lag that grows with depth; give it once per measured depth",
     )
     new.add_argument(
         "--width-at",
@@ -261,13 +269,16 @@ def add_article(commands) -> None:
 
 def _check_brush_new(args) -> None:
     if args.like is not None:
-        given = [("--lag", args.lag), ("--width-at", args.width_at or None), ("--widths", args.widths)]
-        for flag, value in [*given, ("--depth-max", args.depth_max)]:
+        given = [("--lag", args.lag), ("--lag-at", args.lag_at or None), ("--widths", args.widths)]
+        given += [("--width-at", args.width_at or None), ("--depth-max", args.depth_max)]
+        for flag, value in given:
             if value is not None:
                 args.parser.error(f"argument {flag}: --like takes it from the other brush")
         return
-    if args.lag is None:
-        args.parser.error("the following arguments are required: --lag, or --like BRUSH")
+    if args.lag is None and not args.lag_at:
+        args.parser.error("the following arguments are required: --lag or --lag-at, or --like BRUSH")
+    if args.lag is not None and args.lag_at:
+        args.parser.error("argument --lag: the same at every depth, not together with --lag-at")
     if not (args.width_at or args.widths):
         args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
 
