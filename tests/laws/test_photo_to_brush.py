@@ -85,6 +85,13 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
     assert (desk / "read.png").stat().st_size > 10_000
 
 
+def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
+    words = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json"), "--brush", "round-6"]
+    status, _, told = in_json(capsys, *words, "-o", str(desk / "lag.json"))
+    assert status == 1 and told[-1][1].code == "footprints-assumed", told
+    assert not (desk / "lag.json").exists()
+
+
 def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, capsys):
     """The fit masks the points of such marks; it once gave the brush without a word of it."""
     coin = np.vstack(marks()["straight-3"]).mean(axis=0) + np.array([0.0, 2.5])

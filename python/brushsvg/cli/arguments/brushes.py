@@ -102,7 +102,8 @@ def add_calibrate(commands) -> None:
     fit.add_argument(
         "--brush",
         metavar="NAME|FILE",
-        help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines",
+        help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines; for one "
+        "of strokes: the brush whose outlines are known, which gets the lag",
     )
     fit.add_argument(
         "--spread",
