@@ -24,7 +24,7 @@ from brushsvg.calibration.chart.file import write_chart
 
 ROOT = Path(__file__).parents[1]
 TALL_PX = 900
-DETAIL_MM = (70.0, 60.0)  # of read.png, about its middle, at the picture's own size
+DETAIL_MM = (70.0, 45.0)  # of read.png, its upper left, at the picture's own size
 
 
 def main(folder: Path) -> None:
@@ -38,8 +38,7 @@ def main(folder: Path) -> None:
     read = cv2.imread(str(folder / "read.png"))
     size = read.shape[1] / printed().plan.sheet_mm[0]
     tall, wide = (round(side * size) for side in DETAIL_MM[::-1])
-    top, left = (read.shape[0] - tall) // 2, (read.shape[1] - wide) // 2
-    cv2.imwrite(str(folder / "detail.png"), read[top : top + tall, left : left + wide])
+    cv2.imwrite(str(folder / "detail.png"), read[:tall, :wide])
     both = side_by_side([folder / "dabs.jpg", folder / "detail.png"], TALL_PX)
     cv2.imwrite(str(ROOT / "docs" / "dabs_read.jpg"), both, [cv2.IMWRITE_JPEG_QUALITY, 80])
 

@@ -86,7 +86,7 @@ def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
         for name, aside in ((each.dab.name, np.hypot(*each.aside_mm)) for each in shape.seen):
             _draw(picture, flat, [lying[name]], PREDICTED, PREDICTED_MM)
             told = f"{shape.depth_mm:g} mm deep, {aside:.2f} mm aside"
-            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g}: {aside:.2f}", f"{aside:.2f}"]
+            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm deep", f"{shape.depth_mm:g} mm"]
     for name, rings in read.marks.outlines_mm.items():
         if name not in lying:
             _draw(picture, flat, rings, ASTRAY, FOUND_MM)
