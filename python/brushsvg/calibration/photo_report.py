@@ -28,8 +28,8 @@ def read_picture(read, made=None) -> bytes:
 
 
 def dabs_picture(read, made) -> bytes:
-    """PNG. made: from_dabs.DabCalibration: over each dab in green the outline of its depth in red, with its depth and
-    displacement; what was left out in orange."""
+    """PNG. made: from_dabs.DabCalibration: over each dab in green the outline of its depth in red, with its depth and,
+    where there is room, its displacement; what was left out in orange."""
     return _drawn(read, lambda picture, flat: _dabs_compared(picture, flat, read, made.outlines))
 
 
@@ -86,7 +86,7 @@ def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
         for name, aside in ((each.dab.name, np.hypot(*each.aside_mm)) for each in shape.seen):
             _draw(picture, flat, [lying[name]], PREDICTED, PREDICTED_MM)
             told = f"{shape.depth_mm:g} mm deep, {aside:.2f} mm aside"
-            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm deep", f"{shape.depth_mm:g} mm"]
+            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
     for name, rings in read.marks.outlines_mm.items():
         if name not in lying:
             _draw(picture, flat, rings, ASTRAY, FOUND_MM)
