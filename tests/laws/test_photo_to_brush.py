@@ -85,6 +85,14 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
     assert (desk / "read.png").stat().st_size > 10_000
 
 
+def test_a_height_that_is_known_is_kept(desk, capsys):
+    """By itself the fit finds it within 0.03 mm."""
+    words = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json"), "-o"]
+    assert main([*words, str(desk / "surer.json"), "--height", "0.005"]) == 0
+    told = re.search(r"the paper lies (\S+) \+- (\S+) mm", capsys.readouterr().out)
+    assert float(told[1]) < 0.02 and float(told[2]) <= 0.01, told[0]
+
+
 def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
     words = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json"), "--brush", "round-6"]
     status, _, told = in_json(capsys, *words, "-o", str(desk / "lag.json"))

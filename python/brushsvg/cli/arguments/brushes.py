@@ -110,6 +110,13 @@ def add_calibrate(commands) -> None:
         metavar="FILE",
         help="for photographs: how well the studio repeats, as compare --sheets found it (.json)",
     )
+    fit.add_argument(
+        "--height",
+        metavar="MM",
+        type=values.noise,
+        help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
+        "brushsvg height; default: 0.3, as by eye",
+    )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
@@ -158,6 +165,7 @@ def _check_calibrate(args) -> None:
         ("--picture", args.picture),
         ("--brush", args.brush),
         ("--spread", args.spread),
+        ("--height", args.height),
     ):
         if value is not None:
             args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")
@@ -169,7 +177,7 @@ def _check_calibrate(args) -> None:
 def _check_update(args) -> None:
     if args.plan is None or args.prior is None:
         args.parser.error("--plan and --prior go together: what was painted, and by which brush")
-    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot"):
+    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot", "height"):
         if getattr(args, flag):
             args.parser.error(f"--{flag} is not for a job (--plan)")
     if args.norm != "squares":

@@ -33,7 +33,7 @@ def calibrate_file(args) -> None:
         return
     with about(args.input):
         if read:
-            made, report, report_picture = _from_photo(read, name, args.machine, args.spread)
+            made, report, report_picture = _from_photo(read, name, args)
         else:
             made = calibrate(
                 args.input, name, absolute=args.norm == "absolute", total=args.total, machine=args.machine
@@ -68,6 +68,8 @@ def _is_of_dabs(args, read) -> bool:
         args.parser.error(f"{args.chart} is a chart of dabs: give the brush whose lag is known, --brush FILE")
     if dabs and args.machine:
         args.parser.error("--machine needs strokes: dabs say nothing of the machine")
+    if dabs and args.height is not None:
+        args.parser.error("--height is for strokes: dabs are taken to be as deep as they were told")
     return dabs
 
 
@@ -107,7 +109,7 @@ def _calibrate_lag(args, read, name: str) -> None:
     with about(args.brush):
         refuse_assumed(own)
     with about(args.input):
-        made, *_ = _from_photo(read, name, args.machine, args.spread)
+        made, *_ = _from_photo(read, name, args)
         found = lag_by_outlines(made, own, name)
     files = {args.output: write_brush(found.brush)}
     if args.plot:
@@ -120,7 +122,7 @@ def _calibrate_lag(args, read, name: str) -> None:
     tell(report(found))
 
 
-def _from_photo(read, name: str, machine: tuple[str, ...], spread: str | None):
+def _from_photo(read, name: str, args):
     """The same from a photograph of a chart."""
     import json
 
@@ -134,9 +136,10 @@ def _from_photo(read, name: str, machine: tuple[str, ...], spread: str | None):
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    known = {"displacement_mm": read_displacement_mm(spread)} if spread else {}
+    known = {"displacement_mm": read_displacement_mm(args.spread)} if args.spread else {}
+    known |= {"height_mm": args.height} if args.height is not None else {}
     options = options_for(expected(read) | known)
-    ask_for(options, machine)
+    ask_for(options, args.machine)
     made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture
 
