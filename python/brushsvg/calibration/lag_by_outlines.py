@@ -257,9 +257,11 @@ def _joined(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndar
     out[: len(of_lag), : len(of_lag)] = of_lag
     known = np.array(own.covariance)
     if len(known):
-        out[at["lag"].stop :, at["lag"].stop :] = known[was["lag"].stop :, was["lag"].stop :]
-        of_gap, gap = known[was["tip_gap"], was["tip_gap"]], at["tip_gap"]
-        out[: len(of_gap), : len(of_gap)] += of_gap
-        out[: len(of_gap), gap] -= of_gap
-        out[gap, : len(of_gap)] -= of_gap
+        others = slice(at["lag"].stop, None)
+        out[others, others] = known[was["lag"].stop :, was["lag"].stop :]
+        gap = at["tip_gap"]
+        powers = gap.stop - gap.start
+        out[:powers, :powers] += out[gap, gap]
+        out[:powers, others] -= out[gap, others]
+        out[others, :powers] -= out[others, gap]
     return out
