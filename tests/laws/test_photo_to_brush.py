@@ -109,9 +109,9 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
 
 def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
     words = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json"), "--brush", "round-6"]
-    status, _, told = in_json(capsys, *words, "-o", str(desk / "lag.json"))
+    status, _, told = in_json(capsys, *words, "-o", str(desk / "none.json"))
     assert status == 1 and told[-1][1].code == "footprints-assumed", told
-    assert not (desk / "lag.json").exists()
+    assert not (desk / "none.json").exists()
 
 
 def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, capsys):

@@ -31,9 +31,9 @@ FARTHEST = 0.3  # share of a lag that outlines may change: more, and they are of
 
 @dataclass(frozen=True)
 class LagByOutlines:
-    """made: the marks, and what they say of the brush by its own outlines; before: what the fit said of them by drops
-    or eggs; own: the brush whose outlines and other laws stay; height_mm: of the paper above the taught one; noise_mm:
-    what edges lie off (robust standard deviation)."""
+    """made: the marks, and what they say of the brush by its own outlines, lying where these have them (Placed);
+    before: what the fit said of them by drops or eggs; own: the brush whose outlines and other laws stay; height_mm: of
+    the paper above the taught one; noise_mm: what edges lie off (robust standard deviation)."""
 
     made: MarkCalibration
     before: MarkCalibration
@@ -94,7 +94,32 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     )
     brush.covariance = whole.tolist()
     _core.check(brush)
-    return LagByOutlines(replace(made, brush=brush), made, own, float(height), noise)
+    fit = made.fit
+    marks = [
+        PlacedMark(np.array(miss.way_mm), tuple(by.tolist()))
+        for miss, by in zip(fit.marks, aside, strict=True)
+    ]
+    placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
+    return LagByOutlines(replace(made, brush=brush, fit=placed), made, own, float(height), noise)
+
+
+@dataclass(frozen=True)
+class PlacedMark:
+    """The way of a mark as the machine ran it, and how far the mark lies aside."""
+
+    way_mm: np.ndarray
+    displacement_mm: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Where marks lie, as the fit of drops or eggs says it: sheet, height of the paper, each mark."""
+
+    turn_rad: float
+    shift_mm: tuple[float, float]
+    centre_mm: tuple[float, float]
+    height_mm: float
+    marks: tuple[PlacedMark, ...]
 
 
 class _Edges:
