@@ -1,9 +1,11 @@
 """Random brushes paint printed charts, random cameras photograph them, and `calibrate` is asked which brush it was.
 
     photographs.py FOLDER [--count 200] [--brushes 40] [--seed 1] [--sheet a4] [--strokes few] [--again]
+                          [--height MM] [--half inside|outside]
 
 FOLDER keeps each photograph and what came of it: a run that was stopped goes on where it was, and `--again` reads and
-fits the photographs that are there once more. `--count 0` only tells what is there.
+fits the photographs that are there once more. `--count 0` only tells what is there. `--height`: the paper's height is
+known to so much (standard deviation), as `brushsvg height` finds it, and `calibrate --height` is told.
 
 The paint is the slow stepping simulator's of tests/laws, the pictures the renderer's there: a tilt, a lens of another
 formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet of either half bulges by a millimetre. Every
@@ -32,7 +34,7 @@ from brushsvg import _core
 from brushsvg.brush.confidence import law_band
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import edge_mm, marks_of, read_chart_photos, remarks
-from brushsvg.calibration.from_marks import brush_of, calibrate_marks
+from brushsvg.calibration.from_marks import brush_of, calibrate_marks, options_for
 from brushsvg.calibration.mark_input import read_painted
 from brushsvg.cli.arguments import values
 from brushsvg.errors import Error
@@ -129,8 +131,9 @@ def kept(case: Case, folder: Path) -> tuple[bytes, float]:
     return photo.read_bytes(), float(height.read_text())
 
 
-def outcome(case: Case, jpeg: bytes, true_height: float) -> dict:
-    """What came of a photograph, as JSON knows it."""
+def outcome(case: Case, jpeg: bytes, true_height: float, height_known: float | None = None) -> dict:
+    """What came of a photograph, as JSON knows it. height_known: standard deviation of the paper's height about which
+    the studio knows."""
     out = {"number": case.number, "inside": case.inside, "bulging": case.bulging}
     brush, made = case.brush, case.chart
     try:
@@ -145,7 +148,13 @@ def outcome(case: Case, jpeg: bytes, true_height: float) -> dict:
         begin = time.process_time()
         plan = json.loads(_core.write_plan(made.plan))
         marks = read_painted(plan, marks_of(read), None)
-        fitted = calibrate_marks(marks, "found", edge_mm=edge_mm(read), leave_out_strays=True)
+        options = options_for({})
+        if height_known:
+            seen = true_height + np.random.default_rng([case.number, 3]).normal(0, height_known)
+            options.height_mm = _core.Prior(seen, height_known)
+        fitted = calibrate_marks(
+            marks, "found", options=options, edge_mm=edge_mm(read), leave_out_strays=True
+        )
         out["fit_s"] = time.process_time() - begin
     except Error as refusal:
         return out | {"refused": refusal.code, "sentence": refusal.sentence}
@@ -230,6 +239,10 @@ def main():
     arguments.add_argument("--sheet", type=values.sheet, default=(210.0, 297.0), help="a4, a3, 210x297")
     arguments.add_argument("--strokes", choices=("few", "normal", "many"))
     arguments.add_argument("--again", action="store_true", help="read and fit known photographs once more")
+    arguments.add_argument(
+        "--height", type=float, help="standard deviation to which the paper's height is known"
+    )
+    arguments.add_argument("--half", choices=("inside", "outside"), help="only brushes of that half")
     args = arguments.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
     for number in range(args.count):
@@ -237,7 +250,9 @@ def main():
         if result.exists() and not args.again:
             continue
         case = Case(number, args.seed, args.brushes, args.sheet, args.strokes)
-        came = outcome(case, *kept(case, args.folder))
+        if args.half and case.inside != (args.half == "inside"):
+            continue
+        came = outcome(case, *kept(case, args.folder), args.height)
         result.write_text(json.dumps(came))
         print(number, came.get("refused") or f"lag within {100 * came['lag']:.2f} %", flush=True)
     found = [json.loads(path.read_text()) for path in args.folder.glob("*.json")]

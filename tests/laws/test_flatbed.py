@@ -195,6 +195,12 @@ def test_another_chart_is_refused():
     assert code_of(scanned(), made=other)[0] in ("photo-paint-elsewhere", "scan-resolution")
 
 
+def test_the_mirrored_scan_of_another_chart_is_one_of_another_chart():
+    """It once was told to be mirrored, as any picture was in one of two cases."""
+    other = chart(find_brush("round-6"), A5, "few", deepest_mm=9.0)
+    assert code_of(np.ascontiguousarray(scanned()[:, ::-1]), made=other)[0] == "photo-paint-elsewhere"
+
+
 def test_an_empty_sheet_is_refused():
     plain = np.full((2800, 2700, 3), 235, np.uint8)
     plain[::7, ::5] = 232

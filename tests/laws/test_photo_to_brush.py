@@ -1,6 +1,7 @@
 """One photograph makes a brush: a chart painted by a brush that nobody knows, in small steps by another simulator, with
 faults of paint and sheet, photographed by a camera of its own kind. Its lag comes back."""
 
+import json
 import re
 from functools import cache
 from types import SimpleNamespace
@@ -83,6 +84,34 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
         assert np.mean(np.abs(values - truth) < band) > 0.7, (law, values - truth, band)
     assert off["lag"] < 0.03 and off["half_width"] < 0.03, off
     assert (desk / "read.png").stat().st_size > 10_000
+
+
+def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):
+    """By itself the fit finds the height within 0.03 mm. The outlines are then taken for measured ones: they are the
+    drops with which this brush paints, so the lag stays what it was."""
+    photo = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json")]
+    assert main([*photo, "-o", str(desk / "surer.json"), "--height", "0.005"]) == 0
+    told = re.search(r"the paper lies (\S+) \+- (\S+) mm", capsys.readouterr().out)
+    assert float(told[1]) < 0.02 and float(told[2]) <= 0.01, told[0]
+    surer = json.loads((desk / "surer.json").read_text())
+    surer["footprints"]["assumed"] = False
+    (desk / "own.json").write_text(json.dumps(surer))
+    pictures = [str(desk / "lag.png"), str(desk / "over.png")]
+    words = [*photo, "-o", str(desk / "lag.json"), "--brush", str(desk / "own.json"), "--plot", pictures[0]]
+    assert main([*words, "--picture", pictures[1]]) == 0
+    assert "lag of surer" in capsys.readouterr().out
+    found = find_brush(desk / "lag.json")
+    off = [found.lag(depth) / TRUTH.law("lag")(depth) - 1 for depth in DEPTHS]
+    assert np.abs(off).max() < 0.03, off
+    assert found.footprints == find_brush(desk / "own.json").footprints
+    assert all((desk / name).stat().st_size > 10_000 for name in ("lag.png", "over.png"))
+
+
+def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
+    words = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json"), "--brush", "round-6"]
+    status, _, told = in_json(capsys, *words, "-o", str(desk / "none.json"))
+    assert status == 1 and told[-1][1].code == "footprints-assumed", told
+    assert not (desk / "none.json").exists()
 
 
 def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, capsys):

@@ -423,6 +423,9 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "animate a.svg out.html --speed=\u0661",
         "animate a.svg out.html --speed=1_0",
         "calibrate p.jpg --chart c.json -o out.json --dpi=6_00",
+        "calibrate p.jpg --chart c.json -o out.json --height 0",
+        "calibrate p.jpg --plan w.json --prior round-6 -o out.json --height 0.05",
+        "calibrate m.csv -o out.json --height 0.05",
     ],
 )
 def test_wrong_usage(desk, capsys, words):

@@ -38,3 +38,14 @@ def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():
     second = _core.overlap([np.add(ring, [0.0, 1.5]) for ring in rings], rings)
     assert second < 0.7
     assert lying == pytest.approx((1.0 + second) / 2, abs=1e-3)
+
+
+def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_nothing():
+    """Of a ratio that might change with depth and does not. Half widths once were +- 470 mm by rows of other laws."""
+    ratio = [1.9, 0.0, 0.0, 0.0]
+    laws = _core.MarkLaws([3.0, 1.0], [0.0, 0.4], [0.0, 0.5, -0.01], 1.9, 1.0, False, ratio)
+    variances = np.array([1, 2, 3, 4, 5, *[6] * len(ratio), 7, 8, 9, 10, 11]) * 1e-4
+    brush = brush_of(laws, "b", (0.0, 8.0), np.diag(variances))
+    wanted = _core.deviations_of_95() * np.sqrt([0.0, 4e-4, 5e-4])
+    assert brush.half_width.half_interval_95 == pytest.approx(wanted)
+    assert len(brush.tip_to_widest.coefficients) == len(brush.tip_to_widest.half_interval_95) == 6

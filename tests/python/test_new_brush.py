@@ -53,6 +53,51 @@ def test_what_is_assumed_says_so():
     assert json.loads(brush.extra)["footprints"]["assumed"] is True
 
 
+@pytest.mark.parametrize(
+    ("lags", "at_rest_mm", "terms"),
+    [
+        ([(2, 5), (8, 14)], 2.0, 2),
+        ([(8, 14), (2, 5), (5, 9.6)], 2.0, 2),  # a tenth off the line: no bend for that
+        ([(2, 7), (5, 12), (8, 14)], 2.0, 3),
+        ([(2, 1), (8, 13)], None, 3),  # the line through these is negative at the touch
+    ],
+)
+def test_a_lag_that_grows_with_depth_is_that_typed_in(lags, at_rest_mm, terms):
+    brush = new_brush("mine", lags, [(3, 2.5), (8, 7)])
+    for depth, lag in lags:
+        assert brush.lag(depth) == pytest.approx(lag, abs=0.3)
+    assert min(brush.lag(depth) for depth in np.linspace(0, 8, 200)) >= 0
+    assert len(brush.lag.coefficients) == terms
+    assert at_rest_mm is None or brush.lag(0.0) == pytest.approx(at_rest_mm, abs=0.15)
+    assert not brush.lag.assumed and tuple(brush.lag.calibrated_mm) == (2, 8)
+    assert f"{lags[-1][1]} mm at depth 8 mm" in brush.lag.source or lags[0][0] == 8
+
+
+def test_one_lag_at_a_depth_is_the_lag_at_all():
+    one, other = new_brush("mine", [(4, 5.0)], [(3, 2.5)]), new_brush("mine", 5.0, [(3, 2.5)])
+    assert one.lag == other.lag and one.lag.assumed
+    twice = new_brush("mine", [(3, 5.0), (3, 5.4)], [(3, 2.5)]).lag
+    assert twice.coefficients == pytest.approx((5.2,)) and twice.assumed
+
+
+@pytest.mark.parametrize(
+    ("lags", "said"),
+    [
+        ([], "measurement-missing"),
+        ([(3, 0)], "out-of-range 0"),
+        ([(3, float("inf"))], "out-of-range inf"),
+        ([(-1, 5)], "depth-out-of-range -1"),
+        ([(3, 5), (9, 8)], "depth-out-of-range 9 8"),
+        ([3, 5], "wrong-type"),
+        ([(3, "5")], "wrong-type"),
+        ([(1, 5), (2, 20), (4, 3), (5, 18), (7, 2)], "law-undetermined"),
+    ],
+)
+def test_lags_that_no_brush_can_have_are_refused(lags, said):
+    with refused(said):
+        new_brush("mine", lags, [(3, 2.5), (8, 7)])
+
+
 def test_a_build_without_fits_says_so(monkeypatch):
     monkeypatch.delattr(_core, "fit_law")
     with refused("package-missing Ceres"):
@@ -161,6 +206,13 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     )
     assert main("brush new flat --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
     assert "beyond" not in capsys.readouterr().out
+    words = "brush new deep --lag-at 2=5 --lag-at 6=11 --width-at 3=2.5 --width-at 8=7".split()
+    assert main(words) == 0
+    told = capsys.readouterr().out
+    assert re.search(
+        r"assumed: tip_gap, tip_to_widest, lags beyond 6 mm of depth \(14.0 mm at 8 mm\) and", told
+    )
+    assert find_brush("deep.json").lag.coefficients == pytest.approx((2.0, 1.5))
     words = "brush new sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()
     status, _, ((_, told),) = in_json(capsys, *words)
     assert status == 1 and agrees(told, "file-unwritable directory")
@@ -205,6 +257,9 @@ def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monke
         ("brush new mine --like round-6 --width-at 3=2", "--like"),
         ("brush new mine --like round-6 --depth-max 9", "--like"),
         ("brush new mine --width-at 3=2", "--lag"),
+        ("brush new mine --lag 5 --lag-at 3=7 --width-at 3=2", "--lag-at"),
+        ("brush new mine --lag-at 3 --width-at 3=2", "3=7.4"),
+        ("brush new mine --like round-6 --lag-at 3=7", "--like"),
         ("brush plot round-6 out.pdf", ".png or .svg"),
     ],
 )

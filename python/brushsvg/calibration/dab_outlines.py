@@ -71,15 +71,27 @@ class Shape:
 
 @dataclass(frozen=True)
 class Outlines:
-    """shift_mm, turn_rad: how the sheet lay amid the dabs; turned_mm: by how much dabs of one heading differ;
-    is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
+    """shift_mm, turn_rad: how the sheet lay amid the dabs, turned about centre_mm; turned_mm: by how much dabs of one
+    heading differ; is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
 
     shapes: tuple[Shape, ...]
     shift_mm: np.ndarray
     turn_rad: float
+    centre_mm: np.ndarray
     turned_mm: float
     is_even: bool
     remarks: tuple[Notice, ...]
+
+    def lying_mm(self) -> dict[str, np.ndarray]:
+        """By name, where the outline of its depth lies for each dab that was not left out, (n, 2) mm on the sheet."""
+        out = {}
+        for shape in self.shapes:
+            for seen in shape.seen:
+                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + seen.aside_mm
+                planned = from_patch @ rotation(seen.dab.heading_rad) + seen.dab.place_mm
+                turned = (planned - self.centre_mm) @ rotation(self.turn_rad)
+                out[seen.dab.name] = turned + self.centre_mm + self.shift_mm
+        return out
 
 
 def outlines_of(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
@@ -117,7 +129,9 @@ def outlines_of(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
             code="dabs-turned",
         )
     finished = tuple(shape.finished(slid_mm(shape.seen[0].dab), is_even) for shape in shapes)
-    return Outlines(finished, sheet.shift_mm, sheet.turn_rad, turned, is_even, tuple(remarks))
+    return Outlines(
+        finished, sheet.shift_mm, sheet.turn_rad, sheet.middle_mm, turned, is_even, tuple(remarks)
+    )
 
 
 def _bad(dab: Dab, joined: set[str]) -> Notice | None:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.polynomial import polymul, polyval
+from numpy.polynomial.polynomial import polyval
 
 from .. import _core
 from ..array_values import ArrayValue
@@ -339,7 +339,8 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     least, deepest = depth_range_mm
     brush.lag, brush.tip_gap = _core.Profile(laws.lag), _core.Profile(laws.tip_gap)
     brush.half_width = _core.Profile(laws.half_width)
-    widest = polymul(widest_ratio(laws), laws.half_width)
+    # no polymul: it drops powers whose coefficient is 0, and rows of the covariance would be those of other laws
+    widest = np.convolve(widest_ratio(laws), laws.half_width)
     brush.tip_to_widest = _core.Profile(widest.tolist(), **_floor(laws, deepest))
     brush.paint_depth_mm = (least + deepest) / 2
     depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]

@@ -24,12 +24,23 @@ SHARP = 16  # of polylines: fractions of a pixel
 def read_picture(read, made=None) -> bytes:
     """PNG. read: chart.photograph.Read, its outlines in green; made: from_marks.MarkCalibration, the marks it predicts
     in red, with each stroke's overlap and displacement; what was left out in orange."""
+    return _drawn(read, lambda picture, flat: _compared(picture, flat, read, made))
+
+
+def dabs_picture(read, made) -> bytes:
+    """PNG. made: from_dabs.DabCalibration: over each dab in green the outline of its depth in red, with its depth and,
+    where there is room, its displacement; what was left out in orange."""
+    return _drawn(read, lambda picture, flat: _dabs_compared(picture, flat, read, made.outlines))
+
+
+def _drawn(read, compared) -> bytes:
+    """compared: draws on (picture, flat), and gives what is to be said of each stroke, the longest first."""
     flat = _enlarged(read.flat)
     picture = flat.pixels
     for rings in read.marks.outlines_mm.values():
         _draw(picture, flat, rings, FOUND, FOUND_MM)
     boxes = {stroke.id: stroke.box_mm for stroke in read.chart.strokes}
-    for stroke, words in _compared(picture, flat, read, made).items():
+    for stroke, words in compared(picture, flat).items():
         _write(picture, flat, boxes[stroke], words)
     done, data = cv2.imencode(".png", picture)
     assert done
@@ -66,6 +77,20 @@ def _compared(picture, flat, read, made) -> dict[str, list[str]]:
             f"{overlap:.3f}, {aside:.2f} mm",
             f"{overlap:.2f}, {aside:.1f}",
         ]
+    return words
+
+
+def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
+    lying, words = outlines.lying_mm(), {}
+    for shape in outlines.shapes:
+        for name, aside in ((each.dab.name, np.hypot(*each.aside_mm)) for each in shape.seen):
+            _draw(picture, flat, [lying[name]], PREDICTED, PREDICTED_MM)
+            told = f"{shape.depth_mm:g} mm deep, {aside:.2f} mm aside"
+            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
+    for name, rings in read.marks.outlines_mm.items():
+        if name not in lying:
+            _draw(picture, flat, rings, ASTRAY, FOUND_MM)
+            words[name] = [f"{name}: LEFT OUT", "LEFT OUT", "OUT"]
     return words
 
 

@@ -102,12 +102,20 @@ def add_calibrate(commands) -> None:
     fit.add_argument(
         "--brush",
         metavar="NAME|FILE",
-        help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines",
+        help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines; for one "
+        "of strokes: the brush whose outlines are known, which gets the lag",
     )
     fit.add_argument(
         "--spread",
         metavar="FILE",
         help="for photographs: how well the studio repeats, as compare --sheets found it (.json)",
+    )
+    fit.add_argument(
+        "--height",
+        metavar="MM",
+        type=values.noise,
+        help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
+        "brushsvg height; default: 0.3, as by eye",
     )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
     add_quiet(fit)
@@ -157,6 +165,7 @@ def _check_calibrate(args) -> None:
         ("--picture", args.picture),
         ("--brush", args.brush),
         ("--spread", args.spread),
+        ("--height", args.height),
     ):
         if value is not None:
             args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")
@@ -168,7 +177,7 @@ def _check_calibrate(args) -> None:
 def _check_update(args) -> None:
     if args.plan is None or args.prior is None:
         args.parser.error("--plan and --prior go together: what was painted, and by which brush")
-    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot"):
+    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot", "height"):
         if getattr(args, flag):
             args.parser.error(f"--{flag} is not for a job (--plan)")
     if args.norm != "squares":
@@ -223,7 +232,15 @@ def add_brush(commands) -> None:
         "--lag",
         metavar="MM",
         type=values.lag,
-        help="how far the brush trails the tool; 0 for a pen",
+        help="how far the brush trails the tool, at every depth; 0 for a pen",
+    )
+    new.add_argument(
+        "--lag-at",
+        metavar="DEPTH=MM",
+        action="append",
+        type=values.lag_at,
+        default=[],
+        help="the same at a press depth, for a lag that grows with depth; give it once per measured depth",
     )
     new.add_argument(
         "--width-at",
@@ -261,13 +278,16 @@ def add_article(commands) -> None:
 
 def _check_brush_new(args) -> None:
     if args.like is not None:
-        given = [("--lag", args.lag), ("--width-at", args.width_at or None), ("--widths", args.widths)]
-        for flag, value in [*given, ("--depth-max", args.depth_max)]:
+        given = [("--lag", args.lag), ("--lag-at", args.lag_at or None), ("--widths", args.widths)]
+        given += [("--width-at", args.width_at or None), ("--depth-max", args.depth_max)]
+        for flag, value in given:
             if value is not None:
                 args.parser.error(f"argument {flag}: --like takes it from the other brush")
         return
-    if args.lag is None:
-        args.parser.error("the following arguments are required: --lag, or --like BRUSH")
+    if args.lag is None and not args.lag_at:
+        args.parser.error("the following arguments are required: --lag or --lag-at, or --like BRUSH")
+    if args.lag is not None and args.lag_at:
+        args.parser.error("argument --lag: the same at every depth, not together with --lag-at")
     if not (args.width_at or args.widths):
         args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
 

@@ -91,6 +91,13 @@ def share(text: str) -> float:
     return value
 
 
+def lag_at(text: str) -> tuple[float, float]:
+    depth, equals, at_depth = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a depth and its lag; write for example 3=7.4")
+    return lag(depth), width(at_depth)
+
+
 def width_at(text: str) -> tuple[float, float]:
     depth, equals, at_depth = text.partition("=")
     if not equals:

@@ -56,7 +56,7 @@ def brush_new(args) -> None:
             brush = brush_like(name, find_brush(args.like))
             brush.max_speed_mm_s = args.speed or brush.max_speed_mm_s
         else:
-            brush = new_brush(name, args.lag, widths, args.depth_max, args.speed or 25.0)
+            brush = new_brush(name, args.lag_at or args.lag, widths, args.depth_max, args.speed or 25.0)
         text = write_brush(brush)
     write(args, {path: text})
     tell(f"{path}: {reach(brush)}\n")
@@ -68,6 +68,11 @@ def brush_new(args) -> None:
     if deepest > measured and "half_width" not in assumed:
         assumed.append(
             f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest):.1f} mm at {deepest:g} mm)"
+        )
+    farthest = max((depth for depth, _ in args.lag_at), default=deepest)
+    if deepest > farthest and "lag" not in assumed:
+        assumed.append(
+            f"lags beyond {farthest:g} mm of depth ({brush.lag(deepest):.1f} mm at {deepest:g} mm)"
         )
     tell(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
 

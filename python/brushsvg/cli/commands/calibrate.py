@@ -28,9 +28,12 @@ def calibrate_file(args) -> None:
     if read and _is_of_dabs(args, read):
         _calibrate_dabs(args, read, name)
         return
+    if read and args.brush is not None:
+        _calibrate_lag(args, read, name)
+        return
     with about(args.input):
         if read:
-            made, report, report_picture = _from_photo(read, name, args.machine, args.spread)
+            made, report, report_picture = _from_photo(read, name, args)
         else:
             made = calibrate(
                 args.input, name, absolute=args.norm == "absolute", total=args.total, machine=args.machine
@@ -63,10 +66,10 @@ def _is_of_dabs(args, read) -> bool:
     dabs = is_of_dabs(read.chart)
     if dabs and args.brush is None:
         args.parser.error(f"{args.chart} is a chart of dabs: give the brush whose lag is known, --brush FILE")
-    if args.brush is not None and not dabs:
-        args.parser.error(f"--brush is for a chart of dabs, which {args.chart} is not")
     if dabs and args.machine:
         args.parser.error("--machine needs strokes: dabs say nothing of the machine")
+    if dabs and args.height is not None:
+        args.parser.error("--height is for strokes: dabs are taken to be as deep as they were told")
     return dabs
 
 
@@ -76,7 +79,7 @@ def _calibrate_dabs(args, read, name: str) -> None:
     from ...calibration.chart.photograph import edge_mm, told
     from ...calibration.dab_report import report, report_picture
     from ...calibration.from_dabs import calibrate_dabs
-    from ...calibration.photo_report import read_picture
+    from ...calibration.photo_report import dabs_picture
 
     before = find_brush(args.brush)
     joined = tuple(stroke for pair in read.marks.joined for stroke in pair)
@@ -86,14 +89,40 @@ def _calibrate_dabs(args, read, name: str) -> None:
     if args.plot:
         files[args.plot] = report_picture(made, suffix_of(args.plot))
     if args.picture:
-        files[args.picture] = read_picture(read)
+        files[args.picture] = dabs_picture(read, made)
     warn(args.input, made.remarks)
     warn(args.output, remarks(made.brush))
     write(args, files, more=told(read))
     tell(report(made))
 
 
-def _from_photo(read, name: str, machine: tuple[str, ...], spread: str | None):
+def _calibrate_lag(args, read, name: str) -> None:
+    """The lag of strokes into a brush whose outlines are known."""
+    from ...brush.plot import brush_picture
+    from ...calibration.chart.photograph import told
+    from ...calibration.lag_by_outlines import lag_by_outlines, refuse_assumed
+    from ...calibration.lag_by_outlines_report import report
+    from ...calibration.mark_report import strays_told
+    from ...calibration.photo_report import read_picture
+
+    own = find_brush(args.brush)
+    with about(args.brush):
+        refuse_assumed(own)
+    with about(args.input):
+        made, *_ = _from_photo(read, name, args)
+        found = lag_by_outlines(made, own, name)
+    files = {args.output: write_brush(found.brush)}
+    if args.plot:
+        files[args.plot] = brush_picture(found.brush, suffix_of(args.plot))
+    if args.picture:
+        files[args.picture] = read_picture(read, found.made)
+    warn(args.photos[0], strays_told(made))
+    warn(args.output, remarks(found.brush))
+    write(args, files, more=told(read))
+    tell(report(found))
+
+
+def _from_photo(read, name: str, args):
     """The same from a photograph of a chart."""
     import json
 
@@ -107,9 +136,10 @@ def _from_photo(read, name: str, machine: tuple[str, ...], spread: str | None):
 
     stage("fitting the brush")
     painted = read_painted(json.loads(write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    known = {"displacement_mm": read_displacement_mm(spread)} if spread else {}
+    known = {"displacement_mm": read_displacement_mm(args.spread)} if args.spread else {}
+    known |= {"height_mm": args.height} if args.height is not None else {}
     options = options_for(expected(read) | known)
-    ask_for(options, machine)
+    ask_for(options, args.machine)
     made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture
 

@@ -1,0 +1,52 @@
+"""The picture of docs/dabs.md: dabs of a lopsided brush, photographed, with what was read from them.
+
+    dab_pictures.py [FOLDER]    keeps in FOLDER what the commands wrote
+
+Paint is that of the slow simulator of tests/laws, and so is the camera: no real dabs were at hand.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import cv2
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "laws"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
+from test_dabs import assumed, lopsided, painted, photo_of, printed
+from walkthrough_pictures import side_by_side
+
+from brushsvg.brush.library import save_brush
+from brushsvg.calibration.chart.file import write_chart
+
+ROOT = Path(__file__).parents[1]
+TALL_PX = 900
+DETAIL_MM = (70.0, 45.0)  # of read.png, its upper left, at the picture's own size
+
+
+def main(folder: Path) -> None:
+    (folder / "dabs.jpg").write_bytes(photo_of(painted(lopsided)))
+    (folder / "dabs.json").write_text(write_chart(printed()))
+    save_brush(assumed(), folder / "mine.json")
+    words = (
+        "calibrate dabs.jpg --chart dabs.json --brush mine.json -o own.json --picture read.png --plot own.png"
+    )
+    subprocess.run([Path(sys.executable).with_name("brushsvg"), *words.split()], cwd=folder, check=True)
+    read = cv2.imread(str(folder / "read.png"))
+    size = read.shape[1] / printed().plan.sheet_mm[0]
+    tall, wide = (round(side * size) for side in DETAIL_MM[::-1])
+    cv2.imwrite(str(folder / "detail.png"), read[:tall, :wide])
+    both = side_by_side([folder / "dabs.jpg", folder / "detail.png"], TALL_PX)
+    cv2.imwrite(str(ROOT / "docs" / "dabs_read.jpg"), both, [cv2.IMWRITE_JPEG_QUALITY, 80])
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        Path(sys.argv[1]).mkdir(parents=True, exist_ok=True)
+        main(Path(sys.argv[1]))
+    else:
+        with tempfile.TemporaryDirectory() as name:
+            main(Path(name))
