@@ -85,6 +85,22 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     assert all(gain < 0.4 * gap + 0.01 for other, gain in gains.items() if other != cause), gains
 
 
+@pytest.mark.parametrize("number", [104, 105])
+def test_all_of_it_at_once_lies_within_its_intervals(job, number, capsys):
+    """Brush, paper and machine amiss together: height of the paper, lag and width look much alike."""
+    _, plan = job
+    rng = np.random.default_rng([24, number])
+    amiss = studio.random_amiss(rng, NAMES, plan.sheet_mm)
+    found = compared(job, amiss, number)
+    truth = {"lag": amiss.lag - 1, "width": amiss.half - 1}
+    for name in ("scale", "backlash", "tilt"):
+        truth |= {f"{name} in {axis}": value for axis, value in zip("xy", getattr(amiss, name), strict=True)}
+    rows = {row["name"]: row for row in found["numbers"]}
+    off = {name: (rows[name]["value"] - value) / rows[name]["half_95"] for name, value in truth.items()}
+    assert all(abs(each) < 1.2 for each in off.values()), off
+    assert rows["lag"]["half_95"] < 0.06 and rows["width"]["half_95"] < 0.06
+
+
 def test_nothing_amiss_is_nobodys_fault(job, capsys):
     found = compared(job, studio.Amiss())
     assert found["mend_first"] is None, found

@@ -133,7 +133,7 @@ def test_strokes_that_are_painted_once_tell_no_spread(tmp_path, capsys):
     assert status == 1 and is_told(told, "too-few-repeats"), told
     assert (
         main(
-            ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--picture", "a.png"]
+            ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--at-least", "0.5"]
         )
         == 2
     )

@@ -20,7 +20,7 @@ OTHER_OF_MAKE, OTHER_BENT = (
     0.1,
 )  # of a law, standard deviation between brushes of one make; how it bends
 SUREST = 0.005  # of a law: on paper as it lies no brush is surer
-ROUGHLY_MM = 0.1  # between rows of a mark: its area changes by less than 0.05 %
+ROUGHLY_MM = 0.02  # between rows of a mark: with 0.1 outlines are rough by as much as a number moves them
 
 
 @dataclass(frozen=True)

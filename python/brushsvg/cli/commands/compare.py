@@ -100,6 +100,7 @@ def _repeats(args, work, page, plan, strokes) -> None:
     """How well the same strokes lie on several sheets, or copies of strokes on one."""
     from ...painted.comparison import compare_photos
     from ...painted.repeats import as_json, as_text, repeats
+    from ...painted.repeats_picture import repeats_png
 
     sheets = []
     for path in args.photos:
@@ -109,8 +110,12 @@ def _repeats(args, work, page, plan, strokes) -> None:
             warn(path, list(sheets[-1].notices))
     with about(args.photos[0]):
         found = repeats(plan, sheets)
-    title = work.title or "untitled"
+    title, files = work.title or "untitled", {}
     if args.output:
         makes = as_json if suffix_of(args.output) == ".json" else as_text
-        write(args, {args.output: makes(title, found)})
+        files[args.output] = makes(title, found)
+    if args.picture:
+        files[args.picture] = repeats_png(title, found, sheets, strokes)
+    if files:
+        write(args, files)
     tell(as_json(title, found) if args.json else as_text(title, found))
