@@ -9,6 +9,7 @@ import numpy as np
 
 from ..calibration.chart.page import bar_rings, label_box
 from ..errors import Error, Notice
+from ..geometry.rings import centroid
 from ..scan.edges import Room, paint_seen
 from ..scan.flatten import Flat, flatten
 from ..scan.markers import Printed, View, find_view
@@ -70,12 +71,12 @@ class Comparison:
     overlap_wanted: float | None
     overlap_predicted: float
     overlaps: tuple[float, float, float]
-    view: View
-    flat: Flat
-    paint: np.ndarray
     painted: np.ndarray
     canvas: Canvas
     notices: tuple[Notice, ...]
+    view: View | None = None
+    flat: Flat | None = None
+    paint: np.ndarray | None = None
 
 
 def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> Comparison:
@@ -93,11 +94,17 @@ def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str,
     canvas = Canvas((0.0, 0.0, *sheet), flat.px_per_mm)
     painted = [_on_sheet(each, flat, page, canvas) for _, _, each in reads]
     _refuse_other_sheets(painted, photos)
+    mean = np.mean(painted, axis=0).astype(np.float32)
+    return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
+
+
+def compare_paint(strokes: list[Wanted], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:
+    """painted: share of the usual paint of each pixel of the canvas, however it was seen; name: of the picture. Without
+    view, flat and paint. Error for what cannot be the paint of this job."""
     if all(not stroke.predicted for stroke in strokes):
         raise Error("there is nothing to paint", code="nothing-to-paint")
-    mean = np.mean(painted, axis=0).astype(np.float32)
-    common, middle = _common(mean, strokes, canvas)
-    return _compared(strokes, mean, common, middle, canvas, (view, flat, paint), photos[0][0])
+    common, middle = _common(painted, strokes, canvas)
+    return _compared(strokes, painted, common, middle, canvas, name)
 
 
 def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, bytes]]) -> None:
@@ -163,7 +170,7 @@ def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
 
 def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.ndarray]:
     rings = [ring for stroke in strokes for ring in stroke.predicted]
-    middle = np.vstack(rings).mean(axis=0)
+    middle = centroid(rings)
     coarse = min(canvas.px_per_mm, 5.0)
     small = Canvas(canvas.window_mm, coarse)
     rows, columns = small.shape
@@ -172,7 +179,7 @@ def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.
     return replace(found, wider_mm=0.0) if found.found else NOWHERE, middle
 
 
-def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparison:
+def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
     is_painted = painted > LEVEL
     found, notices = [], []
@@ -212,7 +219,6 @@ def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparis
     ]
     beside = is_painted & (_away(_any(marks, canvas), canvas.px_per_mm) > BLOT_MM)
     as_it_lies = _overlap(_any(whole, canvas), is_painted)
-    view, flat, paint = photo
     return Comparison(
         tuple(rows),
         sheet,
@@ -226,9 +232,6 @@ def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparis
             _overlap(_any([sheet.moved(ring, middle) for ring in whole], canvas), is_painted),
             _overlap(_any(each, canvas), is_painted),
         ),
-        view,
-        flat,
-        paint,
         painted,
         canvas,
         tuple(notices),
@@ -285,7 +288,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
     found = place(attributed, free, rings, small)
     if not found.found:  # a dab has no direction
         found = place(attributed, free, rings, small, turns=False)
-    inner = np.vstack(rings).mean(axis=0)
+    inner = centroid(rings)
 
     def lies(each, at):
         return [at.moved(common.moved(ring, middle), inner) for ring in each]
@@ -295,7 +298,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
     if not found.found or (at_last & is_mine).sum() < COVERED * at_last.sum():
         found, at_last = NOWHERE, mine
     is_painted[r0:r1, c0:c1] |= is_mine & (_away(at_last, fine) < BLOT_MM)
-    start = np.vstack(stroke.predicted).mean(axis=0)
+    start = centroid(stroke.predicted)
     shift = lies([start[None]], found)[0][0] - start
     whole = Placed(
         (float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,17 +27,16 @@ def next_corrections(
     """By stroke. The sheet's own place is left out, which is another one on the next sheet; so nothing is said of fewer
     marks than tell it. plan: without corrections; before: those that were painted with. A stroke of which nothing
     certain was seen keeps its own, one that would be led too far has none, which is told."""
-    made, notices = {each.stroke: each for each in before}, []
+    starts = {a_pass.stroke: tuple(map(float, a_pass.poses_mm[0][:2])) for a_pass in plan.passes}
+    made, notices = {each.stroke: replace(each, start_mm=starts[each.stroke]) for each in before}, []
     if found.spread_mm is None:
         return made, notices
     by_chance = 2 * AT_RANDOM_MM**2 / max(found.spread_mm, AT_RANDOM_MM) ** 2
     share = min(max(1 - by_chance, LEAST_SHARE), MOST_SHARE)
-    starts = {a_pass.stroke: a_pass.poses_mm[0][:2] for a_pass in plan.passes}
     for row in found.strokes:
         if not row.placed.found or row.missing > UNSEEN:
             continue
-        start_mm = tuple(map(float, starts[row.stroke]))
-        correction = _next(row, found, share, start_mm, made.get(row.stroke))
+        correction = _next(row, found, share, starts[row.stroke], made.get(row.stroke))
         far_mm, far_deg = math.hypot(*correction.shift_mm), abs(correction.turn_deg)
         if far_mm <= MOST_MM and far_deg <= MOST_DEG:
             made[row.stroke] = correction

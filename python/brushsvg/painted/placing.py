@@ -11,7 +11,7 @@ from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
 from .. import _core
-from ..geometry.rings import signed_area
+from ..geometry.rings import centroid, signed_area
 from ..geometry.rotation import rotation
 
 BLURS_MM = (1.2, 0.5, 0.2)  # coarse to fine: a mark is found from as far as the first is wide
@@ -85,7 +85,7 @@ def place(
 
     Gauss-Newton on redrawn rings: a shift changes a picture by its slope, growing edges by the slope's size.
     """
-    middle = np.vstack(rings).mean(axis=0)
+    middle = centroid(rings)
     x, y = canvas.places()
     now = np.zeros(4)
     settled = False

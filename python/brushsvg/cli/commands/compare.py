@@ -35,7 +35,7 @@ def compare_files(args) -> None:
     with about(args.input):
         refuse_corrected(work.plan)
         marks = prediction.predict(work, True, stage)
-        told = corrected(work.plan, before)
+        told = corrected(work.plan, before, work.brush)
         page = job_page(told, work.title)
         wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
         strokes = [
@@ -59,7 +59,14 @@ def compare_files(args) -> None:
     machine = mended(faults, found.middle_mm, cell.machine) if faults else None
     title = work.title or "untitled"
     files = {}
-    as_figures = as_json(title, found, corrections, faults)
+    if args.mended_cell and machine and corrections:
+        corrections = {}
+        sentence = (
+            "what this cell undoes is part of what strokes lie aside: no stroke is corrected from this sheet; paint "
+            "and compare one with the cell first"
+        )
+        warn(args.mended_cell, [Notice("machine", sentence, code="corrections-of-another-cell")])
+    as_figures = as_json(title, found, corrections, faults, work.brush.sha256, work.plan.brush_sha256)
     if args.output:
         files[args.output] = (
             as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults, machine)
