@@ -14,8 +14,9 @@ from ..scan.edges import Room, paint_seen
 from ..scan.flatten import Flat, flatten
 from ..scan.markers import Printed, View, find_view
 from ..scan.photo import read_photo
+from ..scan.whole_page import refuse_cropped, refuse_unsure
 from .job_page import JobPage, box_ring
-from .placing import NOWHERE, Canvas, Placed, place
+from .placing import NOWHERE, Canvas, Placed, grown, place
 
 AROUND_MM = 6.0  # round a predicted mark, where its paint is looked for
 BESIDE_MM = 0.6  # beyond another mark its blurred edge still shows
@@ -28,6 +29,7 @@ COVERED, MOSTLY = (
     0.7,
 )  # share of a mark, where it lies, that is painted at least; without paint, it is missing
 LEVEL = 0.5  # of the usual paint: an edge
+THING_MM2 = 100.0  # of one piece beside all marks: a hand, a tool or a large blot
 PALEST = 0.15  # of the usual paint, that of a stroke
 ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
 LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
@@ -46,7 +48,7 @@ class Wanted:
 class Compared:
     """A stroke as it was painted. overlap_wanted (None without a drawing), overlap_predicted: intersection over union;
     placed: against the prediction, whose middle lies at middle_mm; missing: share of the mark, where it lies, without
-    paint."""
+    paint; like: overlap of the mark, where it lies and as wide, with its paint."""
 
     stroke: str
     overlap_wanted: float | None
@@ -54,6 +56,7 @@ class Compared:
     placed: Placed
     middle_mm: tuple[float, float]
     missing: float
+    like: float
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,7 @@ class Comparison:
     painted: np.ndarray
     canvas: Canvas
     notices: tuple[Notice, ...]
+    has_things: bool = False
     view: View | None = None
     flat: Flat | None = None
     paint: np.ndarray | None = None
@@ -139,6 +143,13 @@ def _read(
     corners = {marker.id: np.array(marker.corners_mm) for marker in printed.markers}
     pixels = read_photo(data)
     view = find_view(pixels, Printed(page.size_mm, corners, printed.dictionary, printed.id))
+    rooms = []
+    for stroke in strokes:
+        if stroke.predicted:
+            points = np.vstack(stroke.predicted) + page.frame_mm
+            rooms.append(Room(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
+    refuse_cropped(pixels, view, rooms)
+    refuse_unsure(pixels, view, corners)
     flat = flatten(pixels, view, page.size_mm, fine or min(view.px_per_mm, FINEST_PX_PER_MM))
     dark = [each.mean(axis=0) + (each - each.mean(axis=0)) * 1.4 for each in corners.values()]
     dark += bar_rings(printed.bar, beyond_mm=PRINT_MM)
@@ -147,11 +158,6 @@ def _read(
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in dark:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    rooms = []
-    for stroke in strokes:
-        if stroke.predicted:
-            points = np.vstack(stroke.predicted) + page.frame_mm
-            rooms.append(Room(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
     return flat, view, paint_seen(flat, print_, rooms)
 
 
@@ -218,6 +224,20 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
         for ring in seen[1](stroke.predicted)
     ]
     beside = is_painted & (_away(_any(marks, canvas), canvas.px_per_mm) > BLOT_MM)
+    things = _things(beside, canvas)
+    if things.any():
+        sentence = (
+            f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or a "
+            "blot: strokes beneath or beside it are not told, nor whose fault anything is"
+        )
+        notices.append(Notice("sheet", sentence, code="photo-covered"))
+        near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM
+        rows = [
+            _uncovered(row, seen, stroke, near, canvas)
+            for stroke, seen in zip(strokes, found, strict=True)
+            if seen
+            for row in seen[:1]
+        ]
     as_it_lies = _overlap(_any(whole, canvas), is_painted)
     return Comparison(
         tuple(rows),
@@ -235,7 +255,22 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
         painted,
         canvas,
         tuple(notices),
+        bool(things.any()),
     )
+
+
+def _things(beside: np.ndarray, canvas: Canvas) -> np.ndarray:
+    """Pieces of what lies beside all marks that are too large for paint that strayed."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(beside), connectivity=8)
+    large = stats[:, cv2.CC_STAT_AREA] > THING_MM2 * canvas.px_per_mm**2
+    large[0] = False
+    return large[labels]
+
+
+def _uncovered(row: Compared, seen, stroke: Wanted, near: np.ndarray, canvas: Canvas) -> Compared:
+    """A stroke whose mark lies near a thing is not found."""
+    covered = (_any(seen[1](stroke.predicted), canvas) & near).any()
+    return replace(row, placed=NOWHERE) if covered else row
 
 
 def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
@@ -310,6 +345,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
         whole,
         (float(start[0]), float(start[1])),
         float((at_last & ~(part / strength > LEVEL)).sum()) / float(max(at_last.sum(), 1)),
+        _overlap(small.filled(lies(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
     )
     return row, lambda each: lies(each, found)
 

@@ -78,9 +78,10 @@ def whose_fault(
     plan, brush, strokes: list[Wanted], seen_of: Comparison, learned: bool = False
 ) -> Faults | None:
     """plan: as it was told; strokes: those that were compared; learned: whether the brush was made from them. None
-    where too few edges are seen, or where no brush has the numbers that would explain them."""
+    where too few edges are seen, where things lie on the sheet, or where no brush has the numbers that would explain
+    them."""
     painting = [stroke for stroke in strokes if stroke.predicted]
-    if len(painting) < FEW_STROKES:
+    if len(painting) < FEW_STROKES or seen_of.has_things:
         return None
     size = {stroke.stroke: sum(len(ring) for ring in stroke.predicted) for stroke in painting}
     largest = sorted(size, key=size.get, reverse=True)[:MOST_STROKES]

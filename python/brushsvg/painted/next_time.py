@@ -18,6 +18,7 @@ from .corrections import MOST_DEG, MOST_MM, Correction
 MOST_SHARE, LEAST_SHARE = 0.8, 0.5
 AT_RANDOM_MM = 0.1
 FARTHER_MM = 0.1  # what does not repeat leads every other stroke a little farther aside
+LIKE = 0.6  # overlap of a mark, where it lies, with its paint: less may be any paint that is near
 UNSEEN = 0.3  # share of a mark without paint, beyond which its place is doubtful
 
 
@@ -35,6 +36,13 @@ def next_corrections(
     share = min(max(1 - by_chance, LEAST_SHARE), MOST_SHARE)
     for row in found.strokes:
         if not row.placed.found or row.missing > UNSEEN:
+            continue
+        if row.like < LIKE:
+            sentence = (
+                f"its paint overlaps with its mark, where that lies best, by {row.like:.2f}, less than {LIKE:g}, which may "
+                "be chance: it is not corrected"
+            )
+            notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
             continue
         correction = _next(row, found, share, starts[row.stroke], made.get(row.stroke))
         far_mm, far_deg = math.hypot(*correction.shift_mm), abs(correction.turn_deg)
