@@ -227,8 +227,8 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     things = _things(beside, canvas)
     if things.any():
         sentence = (
-            f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or a "
-            "blot: strokes beneath or beside it are not told, nor whose fault anything is"
+            f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or "
+            "a blot: strokes beneath or beside it are not told, nor whose fault anything is"
         )
         notices.append(Notice("sheet", sentence, code="photo-covered"))
         near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM

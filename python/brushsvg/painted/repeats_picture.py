@@ -35,15 +35,13 @@ def repeats_png(title: str, found: Repeats, sheets: list[Comparison], strokes: l
 
 def _overlay(axes, sheets: list[Comparison], strokes: list[Wanted]) -> None:
     """Outlines of all paint, each sheet laid where it should lie."""
-    from matplotlib import colormaps
-
     for number, sheet in enumerate(sheets):
         step = max(1, round(sheet.canvas.px_per_mm / FINE_PX_PER_MM))
         x, y = (axis[::step] for axis in sheet.canvas.places())
         at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
         lies = sheet.common if sheet.spread_mm is not None else NOWHERE
         back = _taken_back(at, lies, sheet.middle_mm).reshape(len(y), len(x), 2)
-        colour = colormaps["tab10"](number % 10)
+        colour = f"C{number % 10}"
         axes.contour(back[..., 0], back[..., 1], sheet.painted[::step, ::step], [LEVEL], colors=[colour])
         axes.plot([], [], color=colour, label=f"sheet {number + 1}")
     for number, stroke in enumerate(strokes):
