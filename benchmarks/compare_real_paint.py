@@ -6,8 +6,8 @@ FOLDER: as for real_paint.py. Each stroke is a picture of its own, without marke
 Strokes with even numbers are fitted by their edges, those with odd ones are predicted and compared. Displacement, width
 and overlap by `compare` (least squares of pixels, in which a mark may turn and grow as well) are held against a search:
 of all shifts by whole pixels the one that overlaps most, and of all marks whose edges lie so much farther out or in, in
-steps of 0.05 mm, the one that overlaps most where that shift has it. Then against one in which a mark is shifted, turned
-and grown until it overlaps most, as `compare` has it.
+steps of 0.05 mm, the one that overlaps most where that shift has it. Then against one in which a mark is shifted,
+turned and grown until it overlaps most, as `compare` has it.
 
 Printed: in how many of 100 strokes they agree within 0.25 mm (displacement, width) and 0.01 (overlap with the
 prediction as it lies). A stroke that `compare` does not find agrees in nothing.
@@ -88,7 +88,7 @@ def searched(stroke, predicted):
 
 
 def fully_searched(stroke, predicted, middle_mm, start_mm):
-    """Shift (2,) and wider, of all marks that are shifted, turned and grown the one that overlaps most: by a simplex."""
+    """Shift (2,) and wider of the mark that overlaps most, shifted, turned and grown: by a simplex."""
     left, bottom, _, high = stroke.window
     middle = ((middle_mm[0] - left) / stroke.px - 0.5, (bottom + high - middle_mm[1]) / stroke.px - 0.5)
     away, mask = away_mm(predicted, stroke.px), np.float32(stroke.mask)

@@ -64,7 +64,8 @@ class Comparison:
     """common: how the sheet lies, by the places of all marks, about middle_mm; spread_mm: rms of what is left of their
     displacements, None of fewer than three marks; elsewhere_mm2: paint that lies beside all marks. overlaps: of all
     paint with what was wanted (or, without a drawing, predicted) as it lies, once the sheet's place is put right, and
-    once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas."""
+    once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas.
+    has_things: on the sheet lies what is no mark."""
 
     strokes: tuple[Compared, ...]
     common: Placed
@@ -261,7 +262,7 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
 
 def _things(beside: np.ndarray, canvas: Canvas) -> np.ndarray:
     """Pieces of what lies beside all marks that are too large for paint that strayed."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(beside), connectivity=8)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(beside), connectivity=8)
     large = stats[:, cv2.CC_STAT_AREA] > THING_MM2 * canvas.px_per_mm**2
     large[0] = False
     return large[labels]

@@ -39,8 +39,8 @@ def next_corrections(
             continue
         if row.like < LIKE:
             sentence = (
-                f"its paint overlaps with its mark, where that lies best, by {row.like:.2f}, less than {LIKE:g}, which may "
-                "be chance: it is not corrected"
+                f"its paint overlaps with its mark, where that lies best, by {row.like:.2f}, less than {LIKE:g}, which "
+                "may be chance: it is not corrected"
             )
             notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
             continue
