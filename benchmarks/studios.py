@@ -161,7 +161,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
             break
         text = run(
             f"compare photo-{sheet}.jpg word.svg --cell {cell} {flags} {led} -o seen-{sheet}.json "
-            f"--mended-cell cell-{sheet + 1}.toml",
+            + ("" if sheet else "--mended-cell cell-1.toml"),
             folder,
         )
         (folder / f"seen-{sheet}.txt").write_text(text)

@@ -76,6 +76,8 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
         row = rows[name]
         assert abs(row["value"] - truth) < max(2 * row["half_95"], 0.12 * abs(truth)), (name, truth, row)
     if cause == "machine":
+        seen = json.loads((folder / "seen.json").read_text())["strokes"]
+        assert {row["correction"] for row in seen} == {None}, "the cell undoes what they lie aside"
         assert read_cell(folder / "mended.toml").machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job
@@ -83,6 +85,22 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     gap = 1 - studio.overlap(studio.painted(plan, amiss, 1), wanted)
     assert gains[cause] == pytest.approx(gap, abs=0.25 * gap + 0.01)
     assert all(gain < 0.4 * gap + 0.01 for other, gain in gains.items() if other != cause), gains
+
+
+@pytest.mark.parametrize("number", [104, 105])
+def test_all_of_it_at_once_lies_within_its_intervals(job, number, capsys):
+    """Brush, paper and machine amiss together: height of the paper, lag and width look much alike."""
+    _, plan = job
+    rng = np.random.default_rng([24, number])
+    amiss = studio.random_amiss(rng, NAMES, plan.sheet_mm)
+    found = compared(job, amiss, number)
+    truth = {"lag": amiss.lag - 1, "width": amiss.half - 1}
+    for name in ("scale", "backlash", "tilt"):
+        truth |= {f"{name} in {axis}": value for axis, value in zip("xy", getattr(amiss, name), strict=True)}
+    rows = {row["name"]: row for row in found["numbers"]}
+    off = {name: (rows[name]["value"] - value) / rows[name]["half_95"] for name, value in truth.items()}
+    assert all(abs(each) < 1.2 for each in off.values()), off
+    assert rows["lag"]["half_95"] < 0.06 and rows["width"]["half_95"] < 0.06
 
 
 def test_nothing_amiss_is_nobodys_fault(job, capsys):

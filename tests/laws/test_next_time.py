@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
 from brushsvg import _core
+from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
@@ -36,7 +37,7 @@ class Studio:
         self.folder, self.rng = folder, np.random.default_rng(seed)
         (folder / "five.svg").write_text(DRAWING)
         self.axes = np.eye(2) + self.rng.normal(0, 0.002, (2, 2))
-        self.own, self.sheets = {}, 0
+        self.own, self.sheets, self.brush = {}, 0, BRUSH
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
@@ -45,8 +46,8 @@ class Studio:
         return read_plan(path)
 
     def rings(self, plan):
-        marks = _core.simulate(plan, BRUSH)
-        _core.trace_outlines(marks, BRUSH)
+        marks = _core.simulate(plan, self.brush)
+        _core.trace_outlines(marks, self.brush)
         return {mark.stroke: [np.array(ring) for ring in mark.outline_mm] for mark in marks.passes}
 
     def painted(self, plan):
@@ -189,6 +190,53 @@ def test_damaged_corrections_are_refused(tmp_path, capsys, change, code):
     status, _, told = in_json(capsys, *words)
     assert status == 1 and is_told(told, code), told
     assert not (tmp_path / "a.ngc").exists() and studio.sheets == 0
+
+
+def longer_lag(folder):
+    """round-6 with a lag 12 % longer, as a file."""
+    brush = _core.read_brush(_core.write_brush(BRUSH))
+    law = brush.lag
+    brush.lag = _core.Profile([1.12 * each for each in law.coefficients], source="a test")
+    save_brush(brush, folder / "longer.json")
+    return folder / "longer.json"
+
+
+def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
+    """What the brush explains is not corrected as well: the photograph is compared again with it, by the plan that was
+    painted."""
+    studio = Studio(tmp_path, 8)
+    studio.axes = np.eye(2)
+    plan = studio.plan()
+    (tmp_path / "plan.json").rename(tmp_path / "first.json")
+    longer = longer_lag(tmp_path)
+    studio.brush = find_brush(longer)
+    photo = studio.photographed(plan)
+    beside_the_old = studio.compared(photo)
+    drawing, out = tmp_path / "five.svg", tmp_path / "out.json"
+    words = ("convert", drawing, out, "--brush", longer, "--corrections", beside_the_old)
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and is_told(told, "corrections-of-another-brush"), told
+    again = tmp_path / "again.json"
+    words = ("compare", photo, tmp_path / "first.json", "--brush", longer, "-o", again)
+    assert in_json(capsys, *words)[0] == 0
+    plan_1 = studio.plan("--brush", longer)
+    plan_2 = studio.plan("--brush", longer, "--corrections", again)
+    wanted = studio.rings(plan_1)
+    gaps = [np.mean([*apart(studio.painted(each), wanted).values()]) for each in (plan, plan_1, plan_2)]
+    assert gaps[1] < 0.8 * gaps[0] and gaps[2] < 0.4 * gaps[1], gaps
+
+
+@pytest.mark.parametrize(("planned", "status"), [("0" * 64, 0), (BRUSH.sha256, 1)])
+def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planned, status):
+    studio = Studio(tmp_path, 9)
+    x, y, _ = studio.plan().passes[0].poses_mm[0]
+    row = {"start_mm": [x + 2.0, y], "middle_mm": [30.0, 40.0], "shift_mm": [0.1, 0.2], "turn_deg": 0.1}
+    made = {"format": "brushsvg/comparison", "version": 1, "strokes": [{"stroke": "bow", "correction": row}]}
+    made |= {"brush_sha256": BRUSH.sha256, "plan_brush_sha256": planned}
+    (tmp_path / "c.json").write_text(json.dumps(made))
+    words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
+    found, _, told = in_json(capsys, *words)
+    assert found == status and (status == 0 or is_told(told, "corrections-of-another-job")), told
 
 
 def test_two_strokes_tell_no_corrections(tmp_path, capsys):

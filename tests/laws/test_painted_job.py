@@ -2,6 +2,7 @@
 
 import json
 
+import cv2
 import numpy as np
 import photograph
 import pytest
@@ -58,6 +59,11 @@ def shown(page, painted, camera=CAMERA):
     return photograph.photograph(sheet, camera)
 
 
+def centre(rings):
+    """Of strokes without holes, by shapely."""
+    return unary_union([Polygon(ring) for ring in rings]).centroid.coords[0]
+
+
 def compare(folder, capsys, photo="photo.jpg", *flags):
     status = main(["compare", str(folder / photo), str(folder / "four.svg"), "--quiet", *flags])
     return status, capsys.readouterr()
@@ -70,7 +76,7 @@ def test_every_mark_is_found_where_it_was_painted(job, capsys):
     found = json.loads(told.out)
     assert [row["stroke"] for row in found["strokes"]] == ["bow", "line", "cross", "bar"]
     for row in found["strokes"]:
-        before, after = (np.vstack(each[row["stroke"]]).mean(axis=0) for each in (rings, painted))
+        before, after = (np.array(centre(each[row["stroke"]])) for each in (rings, painted))
         assert row["shift_mm"] == pytest.approx(after - before, abs=0.03), row["stroke"]
         assert row["turn_deg"] == pytest.approx(TURN_DEG, abs=0.15)
         assert row["wider_mm"] == pytest.approx(0, abs=0.02)
@@ -196,6 +202,95 @@ def test_other_pictures_are_refused(job, capsys):
     ):
         status, _, ((_, told),) = in_json(capsys, "compare", folder / name, folder / "four.svg")
         assert (status, told.code) == (1, code), (name, told)
+
+
+SKIN = np.array([0.55, 0.36, 0.26])
+
+
+def with_a_thing(page, painted, ring):
+    sheet = photograph.page(page.printed)
+    for tick in page.ticks:
+        sheet.paint([tick], INK)
+    for rings in painted.values():
+        sheet.paint([each + page.frame_mm for each in rings], BLUE)
+    sheet.paint([np.array(ring) + page.frame_mm], SKIN)
+    return photograph.photograph(sheet, CAMERA)
+
+
+def seen(job, capsys, photo):
+    """Status, what was told, and by stroke whether it was found and is corrected."""
+    folder, out = job[0], job[0] / "bad.json"
+    out.unlink(missing_ok=True)
+    status, _, told = in_json(capsys, "compare", folder / photo, folder / "four.svg", "-o", out)
+    rows = json.loads(out.read_text())["strokes"] if out.exists() else []
+    return status, told, {row["stroke"]: (row["found"], row["correction"] is not None) for row in rows}
+
+
+def test_a_finger_in_the_picture_is_told_and_corrects_nothing_it_covers(job, capsys):
+    folder, page, _, painted = job
+    finger = Polygon([(31, -30), (49, -30), (49, 55), (40, 62), (31, 55)]).exterior.coords[:-1]
+    (folder / "finger.jpg").write_bytes(with_a_thing(page, painted, finger))
+    status, told, rows = seen(job, capsys, "finger.jpg")
+    assert status == 0 and is_told(told, "photo-covered", "sheet"), told
+    assert rows["bow"] == rows["line"] == (False, False), rows
+    assert rows["cross"][0] and rows["bar"][0]
+    hand = Polygon([(20, -40), (115, -40), (115, 50), (60, 75), (15, 50)]).exterior.coords[:-1]
+    (folder / "hand.jpg").write_bytes(with_a_thing(page, painted, hand))
+    status, ((_, told),), rows = seen(job, capsys, "hand.jpg")
+    assert status == 1 and told.code in ("photo-of-another-job", "photo-without-paint") and not rows, told
+
+
+@pytest.mark.parametrize("half", ["left", "right", "upper", "lower", "two thirds"])
+def test_half_a_sheet_is_refused(job, capsys, half):
+    folder = job[0]
+    pixels = cv2.imdecode(np.frombuffer((folder / "photo.jpg").read_bytes(), np.uint8), cv2.IMREAD_COLOR)
+    rows, columns = pixels.shape[0] // 2, pixels.shape[1] // 2
+    part = {
+        "left": pixels[:, :columns],
+        "right": pixels[:, columns:],
+        "upper": pixels[:rows],
+        "lower": pixels[rows:],
+        "two thirds": pixels[:, : 4 * columns // 3],
+    }[half]
+    (folder / "half.jpg").write_bytes(photograph.encoded(part))
+    status, ((_, told),), found = seen(job, capsys, "half.jpg")
+    cropped = half in (
+        "left",
+        "right",
+        "two thirds",
+    )  # of the others the markers in one line tell no flat page
+    assert status == 1 and told.code == ("photo-cropped" if cropped else "photo-not-flat") and not found, told
+
+
+def test_another_plan_on_this_page_is_refused(job, capsys):
+    folder, page, rings, _ = job
+    names = list(rings)
+    middles = {name: np.array(centre(each)) for name, each in rings.items()}
+    elsewhere = {
+        "turned": {name: [np.array([110, 70]) - ring for ring in each] for name, each in rings.items()},
+        "mixed up": {
+            name: [ring - middles[name] + middles[other] for ring in rings[name]]
+            for name, other in zip(names, names[1:] + names[:1], strict=True)
+        },
+    }
+    for kind, painted in elsewhere.items():
+        (folder / "wrong.jpg").write_bytes(shown(page, painted))
+        status, ((_, told),), found = seen(job, capsys, "wrong.jpg")
+        assert status == 1 and told.code == "photo-of-another-job" and not found, (kind, told)
+
+
+def test_paint_that_is_unlike_a_mark_corrects_it_not(job, capsys):
+    """A comb where a line should be: its paint could be that of anything."""
+    folder, page, _, painted = job
+    line = Polygon(painted["line"][0])
+    teeth = [Polygon([(x, 9), (x + 5, 9), (x + 5, 20), (x, 20)]) for x in (18, 32, 46, 60)]
+    comb = unary_union([line, *teeth])
+    near = {"line": [np.array(comb.exterior.coords)[:-1][::-1]]}
+    (folder / "unlike.jpg").write_bytes(shown(page, painted | near))
+    status, told, rows = seen(job, capsys, "unlike.jpg")
+    assert status == 0 and is_told(told, "mark-unlike", "line"), (told, rows)
+    assert rows["line"] == (True, False)
+    assert rows["bow"][1] and rows["bar"][1] and rows["cross"][1], rows
 
 
 def test_the_page_names_its_plan(job, tmp_path, capsys):

@@ -2,6 +2,7 @@
 
 import json
 
+import cv2
 import numpy as np
 import photograph
 import pytest
@@ -69,7 +70,10 @@ def painted(sheets):
 def test_the_spread_and_the_hysteresis_come_back(sheets, painted, capsys):
     photos, aside = painted
     out = sheets.folder / "spread.json"
-    assert main(sheets.words(photos, "-o", str(out))) == 0
+    picture = sheets.folder / "spread.png"
+    assert main(sheets.words(photos, "-o", str(out), "--picture", str(picture))) == 0
+    shown = cv2.imread(str(picture))
+    assert shown.shape[0] > 1000 and len(np.unique(shown[: len(shown) // 2].reshape(-1, 3), axis=0)) > 100
     found = json.loads(out.read_text())
     at = np.array([[each[name] for name in sheets.rings] for each in aside])
     at -= at.mean(axis=1, keepdims=True)  # which is the place of the sheet
@@ -133,7 +137,7 @@ def test_strokes_that_are_painted_once_tell_no_spread(tmp_path, capsys):
     assert status == 1 and is_told(told, "too-few-repeats"), told
     assert (
         main(
-            ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--picture", "a.png"]
+            ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--at-least", "0.5"]
         )
         == 2
     )

@@ -9,12 +9,14 @@ import numpy as np
 
 from ..calibration.chart.page import bar_rings, label_box
 from ..errors import Error, Notice
+from ..geometry.rings import centroid
 from ..scan.edges import Room, paint_seen
 from ..scan.flatten import Flat, flatten
 from ..scan.markers import Printed, View, find_view
 from ..scan.photo import read_photo
+from ..scan.whole_page import refuse_cropped, refuse_unsure
 from .job_page import JobPage, box_ring
-from .placing import NOWHERE, Canvas, Placed, place
+from .placing import NOWHERE, Canvas, Placed, grown, place
 
 AROUND_MM = 6.0  # round a predicted mark, where its paint is looked for
 BESIDE_MM = 0.6  # beyond another mark its blurred edge still shows
@@ -27,6 +29,7 @@ COVERED, MOSTLY = (
     0.7,
 )  # share of a mark, where it lies, that is painted at least; without paint, it is missing
 LEVEL = 0.5  # of the usual paint: an edge
+THING_MM2 = 100.0  # of one piece beside all marks: a hand, a tool or a large blot
 PALEST = 0.15  # of the usual paint, that of a stroke
 ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
 LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
@@ -45,7 +48,7 @@ class Wanted:
 class Compared:
     """A stroke as it was painted. overlap_wanted (None without a drawing), overlap_predicted: intersection over union;
     placed: against the prediction, whose middle lies at middle_mm; missing: share of the mark, where it lies, without
-    paint."""
+    paint; like: overlap of the mark, where it lies and as wide, with its paint."""
 
     stroke: str
     overlap_wanted: float | None
@@ -53,6 +56,7 @@ class Compared:
     placed: Placed
     middle_mm: tuple[float, float]
     missing: float
+    like: float
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,8 @@ class Comparison:
     """common: how the sheet lies, by the places of all marks, about middle_mm; spread_mm: rms of what is left of their
     displacements, None of fewer than three marks; elsewhere_mm2: paint that lies beside all marks. overlaps: of all
     paint with what was wanted (or, without a drawing, predicted) as it lies, once the sheet's place is put right, and
-    once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas."""
+    once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas.
+    has_things: on the sheet lies what is no mark."""
 
     strokes: tuple[Compared, ...]
     common: Placed
@@ -70,12 +75,13 @@ class Comparison:
     overlap_wanted: float | None
     overlap_predicted: float
     overlaps: tuple[float, float, float]
-    view: View
-    flat: Flat
-    paint: np.ndarray
     painted: np.ndarray
     canvas: Canvas
     notices: tuple[Notice, ...]
+    has_things: bool = False
+    view: View | None = None
+    flat: Flat | None = None
+    paint: np.ndarray | None = None
 
 
 def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> Comparison:
@@ -93,11 +99,17 @@ def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str,
     canvas = Canvas((0.0, 0.0, *sheet), flat.px_per_mm)
     painted = [_on_sheet(each, flat, page, canvas) for _, _, each in reads]
     _refuse_other_sheets(painted, photos)
+    mean = np.mean(painted, axis=0).astype(np.float32)
+    return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
+
+
+def compare_paint(strokes: list[Wanted], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:
+    """painted: share of the usual paint of each pixel of the canvas, however it was seen; name: of the picture. Without
+    view, flat and paint. Error for what cannot be the paint of this job."""
     if all(not stroke.predicted for stroke in strokes):
         raise Error("there is nothing to paint", code="nothing-to-paint")
-    mean = np.mean(painted, axis=0).astype(np.float32)
-    common, middle = _common(mean, strokes, canvas)
-    return _compared(strokes, mean, common, middle, canvas, (view, flat, paint), photos[0][0])
+    common, middle = _common(painted, strokes, canvas)
+    return _compared(strokes, painted, common, middle, canvas, name)
 
 
 def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, bytes]]) -> None:
@@ -132,6 +144,13 @@ def _read(
     corners = {marker.id: np.array(marker.corners_mm) for marker in printed.markers}
     pixels = read_photo(data)
     view = find_view(pixels, Printed(page.size_mm, corners, printed.dictionary, printed.id))
+    rooms = []
+    for stroke in strokes:
+        if stroke.predicted:
+            points = np.vstack(stroke.predicted) + page.frame_mm
+            rooms.append(Room(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
+    refuse_cropped(pixels, view, rooms)
+    refuse_unsure(pixels, view, corners)
     flat = flatten(pixels, view, page.size_mm, fine or min(view.px_per_mm, FINEST_PX_PER_MM))
     dark = [each.mean(axis=0) + (each - each.mean(axis=0)) * 1.4 for each in corners.values()]
     dark += bar_rings(printed.bar, beyond_mm=PRINT_MM)
@@ -140,11 +159,6 @@ def _read(
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in dark:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    rooms = []
-    for stroke in strokes:
-        if stroke.predicted:
-            points = np.vstack(stroke.predicted) + page.frame_mm
-            rooms.append(Room(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
     return flat, view, paint_seen(flat, print_, rooms)
 
 
@@ -163,7 +177,7 @@ def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
 
 def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.ndarray]:
     rings = [ring for stroke in strokes for ring in stroke.predicted]
-    middle = np.vstack(rings).mean(axis=0)
+    middle = centroid(rings)
     coarse = min(canvas.px_per_mm, 5.0)
     small = Canvas(canvas.window_mm, coarse)
     rows, columns = small.shape
@@ -172,7 +186,7 @@ def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.
     return replace(found, wider_mm=0.0) if found.found else NOWHERE, middle
 
 
-def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparison:
+def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
     is_painted = painted > LEVEL
     found, notices = [], []
@@ -211,8 +225,21 @@ def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparis
         for ring in seen[1](stroke.predicted)
     ]
     beside = is_painted & (_away(_any(marks, canvas), canvas.px_per_mm) > BLOT_MM)
+    things = _things(beside, canvas)
+    if things.any():
+        sentence = (
+            f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or "
+            "a blot: strokes beneath or beside it are not told, nor whose fault anything is"
+        )
+        notices.append(Notice("sheet", sentence, code="photo-covered"))
+        near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM
+        rows = [
+            _uncovered(row, seen, stroke, near, canvas)
+            for stroke, seen in zip(strokes, found, strict=True)
+            if seen
+            for row in seen[:1]
+        ]
     as_it_lies = _overlap(_any(whole, canvas), is_painted)
-    view, flat, paint = photo
     return Comparison(
         tuple(rows),
         sheet,
@@ -226,13 +253,25 @@ def _compared(strokes, painted, common, middle, canvas, photo, name) -> Comparis
             _overlap(_any([sheet.moved(ring, middle) for ring in whole], canvas), is_painted),
             _overlap(_any(each, canvas), is_painted),
         ),
-        view,
-        flat,
-        paint,
         painted,
         canvas,
         tuple(notices),
+        bool(things.any()),
     )
+
+
+def _things(beside: np.ndarray, canvas: Canvas) -> np.ndarray:
+    """Pieces of what lies beside all marks that are too large for paint that strayed."""
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(beside), connectivity=8)
+    large = stats[:, cv2.CC_STAT_AREA] > THING_MM2 * canvas.px_per_mm**2
+    large[0] = False
+    return large[labels]
+
+
+def _uncovered(row: Compared, seen, stroke: Wanted, near: np.ndarray, canvas: Canvas) -> Compared:
+    """A stroke whose mark lies near a thing is not found."""
+    covered = (_any(seen[1](stroke.predicted), canvas) & near).any()
+    return replace(row, placed=NOWHERE) if covered else row
 
 
 def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
@@ -285,7 +324,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
     found = place(attributed, free, rings, small)
     if not found.found:  # a dab has no direction
         found = place(attributed, free, rings, small, turns=False)
-    inner = np.vstack(rings).mean(axis=0)
+    inner = centroid(rings)
 
     def lies(each, at):
         return [at.moved(common.moved(ring, middle), inner) for ring in each]
@@ -295,7 +334,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
     if not found.found or (at_last & is_mine).sum() < COVERED * at_last.sum():
         found, at_last = NOWHERE, mine
     is_painted[r0:r1, c0:c1] |= is_mine & (_away(at_last, fine) < BLOT_MM)
-    start = np.vstack(stroke.predicted).mean(axis=0)
+    start = centroid(stroke.predicted)
     shift = lies([start[None]], found)[0][0] - start
     whole = Placed(
         (float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found
@@ -307,6 +346,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
         whole,
         (float(start[0]), float(start[1])),
         float((at_last & ~(part / strength > LEVEL)).sum()) / float(max(at_last.sum(), 1)),
+        _overlap(small.filled(lies(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
     )
     return row, lambda each: lies(each, found)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,18 +19,22 @@ FORMAT = "brushsvg/comparison"
 MARK = "corrections"  # of a plan that was corrected: the key, with how many strokes were
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
 START_MM = 0.1  # where the same stroke begins
+OTHER_LAG_MM = 5.0  # the same where another brush leads it: a lag of 20 mm is not a quarter off
 
 
 @dataclass(frozen=True)
 class Correction:
     """A stroke, whose way begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
-    shifted by shift_mm."""
+    shifted by shift_mm: what is left once the brush of brush_sha256 ("" where that is not known) is known. replanned:
+    the sheet was painted by a plan for another brush, so that strokes began elsewhere."""
 
     stroke: str
     start_mm: tuple[float, float]
     middle_mm: tuple[float, float]
     shift_mm: tuple[float, float]
     turn_deg: float
+    brush_sha256: str = ""
+    replanned: bool = False
 
     def moved(self, points_mm: np.ndarray) -> np.ndarray:
         """(n, 2) places on the sheet, led elsewhere."""
@@ -38,11 +42,21 @@ class Correction:
         return turned + self.middle_mm + self.shift_mm
 
 
-def corrected(plan, corrections: tuple[Correction, ...]):
-    """The plan with its strokes led elsewhere, which it says. Error for corrections of another job."""
+def corrected(plan, corrections: tuple[Correction, ...], brush):
+    """The plan, made for this brush, with its strokes led elsewhere, which it says. Error for corrections of another
+    job, or beside another brush: what a brush has learnt from a sheet, corrections of that sheet would undo again."""
     if not corrections:
         return plan
     refuse_corrected(plan)
+    beside = corrections[0].brush_sha256
+    if beside and brush.sha256 and beside != brush.sha256:
+        raise Error(
+            f"the corrections say what is left of a sheet beside another brush (sha256 {beside[:12]}), not beside "
+            f"{brush.name} ({brush.sha256[:12]}), which may know part of it: compare the photograph again with this "
+            "brush, and with the plan.json that was painted",
+            "brush_sha256",
+            code="corrections-of-another-brush",
+        )
     left = {each.stroke: each for each in corrections}
     passes = []
     for a_pass in plan.passes:
@@ -64,7 +78,7 @@ def refuse_corrected(plan) -> None:
 def _led(a_pass, correction: Correction):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
-    if away_mm > START_MM:
+    if away_mm > (OTHER_LAG_MM if correction.replanned else START_MM):
         raise _of_another_job(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
     poses[:, :2] = correction.moved(poses[:, :2])
     arcs = [
@@ -86,9 +100,17 @@ def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
     """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
     damaged, or when it holds no corrections."""
     try:
-        rows = json_fields.objects(json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes")
+        content = json_fields.document(read_bytes(path), FORMAT)
+        rows = json_fields.objects(content.get("strokes"), "strokes")
+        sha256, planned = (_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
         found = tuple(
-            _read(row, f"strokes[{k}]") for k, row in enumerate(rows) if row.get("correction") is not None
+            replace(
+                _read(row, f"strokes[{k}]"),
+                brush_sha256=sha256,
+                replanned=bool(planned) and planned != sha256,
+            )
+            for k, row in enumerate(rows)
+            if row.get("correction") is not None
         )
         names = [each.stroke for each in found]
         if twice := [name for name in names if names.count(name) > 1]:
@@ -100,6 +122,13 @@ def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
         refusal.file = os.fspath(path)
         raise
     return found
+
+
+def _sha256(content: dict, key: str) -> str:
+    said = content.get(key, "")
+    if not isinstance(said, str):
+        raise Error("this must be a text", key, code="wrong-type")
+    return said
 
 
 def aside_before_mm(path: str | os.PathLike) -> dict[str, float]:

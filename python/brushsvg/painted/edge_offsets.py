@@ -14,6 +14,9 @@ from ..geometry.rings import signed_area
 from .placing import Canvas
 
 EVERY_MM = 0.8
+# A place where the outline turns by more has no side to be measured on: beyond a corner the nearest edge is not the one
+# that lies across, and what a number does to it is no straight line. Such places made numbers surer than they are.
+SHARP_DEG, SHARP_MM = 40.0, (0.3, 0.9)  # between the directions so far before and behind
 ALONG_MM = 0.05  # between samples of a profile across an edge
 APART_MM = 0.6  # from other marks: nearer, their blurred edges show
 LEVEL = 0.5
@@ -22,13 +25,14 @@ INSIDE_MM, WHOLE = (0.3, 0.9), 0.6  # within an edge; the paint there, below whi
 
 @dataclass(frozen=True)
 class Outline:
-    """Places (n, 2) along the outlines of strokes, their normals outward, which stroke each is of, and the length that
-    each stands for, mm."""
+    """Places (n, 2) along the outlines of strokes, their normals outward, which stroke each is of, the length that each
+    stands for, mm, and whether the outline turns sharply there."""
 
     at: np.ndarray
     normal: np.ndarray
     stroke: np.ndarray
     length: np.ndarray
+    sharp: np.ndarray
 
 
 def area(rings: list[np.ndarray]):
@@ -46,6 +50,7 @@ def along(rings_of: list[list[np.ndarray]]) -> Outline:
         np.vstack([part[2] for part in parts]),
         np.concatenate([np.full(len(part[1]), part[0]) for part in parts]),
         np.concatenate([np.full(len(part[1]), part[3]) for part in parts]),
+        np.concatenate([part[4] for part in parts]),
     )
 
 
@@ -61,7 +66,15 @@ def _sampled(ring: np.ndarray):
     way = (np.arange(count) + 0.5) * step
     ahead = point(way + 0.4 * step) - point(way - 0.4 * step)
     ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
-    return point(way), np.column_stack([ahead[:, 1], -ahead[:, 0]]), step
+    near, far = SHARP_MM
+    before, behind = (point(way + side * far) - point(way + side * near) for side in (-1, 1))
+    turn = np.angle((behind @ [1, 1j]) * np.conj(-before @ [1, 1j]))
+    return (
+        point(way),
+        np.column_stack([ahead[:, 1], -ahead[:, 0]]),
+        step,
+        np.abs(turn) > np.radians(SHARP_DEG),
+    )
 
 
 def offsets_of(outline: Outline, rings_of: list[list[np.ndarray]]) -> np.ndarray:
@@ -87,8 +100,8 @@ def seen(
 ) -> np.ndarray:
     """beside: rings of strokes that have no outline here.
 
-    (n,) how far outside of each place the paint ends, by its profile across; nan where it does not within reach,
-    or where that may be another stroke's paint."""
+    (n,) how far outside of each place the paint ends, by its profile across; nan where it does not within reach, where
+    the outline turns sharply, or where that may be another stroke's paint."""
     t = np.arange(-reach_mm - INSIDE_MM[1], reach_mm + 1e-9, ALONG_MM)
     left, _, _, top = canvas.window_mm
     places = outline.at[:, None] + t[None, :, None] * outline.normal[:, None]
@@ -106,7 +119,7 @@ def seen(
         profile[rows, np.clip(nearest - round(depth / ALONG_MM), 0, len(t) - 1)]
         for depth in np.arange(INSIDE_MM[0], INSIDE_MM[1], 0.1)
     ]
-    found[np.mean(inside, axis=0) < WHOLE] = np.nan
+    found[(np.mean(inside, axis=0) < WHOLE) | outline.sharp] = np.nan
     edge = outline.at + np.nan_to_num(found)[:, None] * outline.normal
     shapes = [area(rings) if rings else Polygon() for rings in (*rings_of, *beside)]
     for k in range(len(rings_of)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from .corrections import MOST_DEG, MOST_MM, Correction
 MOST_SHARE, LEAST_SHARE = 0.8, 0.5
 AT_RANDOM_MM = 0.1
 FARTHER_MM = 0.1  # what does not repeat leads every other stroke a little farther aside
+LIKE = 0.6  # overlap of a mark, where it lies, with its paint: less may be any paint that is near
 UNSEEN = 0.3  # share of a mark without paint, beyond which its place is doubtful
 
 
@@ -26,17 +28,23 @@ def next_corrections(
     """By stroke. The sheet's own place is left out, which is another one on the next sheet; so nothing is said of fewer
     marks than tell it. plan: without corrections; before: those that were painted with. A stroke of which nothing
     certain was seen keeps its own, one that would be led too far has none, which is told."""
-    made, notices = {each.stroke: each for each in before}, []
+    starts = {a_pass.stroke: tuple(map(float, a_pass.poses_mm[0][:2])) for a_pass in plan.passes}
+    made, notices = {each.stroke: replace(each, start_mm=starts[each.stroke]) for each in before}, []
     if found.spread_mm is None:
         return made, notices
     by_chance = 2 * AT_RANDOM_MM**2 / max(found.spread_mm, AT_RANDOM_MM) ** 2
     share = min(max(1 - by_chance, LEAST_SHARE), MOST_SHARE)
-    starts = {a_pass.stroke: a_pass.poses_mm[0][:2] for a_pass in plan.passes}
     for row in found.strokes:
         if not row.placed.found or row.missing > UNSEEN:
             continue
-        start_mm = tuple(map(float, starts[row.stroke]))
-        correction = _next(row, found, share, start_mm, made.get(row.stroke))
+        if row.like < LIKE:
+            sentence = (
+                f"its paint overlaps with its mark, where that lies best, by {row.like:.2f}, less than {LIKE:g}, which "
+                "may be chance: it is not corrected"
+            )
+            notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
+            continue
+        correction = _next(row, found, share, starts[row.stroke], made.get(row.stroke))
         far_mm, far_deg = math.hypot(*correction.shift_mm), abs(correction.turn_deg)
         if far_mm <= MOST_MM and far_deg <= MOST_DEG:
             made[row.stroke] = correction

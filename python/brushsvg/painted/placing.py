@@ -11,11 +11,13 @@ from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
 from .. import _core
-from ..geometry.rings import signed_area
+from ..geometry.rings import centroid, signed_area
 from ..geometry.rotation import rotation
 
 BLURS_MM = (1.2, 0.5, 0.2)  # coarse to fine: a mark is found from as far as the first is wide
-ROUNDS = 6
+ROUNDS = (
+    20  # at each; most marks rest after 6, those of hairy strokes that are unlike their prediction after 15
+)
 MOST_GROWN_MM = 1.0  # in one step
 TURN_WEIGHT = 3000.0  # of no turn, against what pixels say: rings and dots show none
 MOST_MM = 8.0  # a step goes no farther: beyond, nothing was found
@@ -85,7 +87,7 @@ def place(
 
     Gauss-Newton on redrawn rings: a shift changes a picture by its slope, growing edges by the slope's size.
     """
-    middle = np.vstack(rings).mean(axis=0)
+    middle = centroid(rings)
     x, y = canvas.places()
     now = np.zeros(4)
     settled = False

@@ -44,11 +44,14 @@ class Spread:
 @dataclass(frozen=True)
 class Approach:
     """By how much strokes that begin in the positive direction of an axis lie farther along it than those that begin
-    in the negative one, with half its 95 % interval; None where there are too few of either."""
+    in the negative one, with half its 95 % interval; None where there are too few of either. plus_mm, minus_mm: mean
+    place along the axis of each stroke, by that direction."""
 
     axis: str
     value_mm: float | None
     half_mm: float | None
+    plus_mm: np.ndarray
+    minus_mm: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -161,13 +164,13 @@ def _approach(plan, places, axis: int) -> Approach:
         if values and abs(way) > 1.0:
             ways[way > 0].append(float(np.mean(values)))
     name = "xy"[axis]
-    if min(len(each) for each in ways.values()) < 2:
-        return Approach(name, None, None)
     up, down = (np.array(ways[side]) for side in (True, False))
+    if min(len(up), len(down)) < 2:
+        return Approach(name, None, None, up, down)
     freedom = len(up) + len(down) - 2
     within = (np.square(up - up.mean()).sum() + np.square(down - down.mean()).sum()) / freedom
     half = _core.deviations_of_95(freedom) * math.sqrt(within * (1 / len(up) + 1 / len(down)))
-    return Approach(name, float(up.mean() - down.mean()), float(half))
+    return Approach(name, float(up.mean() - down.mean()), float(half), up, down)
 
 
 def _chi_square(freedom: int, deviate: float) -> float:
@@ -178,10 +181,15 @@ def _chi_square(freedom: int, deviate: float) -> float:
 
 def histogram(found: Repeats) -> list[tuple[float, int]]:
     """(upper edge in mm, how many displacements lie below it and above the one before)."""
+    edges, counts = bins_of(found)
+    return list(zip(edges[1:].tolist(), counts.tolist(), strict=True))
+
+
+def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
+    """Edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) lie in each."""
     step = max(0.01, round(BIN_SHARE * float(np.quantile(found.away_mm, 0.9)), 2))
-    edges = np.arange(1, math.ceil(float(found.away_mm.max()) / step) + 1) * step
-    counts = np.histogram(found.away_mm, np.concatenate([[0.0], edges + 1e-9]))[0]
-    return list(zip(edges.tolist(), counts.tolist(), strict=True))
+    edges = np.arange(math.ceil(float(found.away_mm.max()) / step) + 1) * step
+    return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]
 
 
 def as_text(title: str, found: Repeats) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict
 
 import numpy as np
 
@@ -74,14 +73,24 @@ def _row(one: Compared) -> tuple[str, ...]:
     )
 
 
-def as_json(title: str, found: Comparison, corrections: dict[str, Correction], faults: Faults | None) -> str:
-    """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is
-    told."""
+def as_json(
+    title: str,
+    found: Comparison,
+    corrections: dict[str, Correction],
+    faults: Faults | None,
+    brush_sha256: str,
+    plan_brush_sha256: str,
+) -> str:
+    """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is told;
+    brush_sha256: of the brush that predicted; plan_brush_sha256: of the one that the plan was made for, where it is
+    known."""
     _, placed, each = found.overlaps
     made = {
         "format": FORMAT,
         "version": 1,
         "title": title,
+        "brush_sha256": brush_sha256,
+        "plan_brush_sha256": plan_brush_sha256,
         "overlap_wanted": found.overlap_wanted,
         "overlap_predicted": found.overlap_predicted,
         "overlap_sheet_placed": placed,
@@ -115,9 +124,8 @@ def as_json(title: str, found: Comparison, corrections: dict[str, Correction], f
 
 
 def _told(correction: Correction | None) -> dict | None:
-    return (
-        {key: value for key, value in asdict(correction).items() if key != "stroke"} if correction else None
-    )
+    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg")
+    return {key: getattr(correction, key) for key in keys} if correction else None
 
 
 def _rounded(value):

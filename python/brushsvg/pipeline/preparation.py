@@ -148,7 +148,7 @@ def prepare(source, options: Options = Options(), stage=lambda text: None, partl
     return Work(
         design.title,
         brush,
-        corrected(plan, options.corrections),
+        corrected(plan, options.corrections, brush),
         strokes,
         tuple(tracking_errors),
         options,
@@ -403,7 +403,7 @@ def _prepare_plan(plan, options: Options) -> Work:
         )
     _check_speed(brush, options)
     plan = _at_speed(plan, options)
-    return Work("", brush, corrected(plan, options.corrections), None, (), options, tuple(notices))
+    return Work("", brush, corrected(plan, options.corrections, brush), None, (), options, tuple(notices))
 
 
 def whole_strokes(work: Work, loads: PlanInLoads) -> list:

@@ -15,6 +15,7 @@ from ...scan.flatten import Flat, flatten
 from ...scan.markers import TOO_WHITE, Printed, View, find_view
 from ...scan.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper
 from ...scan.place_by_strokes import find_scan_view
+from ...scan.whole_page import refuse_cropped, refuse_unsure
 from .layout import Chart
 from .page import bar_rings, label_box
 
@@ -25,7 +26,7 @@ MARGIN = 1 / 5  # of a marker's side around it: blur
 # paper's height changes as little, had intervals five times as wide as its errors.
 EDGE_PX = 0.1
 WORST_QUALITY = 12.0  # of a JPEG: its squares of 8 pixels take the places of edges
-UNSURE_MM, MOST_UNSURE_MM = 0.1, 0.5  # of a place on the sheet: remarked on, refused
+UNSURE_MM = 0.1  # of a place on the sheet: remarked on
 # Standard deviation of a sheet's place on a scan, by rooms that hold the marks of brushes that trail as thought
 SCAN_PLACEMENT_MM = 3.0
 HALF_TURN_DEG = 179.0  # from here on it is upside down, whichever way it was turned
@@ -81,8 +82,8 @@ def read_chart_photos(
                     pixels, dpi, shown.sheet_mm, rooms, _pressed(chart), shown.dictionary
                 )
                 printed, labels = [], []
-            _refuse_cropped(pixels, view, rooms)
-            _refuse_unsure(view, pixels, corners)
+            refuse_cropped(pixels, view, rooms)
+            refuse_unsure(pixels, view, corners)
             fine = reads[0].flat.px_per_mm if reads else None
             flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
             refuse_dark_paper(float(np.median(grey_light(flat.pixels[::3, ::3]))))
@@ -132,39 +133,6 @@ def _refuse_compressed(data: bytes) -> None:
             value=quality,
             code="photo-compressed",
         )
-
-
-def _refuse_cropped(pixels: np.ndarray, view: View, rooms: list[Room]) -> None:
-    """Where room of a stroke lies beyond the picture."""
-    cut = []
-    for room in rooms:
-        left, bottom, right, top = room.box_mm
-        corners = view.to_px(np.array([(left, bottom), (right, bottom), (right, top), (left, top)]))
-        if (corners < 0).any() or (corners > np.array(pixels.shape[1::-1]) - 1).any():
-            cut.append(room.stroke)
-    if cut:
-        raise Error(
-            f"the page is cropped: the room of {len(cut)} stroke{'s' * (len(cut) > 1)} runs out of the picture "
-            f"({', '.join(cut[:4])}{', ...' * (len(cut) > 4)}): photograph the whole page",
-            value=len(cut),
-            code="photo-cropped",
-        )
-
-
-def _refuse_unsure(view: View, pixels: np.ndarray, corners_mm: dict[int, np.ndarray]) -> None:
-    if view.unsure_mm <= MOST_UNSURE_MM:
-        return
-    unseen = np.vstack([corners for number, corners in corners_mm.items() if number not in view.seen])
-    px = view.to_px(unseen)
-    beyond = bool((px < 0).any() or (px > np.array(pixels.shape[1::-1]) - 1).any())
-    raise Error(
-        f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
-        f"open by {view.unsure_mm:.2f} mm, {MOST_UNSURE_MM:g} is the most, "
-        + ("and others lie beyond the picture" if beyond else "and others are covered")
-        + ": photograph the whole page, with nothing over its markers",
-        value=view.unsure_mm,
-        code="photo-cropped" if beyond else "photo-markers-missing",
-    )
 
 
 def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:

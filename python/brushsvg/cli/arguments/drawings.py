@@ -128,7 +128,11 @@ def add_compare(commands) -> None:
     add_choices(compare)
     add_corrections(compare)
     compare.add_argument("-o", metavar="FILE", dest="output", help="also write the figures (.json .txt)")
-    compare.add_argument("--picture", metavar="FILE", help="also draw paint, wanted and predicted (.png)")
+    compare.add_argument(
+        "--picture",
+        metavar="FILE",
+        help="also draw paint, wanted and predicted; of --sheets the spread (.png)",
+    )
     compare.add_argument(
         "--mended-cell",
         metavar="FILE",
@@ -153,7 +157,6 @@ def add_compare(commands) -> None:
 def _check_compare(args) -> None:
     check_drawing(args)
     for flag, value in (
-        ("picture", args.picture),
         ("mended-cell", args.mended_cell),
         ("at-least", args.at_least),
     ):

@@ -35,7 +35,7 @@ def compare_files(args) -> None:
     with about(args.input):
         refuse_corrected(work.plan)
         marks = prediction.predict(work, True, stage)
-        told = corrected(work.plan, before)
+        told = corrected(work.plan, before, work.brush)
         page = job_page(told, work.title)
         wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
         strokes = [
@@ -59,7 +59,14 @@ def compare_files(args) -> None:
     machine = mended(faults, found.middle_mm, cell.machine) if faults else None
     title = work.title or "untitled"
     files = {}
-    as_figures = as_json(title, found, corrections, faults)
+    if args.mended_cell and machine and corrections:
+        corrections = {}
+        sentence = (
+            "what this cell undoes is part of what strokes lie aside: no stroke is corrected from this sheet; paint "
+            "and compare one with the cell first"
+        )
+        warn(args.mended_cell, [Notice("machine", sentence, code="corrections-of-another-cell")])
+    as_figures = as_json(title, found, corrections, faults, work.brush.sha256, work.plan.brush_sha256)
     if args.output:
         files[args.output] = (
             as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults, machine)
@@ -100,6 +107,7 @@ def _repeats(args, work, page, plan, strokes) -> None:
     """How well the same strokes lie on several sheets, or copies of strokes on one."""
     from ...painted.comparison import compare_photos
     from ...painted.repeats import as_json, as_text, repeats
+    from ...painted.repeats_picture import repeats_png
 
     sheets = []
     for path in args.photos:
@@ -109,8 +117,12 @@ def _repeats(args, work, page, plan, strokes) -> None:
             warn(path, list(sheets[-1].notices))
     with about(args.photos[0]):
         found = repeats(plan, sheets)
-    title = work.title or "untitled"
+    title, files = work.title or "untitled", {}
     if args.output:
         makes = as_json if suffix_of(args.output) == ".json" else as_text
-        write(args, {args.output: makes(title, found)})
+        files[args.output] = makes(title, found)
+    if args.picture:
+        files[args.picture] = repeats_png(title, found, sheets, strokes)
+    if files:
+        write(args, files)
     tell(as_json(title, found) if args.json else as_text(title, found))
