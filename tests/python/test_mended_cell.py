@@ -97,6 +97,7 @@ def test_what_is_hardly_more_than_chance_is_taken_back_by_half(aside_mm, share):
             placed=Placed((aside_mm * (-1) ** k, 0.0), 0.0, 0.0, True),
             middle_mm=(20.0 * k, 30.0),
             missing=0.0,
+            like=1.0,
         )
         for k in range(4)
     ]
