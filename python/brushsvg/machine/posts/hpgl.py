@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...errors import Error
 from ..cell import UNITS_MM, Cell
 from ..motion import Move, Program
 from .text import ENDS, QUOTES, plain, rows
@@ -41,9 +42,11 @@ def comment(text: str) -> str:
 
 
 def pen_number(name: str, cell: Cell) -> int:
-    """Of the one that a section is named after: pen rrggbb."""
-    colours = [colour.lower() for colour in cell.pen.colours]
-    return colours.index("#" + name.removeprefix("pen ")) + 1
+    """Of the one that a section is named after: pen rrggbb. Error where the cell has none of that colour."""
+    colours, colour = [colour.lower() for colour in cell.pen.colours], "#" + name.removeprefix("pen ")
+    if colour not in colours:
+        raise Error(f"no pen of cell {cell.name} has colour {colour}", code="colour-not-served")
+    return colours.index(colour) + 1
 
 
 def _cm_s(section) -> int:
