@@ -90,11 +90,7 @@ def outlines_assumed(source: str) -> str:
 
 def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
     need(widths_mm, (list, tuple), "a list of (depth, width)")
-    for pair in widths_mm:
-        if not isinstance(pair, (list, tuple)) or len(pair) != 2:
-            raise Error(f"{str(pair)[:40]} is no (depth, width) in mm", "width", code="wrong-type")
-        for number in pair:
-            need(number, Real, "a depth or a width in mm")
+    _need_pairs(widths_mm, "width")
     if not widths_mm:
         raise Error(
             "there is no width: at least one is needed, for example 5 mm at depth 4 mm",
@@ -119,12 +115,16 @@ def _sound(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return sorted(widths_mm)
 
 
-def _lags(pairs) -> list[tuple[float, float]]:
+def _need_pairs(pairs, what: str) -> None:
     for pair in pairs:
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
-            raise Error(f"{str(pair)[:40]} is no (depth, lag) in mm", "lag", code="wrong-type")
+            raise Error(f"{str(pair)[:40]} is no (depth, {what}) in mm", what, code="wrong-type")
         for number in pair:
-            need(number, Real, "a depth or a lag in mm")
+            need(number, Real, f"a depth or a {what} in mm")
+
+
+def _lags(pairs) -> list[tuple[float, float]]:
+    _need_pairs(pairs, "lag")
     if not pairs:
         raise Error(
             "there is no lag: one is needed, for example 6 mm at depth 4 mm",

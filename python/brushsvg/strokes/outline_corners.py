@@ -92,8 +92,7 @@ def _cut(stroke, line: Line, at_mm: list[float]) -> list:
         if corner is None:
             return []
         halves = _halves(line, (at - away[0]) / length_mm, (at + away[1]) / length_mm)
-        before, after = _swept(line, begin_mm, at), _swept(line, at, length_mm)
-        sides = _sides(left, corner, first[1], second[1], halves, first[0], before, after)
+        sides = _sides(left, corner, first, second, halves, line, (begin_mm, at, length_mm))
         if sides is None:
             return []
         done, left, shared = sides
@@ -139,33 +138,37 @@ def _swept(line: Line, from_mm: float, to_mm: float):
     return region(_core.wanted_outline(line_stroke(Line(*line.stretch(from_mm, to_mm))), 0.01))
 
 
-def _sides(shape, corner, along, onward, halves, before_at, before, after):
+def _sides(shape, corner, first, second, halves, line: Line, at_mm: tuple[float, float, float]):
     """A shape cut from its inner to its outer corner: what lies before, what after, and what both legs have. Where the
-    second leg runs back to the first, as of P, the cut leaves one piece: that is shared out by what the legs cover."""
+    second leg runs back to the first, as of P, the cut leaves one piece: that is shared out by what the legs cover.
+
+    first, second: places and directions beside the corner; at_mm: where the line's leg before begins, the corner lies,
+    the leg after ends."""
     import shapely
     import shapely.ops
 
+    (before, along), (_, onward) = first, second
     half = max(halves)
     inwards = (onward - along) / np.hypot(*(onward - along))
     knife = shapely.LineString([corner - 2.2 * half * inwards, corner + 2.2 * half * inwards])
     parts = shapely.get_parts(shapely.ops.split(shape, knife)) if shape.geom_type == "Polygon" else []
     if len(parts) == 1:
-        parts = _shared_out(shape, before, after)
-    elif len(parts) != 2:
+        begin_mm, corner_mm, end_mm = at_mm
+        legs = _shared_out(shape, _swept(line, begin_mm, corner_mm), _swept(line, corner_mm, end_mm))
+    elif len(parts) == 2:
+        legs = sorted(parts, key=lambda part: shapely.distance(part, shapely.Point(before)))
+    else:
         return None
-    first = int(
-        shapely.distance(parts[1], shapely.Point(before_at))
-        < shapely.distance(parts[0], shapely.Point(before_at))
-    )
     sine = abs(along[0] * onward[1] - along[1] * onward[0])
     a, b = 1.05 * halves[1] / sine * along, 1.05 * halves[0] / sine * onward
     both = shapely.intersection(
         shape, shapely.Polygon([corner + a + b, corner + a - b, corner - a - b, corner - a + b])
     )
-    return parts[first], parts[1 - first], both
+    return *legs, both
 
 
 def _shared_out(shape, before, after) -> list:
+    """What of a shape goes with the leg before, and what with the one after; they cover what is told of them."""
     import shapely
 
     rest = shapely.difference(shape, before)

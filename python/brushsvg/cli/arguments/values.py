@@ -92,19 +92,22 @@ def share(text: str) -> float:
 
 
 def lag_at(text: str) -> tuple[float, float]:
-    depth, equals, at_depth = text.partition("=")
-    if not equals:
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a depth and its lag; write for example 3=7.4")
-    return lag(depth), width(at_depth)
+    depth, its_lag = _at_depth(text, "lag", "3=7.4")
+    return lag(depth), width(its_lag)
 
 
 def width_at(text: str) -> tuple[float, float]:
-    depth, equals, at_depth = text.partition("=")
+    depth, its_width = _at_depth(text, "width", "3=2.5")
+    return width(depth), width(its_width)
+
+
+def _at_depth(text: str, what: str, example: str) -> tuple[str, str]:
+    depth, equals, value = text.partition("=")
     if not equals:
         raise argparse.ArgumentTypeError(
-            f"{text[:24]!r} is not a depth and its width; write for example 3=2.5"
+            f"{text[:24]!r} is not a depth and its {what}; write for example {example}"
         )
-    return width(depth), width(at_depth)
+    return depth, value
 
 
 def width(text: str) -> float:

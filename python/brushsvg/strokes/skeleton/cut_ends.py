@@ -96,22 +96,6 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     return line
 
 
-def _cut(
-    here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
-) -> tuple[float, float] | None:
-    """The same, of a line with straight sides up to there."""
-    cut = straight_cut(here, ahead, half, rings)
-    if cut is None:
-        return None
-    left = np.array([-ahead[1], ahead[0]])
-    for side in (-1, 1):
-        for on_mm in np.linspace(0.0, 0.9 * (cut[0] + cut[1] * side * ASIDE * half), 4):
-            at = here + on_mm * ahead + 0.7 * half * side * left  # inside, on either side of a slanted cut
-            if abs(_left_ahead(at, side * left, ahead, 0.0, rings) - 0.3 * half) > BENT * half:
-                return None
-    return cut
-
-
 def straight_cut(
     here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
 ) -> tuple[float, float] | None:
@@ -127,6 +111,22 @@ def straight_cut(
     if abs(slope) > STEEPEST or (np.abs(middle + slope * aside - reached) > STRAIGHT * half).any():
         return None
     return float(middle), float(slope)
+
+
+def _cut(
+    here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
+) -> tuple[float, float] | None:
+    """The straight cut ahead of a place up to which the line has straight sides."""
+    cut = straight_cut(here, ahead, half, rings)
+    if cut is None:
+        return None
+    left = np.array([-ahead[1], ahead[0]])
+    for side in (-1, 1):
+        for on_mm in np.linspace(0.0, 0.9 * (cut[0] + cut[1] * side * ASIDE * half), 4):
+            at = here + on_mm * ahead + 0.7 * half * side * left  # inside, on either side of a slanted cut
+            if abs(_left_ahead(at, side * left, ahead, 0.0, rings) - 0.3 * half) > BENT * half:
+                return None
+    return cut
 
 
 def _turn(one: np.ndarray, other: np.ndarray) -> float:

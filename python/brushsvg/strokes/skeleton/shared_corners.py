@@ -18,7 +18,7 @@ NEAR, BARE = (0.75, 1.35), 0.12
 def with_shared_corners(strokes: list, area: list[np.ndarray]) -> list:
     """The strokes of a shape, given by its rings, each with the corners beside its ends in its part of the shape."""
     ends = [(k, box) for k, stroke in enumerate(strokes) for box in _boxes(stroke, area)]
-    if len(strokes) == 1 or not ends:
+    if not ends:
         return strokes
     discs = _core.unite([ring for stroke in strokes for ring in _core.wanted_outline(_drawn(stroke), 0.01)])
     out = list(strokes)
