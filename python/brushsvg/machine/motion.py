@@ -65,6 +65,14 @@ class Section:
     def moves(self) -> tuple[Move, ...]:
         return tuple(step for step in self.steps if isinstance(step, Move))
 
+    @property
+    def drawn_mm_s(self) -> float:
+        """How fast a stroke is drawn at most; of a dab, its landing."""
+        speeds = [
+            [move.speed_mm_s for move in self.moves if move.meaning == kind] for kind in ("paint", "land")
+        ]
+        return max(speeds[0] or speeds[1])
+
 
 @dataclass(frozen=True)
 class Program:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..cell import Cell
-from ..motion import Move, Program, Section, Wait
+from ..motion import Move, Program, Wait
 from .gcode import DIALECTS, HELD_UP, MODES, wait
 from .text import feed_mm_min, number, rows
 
@@ -33,7 +33,7 @@ def marlin_servo(program: Program) -> Iterator[str]:
             places = np.round(step.points_mm[:, :2], cell.decimals) + 0.0
             path = np.vstack([places[:1] + 1 if here is None else here, places])
             new, here = places[(path[1:] != path[:-1]).any(axis=1)], places[-1]
-            speed_mm_s = _drawn_at(section) if step.meaning == "land" else step.speed_mm_s
+            speed_mm_s = section.drawn_mm_s if step.meaning == "land" else step.speed_mm_s
             wanted = f"G1 F{feed_mm_min(speed_mm_s):.1f}\n"
             if (len(new) or step.meaning == "land") and wanted != feed:
                 yield wanted
@@ -47,15 +47,6 @@ def marlin_servo(program: Program) -> Iterator[str]:
 def lifted(cell: Cell, is_down: bool) -> str:
     value = round(cell.pen.servo_values[is_down])
     return f"M400\nM280 P{cell.pen.servo_number} S{value}\nG4 P{number(1e3 * cell.pen.settle_s, 0)}\n"
-
-
-def _drawn_at(section: Section) -> float:
-    """The speed of a stroke [mm/s]; of a dab, that of its landing."""
-    speeds = {
-        kind: [move.speed_mm_s for move in section.moves if move.meaning == kind]
-        for kind in ("paint", "land")
-    }
-    return max(speeds["paint"] or speeds["land"])
 
 
 def _word(move: Move) -> str:

@@ -30,7 +30,7 @@ def hpgl(program: Program) -> Iterator[str]:
         if not section.moves:
             yield f"SP{pen_number(section.name, cell)};\n"
         for move in section.moves:
-            if move.meaning == "land" and speed != (wanted := f"VS{_cm_s(section)};\n"):
+            if move.meaning == "land" and speed != (wanted := f"VS{round(section.drawn_mm_s / CM_S)};\n"):
                 yield wanted
                 speed = wanted
             here = yield from _lines(move, here)
@@ -47,12 +47,6 @@ def pen_number(name: str, cell: Cell) -> int:
     if colour not in colours:
         raise Error(f"no pen of cell {cell.name} has colour {colour}", code="colour-not-served")
     return colours.index(colour) + 1
-
-
-def _cm_s(section) -> int:
-    """At which a stroke is drawn; of a dab, that of its landing."""
-    speeds = [move.speed_mm_s for move in section.moves if move.meaning == "paint"]
-    return round((max(speeds) if speeds else section.moves[0].speed_mm_s) / CM_S)
 
 
 def _lines(move: Move, here: tuple | None):
