@@ -311,3 +311,10 @@ def test_who_paints_is_told_of_mistyped_keys_and_not_of_notes(tmp_path):
     assert {one.where for one in told} == {"brush round-6"} and len(told) == 3
     again = brushsvg.convert(done.plan, brush=mistyped(tmp_path))
     assert sum(one.code == "key-unknown" for one in again.notices) == 3
+
+
+@pytest.mark.parametrize("extra", ["", "[", "[]", "[" * 100_000, '{"footprints": 3}'])
+def test_whatever_a_brush_made_by_hand_says_beside_its_laws(extra):
+    brush = find_brush("round-6")
+    brush.extra = extra
+    assert unknown_keys(brush) == []

@@ -66,19 +66,27 @@ def parse_brush(data: bytes) -> _core.Brush:
 
 def unknown_keys(brush: _core.Brush) -> list[Notice]:
     """A notice for each key of its file that brushsvg does not know: kept, and without effect."""
-    said = json.loads(brush.extra)
-    outlines = said.get("footprints")
+    said = _object(brush.extra)
     tables = [
         ("", said, _KEYS),
-        ("footprints.", outlines if isinstance(outlines, dict) else {}, _KEYS_OF_FOOTPRINTS),
+        ("footprints.", _object(json.dumps(said.get("footprints"))), _KEYS_OF_FOOTPRINTS),
     ]
-    tables += [(f"{law}.", json.loads(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
+    tables += [(f"{law}.", _object(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
     return [
         _unknown(where + key, where, key, known)
         for where, said, known in tables
         for key in said
         if key not in known
     ]
+
+
+def _object(text: str) -> dict:
+    """A brush made by hand may say anything there: what is no object is refused where it is written."""
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
