@@ -11,7 +11,8 @@ using namespace brushsvg;
 int main(int count, char** words) try {
     if (count != 3) return std::fprintf(stderr, "02_brush_file_to_gcode BRUSH.json PROGRAM.ngc\n"), 2;
     std::stringstream text;
-    text << std::ifstream(words[1]).rdbuf();
+    if (!(text << std::ifstream(words[1]).rdbuf()))
+        return std::fprintf(stderr, "%s: the file is empty or cannot be read\n", words[1]), 1;
     const Brush brush = io::read_brush(text.str());
     check(brush);
 
@@ -22,9 +23,11 @@ int main(int count, char** words) try {
 
     const Plan plan{brush.name, brush.sha256, {120.0, 60.0}, {done.pass}};
     std::ofstream program(words[2]);
-    program << posts::linuxcnc(plan, brush);
+    program << posts::linuxcnc(plan, brush, {}, "wave");
+    if (!program.flush()) return std::fprintf(stderr, "%s: the file cannot be written\n", words[2]), 1;
     std::printf("%ld poses, at most %.3f mm off the line\n", long(done.pass.poses_mm.rows()), done.miss.largest_mm);
-    return program.flush() ? 0 : 1;
-} catch (const Error& refused) {
-    return std::fprintf(stderr, "%s: %s\n", refused.where().c_str(), refused.what()), 1;
+    return 0;
+} catch (const Error& refused) {  // where: a key of the brush file, or the stroke
+    const std::string where = refused.where().empty() ? "" : refused.where() + ": ";
+    return std::fprintf(stderr, "%s: %s%s\n", words[1], where.c_str(), refused.what()), 1;
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "brushsvg/checkpoint.hpp"
@@ -32,16 +34,35 @@ std::string text_of(const char* format, Numbers... numbers) {
 
 double rounded(double value) { return std::nearbyint(value * kUnit) / kUnit + 0.0; }  // -0.0 + 0.0 is 0.0
 
-/// One line of comment: 7-bit, no brackets.
+// U+00C0 to U+017F without their accents
+constexpr char kPlain[] =
+    "AAAAAA?CEEEEIIII?NOOOOO??UUUUY??aaaaaa?ceeeeiiii?nooooo??uuuuy?yAaAaAaCcCcCcCcDd??EeEeEeEeEeGgGgGgGgHh??IiIiIiIiI?"
+    "??JjKk?LlLlLl????NnNnNn???OoOoOo??RrRrRrSsSsSsSsTtTt??UuUuUuUuUuUuWwYyYZzZzZzs";
+
+/// One line of comment: 7-bit, no brackets. Accents go, as they do where Python writes it: brushsvg check compares.
 std::string comment(const std::string& text) {
     std::string out;
-    for (const char letter : text) {
-        const auto byte = static_cast<unsigned char>(letter);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
         if ((byte & 0xC0) == 0x80) continue;  // what follows the first byte of a letter
-        out += byte > '~' ? '?' : byte < ' ' ? ' ' : letter == '(' ? '[' : letter == ')' ? ']' : letter;
+        const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0u;
+        const unsigned letter = (byte & 0xE0) == 0xC0 ? (byte & 0x1Fu) << 6 | (next & 0x3Fu) : byte;
+        if (letter >= 0x300 && letter <= 0x36F) continue;  // an accent by itself
+        if (byte >= 0xC3 && byte <= 0xC5)
+            out += kPlain[letter - 0xC0];
+        else if (byte > '~' || (byte < ' ' && !std::isspace(byte)))
+            out += '?';
+        else
+            out += byte < ' ' ? ' ' : byte == '(' ? '[' : byte == ')' ? ']' : text[i];
     }
     if (out.size() > kCommentLetters) out.replace(kCommentLetters - 3, std::string::npos, "...");
     return "(" + out + ")\n";
+}
+
+std::string clock(double seconds) {
+    const long all = std::lrint(seconds), minutes = all / 60;
+    if (minutes >= 60) return text_of("%ld h %02ld min", minutes / 60, minutes % 60);
+    return minutes > 0 ? text_of("%ld min %02ld s", minutes, all % 60) : text_of("%ld s", all);
 }
 
 void require(double value, std::array<double, 2> range, const std::string& what, const std::string& unit,
@@ -91,8 +112,11 @@ void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
     require(cell.blending_mm, {0.0, 1e3}, "the blending", "mm", "blending_mm");
     for (const auto& [speed, name] : {std::pair(cell.approach_mm_s, "approach_mm_s"),
                                       {cell.press_mm_s, "press_mm_s"},
-                                      {cell.paint_mm_s, "paint_mm_s"}})
+                                      {cell.paint_mm_s, "paint_mm_s"},
+                                      {cell.travel_mm_s, "travel_mm_s"}})
         require(speed, {kSlowestMmS, 1e5}, "the speed", "mm/s", name);
+    require(cell.acceleration_mm_s2, {kSlowestMmS, 1e6}, "the acceleration", "mm/s^2", "acceleration_mm_s2");
+    if (cell.name.empty()) throw Error("name-invalid", "the machine needs a name: that of its cell", "name");
     if (plan.brush != brush.name)
         throw Error("options-contradict", "the plan was made for brush " + plan.brush + ", not for " + brush.name);
     if (plan.passes.empty()) throw Error("nothing-to-paint", "there is nothing to paint");
@@ -125,23 +149,40 @@ std::vector<Index> kept(const Poses& written, const std::vector<bool>& stays) {
 
 class Text {
  public:
+    explicit Text(double acceleration_mm_s2) : acceleration_mm_s2_(acceleration_mm_s2) {}
     std::string all;
+    double time_s = 0.0, painted_mm = 0.0;
 
-    void go(const char* word, const Eigen::RowVector3d& to) { all += word + coordinates(to) + "\n"; }
+    void go(const char* word, const Eigen::RowVector3d& to) {
+        all += word + coordinates(to) + "\n";
+        way_mm_ += here_ ? (to - *here_).norm() : 0.0;
+        here_ = to;
+    }
     void feed(double mm_s) {  // in steps of 0.1 mm/min, rounded down, so that a limit is kept
         const std::string line = text_of("F%.1f\n", std::max(std::floor(600.0 * mm_s + 1e-6), 1.0) / 10.0);
         if (line != feed_) all += line;
         feed_ = line;
     }
-    void circle(int direction, const Eigen::RowVector3d& to, const Vector2d& centre_from_start) {
+    void circle(int direction, const Eigen::RowVector3d& to, const Vector2d& centre_from_start, double length_mm) {
         all += (direction > 0 ? "G3" : "G2") + coordinates(to) +
                text_of(" I%.4f J%.4f\n", rounded(centre_from_start.x()), rounded(centre_from_start.y()));
+        way_mm_ += length_mm;
+        here_ = to;
+    }
+    /// What was gone since the last rest, from rest to rest: v rises at the acceleration, stays, falls.
+    double rest(double mm_s) {
+        const double a = acceleration_mm_s2_, way_mm = way_mm_;
+        time_s += way_mm > mm_s * mm_s / a ? way_mm / mm_s + mm_s / a : 2.0 * std::sqrt(way_mm / a);
+        way_mm_ = 0.0;
+        return way_mm;
     }
 
  private:
     static std::string coordinates(const Eigen::RowVector3d& to) {
         return text_of(" X%.4f Y%.4f Z%.4f", rounded(to.x()), rounded(to.y()), rounded(to.z()));
     }
+    double acceleration_mm_s2_, way_mm_ = 0.0;
+    std::optional<Eigen::RowVector3d> here_;
     std::string feed_;
 };
 
@@ -206,54 +247,82 @@ void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, T
         done = arc.last;
     }
     const double press_mm_s = std::min(cell.press_mm_s, pass.speed_mm_s);
+    const double approach_mm_s = std::min(cell.approach_mm_s, brush.max_speed_mm_s);
     Eigen::RowVector3d over = pass.poses_mm.row(0);
     over.z() = cell.safe_mm;
     text.go("G0", over);
-    text.feed(std::min(cell.approach_mm_s, brush.max_speed_mm_s));
+    text.rest(cell.travel_mm_s);
+    text.feed(approach_mm_s);
     over.z() = cell.clearance_mm;
     text.go("G1", over);
+    text.rest(approach_mm_s);
     text.feed(press_mm_s);
     text.go("G1", pass.poses_mm.row(0));
+    text.rest(press_mm_s);
+    double speed_mm_s = 0.0;  // of the lines that go on without a rest; 0: of none
+    const auto rest = [&] {
+        if (speed_mm_s > 0.0) text.painted_mm += text.rest(speed_mm_s);
+        speed_mm_s = 0.0;
+    };
     Index here = 0;
     for (const Index i : kept(written, stays)) {
         checkpoint();
         if (i <= here) continue;
         if (const Arc* arc = circle_at[std::size_t(here)]) {
             if (i < arc->last) continue;
+            rest();
+            double turned = 0.0;
+            for (Index k = here; k < i; ++k)
+                turned += std::abs(turn_between(*arc, pass.poses_mm.row(k).head<2>().transpose(),
+                                                pass.poses_mm.row(k + 1).head<2>().transpose()));
+            const double radius_mm = (pass.poses_mm.row(here).head<2>().transpose() - arc->centre_mm).norm();
             text.feed(pass.speed_mm_s);
-            text.circle(arc->direction, pass.poses_mm.row(i), arc->centre_mm - written.row(here).head<2>().transpose());
+            text.circle(arc->direction, pass.poses_mm.row(i), arc->centre_mm - written.row(here).head<2>().transpose(),
+                        radius_mm * turned);
+            speed_mm_s = pass.speed_mm_s;
+            rest();
         } else {
             const Eigen::RowVector3d step = (written.row(i) - written.row(here)).cwiseAbs();
             const bool is_on_the_spot = std::max(step.x(), step.y()) < kOnTheSpotMm && step.z() > kOnTheSpotMm;
-            text.feed(is_on_the_spot ? press_mm_s : pass.speed_mm_s);
+            const double wanted_mm_s = is_on_the_spot ? press_mm_s : pass.speed_mm_s;
+            if (wanted_mm_s != speed_mm_s) rest();
+            text.feed(wanted_mm_s);
             text.go("G1", pass.poses_mm.row(i));
+            speed_mm_s = wanted_mm_s;
         }
         here = i;
     }
+    rest();
     over = pass.poses_mm.row(last);
     over.z() = cell.clearance_mm;
     text.feed(press_mm_s);
     text.go("G1", over);
+    text.rest(press_mm_s);
     over.z() = cell.safe_mm;
     text.go("G0", over);
+    text.rest(cell.travel_mm_s);
 }
 
 }  // namespace
 
-std::string linuxcnc(const Plan& plan, const Brush& brush, const FlatCell& cell) {
+std::string linuxcnc(const Plan& plan, const Brush& brush, const FlatCell& cell, const std::string& title) {
     require_sound(plan, brush, cell);
-    Text text;
-    text.all = comment("brush: " + brush.name + ", " + std::to_string(plan.passes.size()) + " strokes") +
-               comment(text_of("sheet: %g x %g mm", plan.sheet_mm[0], plan.sheet_mm[1])) +
-               comment("frame: the sheet's lower left corner, mm; z 0 touches") + "G21 G90 G94 G17 G40 G80 G91.1\n" +
-               (rounded(cell.blending_mm) > 0.0 ? text_of("G64 P%.4f\n", rounded(cell.blending_mm)) : "G61\n") +
-               text_of("G0 Z%.4f\n", rounded(cell.safe_mm));
+    const std::string count = std::to_string(plan.passes.size());
+    Text text(cell.acceleration_mm_s2);
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
-        text.all += "\n" + comment("stroke " + std::to_string(i + 1) + " of " + std::to_string(plan.passes.size()) +
-                                   ": " + plan.passes[i].stroke.name());
+        text.all +=
+            "\n" + comment("stroke " + std::to_string(i + 1) + " of " + count + ": " + plan.passes[i].stroke.name());
         write_pass(plan.passes[i], brush, cell, text);
     }
-    return text.all + "\nM2\n";
+    const std::string path =
+        rounded(cell.blending_mm) > 0.0 ? text_of("G64 P%.4f\n", rounded(cell.blending_mm)) : "G61\n";
+    return comment("title: " + title) + comment("brush: " + brush.name + ", " + count + " strokes") +
+           comment(text_of("sheet: %g x %g mm", plan.sheet_mm[0], plan.sheet_mm[1])) +
+           comment("cell: " + cell.name + ", linuxcnc") +
+           comment("frame: the sheet's lower left corner, mm; z 0 touches") +
+           comment("time: about " + clock(text.time_s)) +
+           comment(text_of("length: %.0f mm on the paper", text.painted_mm)) + "G21 G90 G94 G17 G40 G80 G91.1\n" +
+           path + text_of("G0 Z%.4f\n", rounded(cell.safe_mm)) + text.all + "\nM2\n";
 }
 
 }  // namespace brushsvg::posts

@@ -54,6 +54,22 @@ Least least(const Profile& profile, double lo, double hi) {
     return found;
 }
 
+struct Fall {
+    double mm, from_mm, to_mm;
+};
+
+/// By how much a law falls at most from one depth to a greater one.
+Fall greatest_fall(const Profile& profile, double lo, double hi) {
+    Fall fall{0.0, lo, lo};
+    double highest_at = lo;
+    for (int i = 1; i <= 400; ++i) {
+        const double d = lo + (hi - lo) * i / 400;
+        if (profile(d) > profile(highest_at)) highest_at = d;
+        if (const double mm = profile(highest_at) - profile(d); mm > fall.mm) fall = {mm, highest_at, d};
+    }
+    return fall;
+}
+
 void check_lag(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     if (brush.is_rigid()) {
@@ -367,12 +383,12 @@ std::vector<Warning> remarks(const Brush& brush) {
         if (!gap)
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
                                   "the centre of friction lies outside the footprint at some depths"});
-        const double shorter = least(brush.lag, lo, hi).value - brush.lag(lo);
-        if (shorter < -kOddMm)
-            out.push_back(Warning{"law-falls", "lag",
-                                  format("the lag is up to %.2f mm shorter than at depth %.2f mm: bristles that are "
-                                         "pressed deeper usually trail farther",
-                                         -shorter, lo)});
+        const Fall fall = greatest_fall(brush.lag, lo, hi);
+        if (fall.mm > kOddMm)
+            out.push_back(
+                Warning{"law-falls", "lag",
+                        format("the lag falls by %.2f mm from depth %.2f ", fall.mm, fall.from_mm) +
+                            format("to %.2f mm: bristles that are pressed deeper usually trail farther", fall.to_mm)});
         for (const Footprint& shape : brush.footprints.dragged) {
             if (shape.outline_mm.rows() == 0) continue;
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);

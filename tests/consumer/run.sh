@@ -20,8 +20,14 @@ libraries=$(dirname "$(find "$work/prefix" -name libbrushsvg_core.a)")
 brush=$source/python/brushsvg/data/brushes/round-6.json
 "$work/consumer/consumer" "$brush" "$work/one.ngc"
 grep -q "^M2$" "$work/one.ngc"
+command=$source/.venv/bin/brushsvg  # the check that docs/cpp.md asks for, where the command is installed
+if [ -x "$command" ]; then "$command" check "$work/one.ngc" >"$work/said" || { cat "$work/said"; echo "brushsvg check refuses the example's program" >&2; exit 1; }; fi
 if "$work/consumer/consumer" "$source/README.md" "$work/none.ngc" 2>"$work/said"; then echo "a README is read as a brush" >&2; exit 1; fi
-[ "$(wc -l <"$work/said")" = 1 ] && ! [ -e "$work/none.ngc" ]
+[ "$(wc -l <"$work/said")" = 1 ] && ! [ -e "$work/none.ngc" ] && grep -q "^$source/README.md: " "$work/said"
+if "$work/consumer/consumer" "$work/missing.json" "$work/none.ngc" 2>"$work/said"; then echo "a missing file is read as a brush" >&2; exit 1; fi
+grep -q "^$work/missing.json: .*cannot be read$" "$work/said"
+if "$work/consumer/consumer" "$brush" "$work/missing/none.ngc" 2>"$work/said"; then echo "a program is written nowhere" >&2; exit 1; fi
+grep -q "^$work/missing/none.ngc: " "$work/said"
 if cmake -S "$source/tests/consumer" -B "$work/newer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" -DEXAMPLE="$work" -DVERSION=9.0 2>"$work/said" >/dev/null; then echo "any version will do" >&2; exit 1; fi
 if command -v pkg-config >/dev/null; then
   export PKG_CONFIG_PATH

@@ -139,11 +139,13 @@ TEST_CASE("what is odd about a brush is said in words") {
         return false;
     };
     Brush brush = shipped("round-6");
-    CHECK(!says(brush, "lag", "shorter"));
+    CHECK(!says(brush, "lag", "falls"));
     CHECK(!says(brush, "tip_gap", "beyond the footprint"));
     CHECK(!says(brush, "tip_gap", "scatters"));
     brush.lag.coefficients = {8.0, -0.4};
-    CHECK(says(brush, "lag", "up to 4.00 mm shorter than at depth 0.00 mm"));
+    CHECK(says(brush, "lag", "falls by 4.00 mm from depth 0.00 to 10.00 mm"));
+    brush.lag.coefficients = {1.0, 6.0, -3.0, 0.4};  // never below where it begins
+    CHECK(says(brush, "lag", "falls by 2.24 mm from depth 1.38 to 3.62 mm"));
     brush.tip_gap.coefficients = {0.0, 1.1};
     CHECK(says(brush, "tip_gap", "at depth 1.00 mm the centre of friction lies 1.10 mm from the tip"));
     brush.tip_gap.rmse_mm = 4.0;

@@ -50,6 +50,25 @@ TEST_CASE("the golden program, which Python is held against, too") {
     CHECK(posts::linuxcnc(golden_plan(), round6()) == file(std::string(GOLDEN_DIR) + "/flat_machine.ngc"));
 }
 
+TEST_CASE("a machine of other numbers and a name of its own") {
+    Plan plan = golden_plan();
+    Brush brush = round6();
+    plan.brush = brush.name = "B\xC3\xBCrste u\xCC\x88\xC3\xB8";
+    posts::FlatCell cell;
+    cell.safe_mm = 15.0;
+    cell.clearance_mm = 2.0;
+    cell.approach_mm_s = 20.0;
+    cell.press_mm_s = 5.0;
+    cell.paint_mm_s = 40.0;
+    cell.travel_mm_s = 8.0;
+    cell.acceleration_mm_s2 = 300.0;
+    cell.blending_mm = 0.0;
+    cell.name = "bench";
+    CHECK(posts::linuxcnc(plan, brush, cell,
+                          "Wei\xC3\x9F\t(\xC5\x81\xC3\xB3"
+                          "d\xC5\xBA)") == file(std::string(GOLDEN_DIR) + "/flat_bench.ngc"));
+}
+
 TEST_CASE("what would lead a machine astray is refused") {
     using posts::FlatCell;
     const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
@@ -66,9 +85,11 @@ TEST_CASE("what would lead a machine astray is refused") {
         CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].speed_mm_s = value; }) == "out-of-range");
         for (double FlatCell::* field :
              {&FlatCell::safe_mm, &FlatCell::clearance_mm, &FlatCell::lowest_mm, &FlatCell::margin_mm,
-              &FlatCell::approach_mm_s, &FlatCell::press_mm_s, &FlatCell::paint_mm_s, &FlatCell::blending_mm})
+              &FlatCell::approach_mm_s, &FlatCell::press_mm_s, &FlatCell::paint_mm_s, &FlatCell::blending_mm,
+              &FlatCell::travel_mm_s, &FlatCell::acceleration_mm_s2})
             CHECK(code_of([=](Plan&, Brush&, FlatCell& cell) { cell.*field = value; }) == "out-of-range");
     }
+    CHECK(code_of([](Plan&, Brush&, FlatCell& cell) { cell.name.clear(); }) == "name-invalid");
     for (const double z : {0.1, -10.5, -25.0})
         CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].poses_mm(1, 2) = z; }) == "out-of-range");
     for (const double speed : {0.0, -1.0, 26.0})
@@ -96,5 +117,5 @@ TEST_CASE("a comment stays one") {
     Plan plan = golden_plan();
     plan.passes[0].stroke = StrokeId("a) M2\n(\xC3\xA9");
     const std::string text = posts::linuxcnc(plan, round6());
-    CHECK(text.find("(stroke 1 of 3: a] M2 [?)\n") != std::string::npos);
+    CHECK(text.find("(stroke 1 of 3: a] M2 [e)\n") != std::string::npos);
 }

@@ -5,14 +5,16 @@ import importlib.util
 import json
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import in_json, refused
 
+import brushsvg
 from brushsvg import _core
-from brushsvg.brush.library import SHIPPED, brush_names, find_brush, save_brush
+from brushsvg.brush.library import SHIPPED, brush_names, find_brush, save_brush, unknown_keys
 from brushsvg.errors import Error
 
 ROOT = Path(__file__).parents[2]
@@ -270,3 +272,49 @@ def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
 
     save_brush(brush, path)
     assert find_brush(path).max_speed_mm_s == 10
+
+
+def mistyped(tmp_path):
+    content = shipped_json("round-6")
+    content["max_sped_mm_s"] = content.pop("max_speed_mm_s")
+    content["lag"]["rmse"] = content["lag"].pop("rmse_mm")
+    content["footprints"]["sources"] = "glass"
+    content["comment"] = "of our studio"
+    path = tmp_path / "own.json"
+    path.write_text(json.dumps(content))
+    return path
+
+
+def test_a_key_that_is_not_known_is_named_with_the_one_that_may_be_meant(tmp_path, capsys):
+    status, _, told = in_json(capsys, "brush", "check", mistyped(tmp_path))
+    unknown = {one.where: one.sentence for _, one in told if one.code == "key-unknown"}
+    meant = {
+        where: re.findall(r"[\w.]+_mm_s|lag\.\w+|footprints\.\w+", sentence)
+        for where, sentence in unknown.items()
+    }
+    assert status == 0 and meant == {
+        "max_sped_mm_s": ["max_speed_mm_s"],
+        "lag.rmse": ["lag.rmse_mm"],
+        "footprints.sources": ["footprints.source"],
+        "comment": [],
+    }
+
+
+@pytest.mark.parametrize("name", brush_names())
+def test_a_shipped_brush_has_no_unknown_key(name):
+    assert not unknown_keys(find_brush(name))
+
+
+def test_who_paints_is_told_of_mistyped_keys_and_not_of_notes(tmp_path):
+    done = brushsvg.convert(ROOT / "examples" / "robot.svg", brush=mistyped(tmp_path))
+    told = [one for one in done.notices if one.code == "key-unknown"]
+    assert {one.where for one in told} == {"brush round-6"} and len(told) == 3
+    again = brushsvg.convert(done.plan, brush=mistyped(tmp_path))
+    assert sum(one.code == "key-unknown" for one in again.notices) == 3
+
+
+@pytest.mark.parametrize("extra", ["", "[", "[]", "[" * 100_000, '{"footprints": 3}'])
+def test_whatever_a_brush_made_by_hand_says_beside_its_laws(extra):
+    brush = find_brush("round-6")
+    brush.extra = extra
+    assert unknown_keys(brush) == []

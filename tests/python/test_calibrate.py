@@ -189,22 +189,58 @@ def test_what_no_brush_can_have_is_refused_with_what_to_do(rows, where, said, tm
     assert not (tmp_path / "b.json").exists()
 
 
+INCHES = {"lag": values(LAG / 25.4), "width": values(2 * HALF / 25.4)}
+FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
+
+
 @pytest.mark.parametrize(
-    ("rows", "said"),
+    ("rows", "where", "said"),
     [
-        ({"lag": values(LAG / 25.4), **WIDTH}, "odd: check the units"),
-        ({"lag": values(LAG[MIXED]), **WIDTH}, "right order"),
+        ({"lag": values(LAG / 25.4), **WIDTH}, "lag", "not-millimetres"),
+        (INCHES, "half_width", "not-millimetres"),
+        ({"lag": values(LAG[MIXED]), **WIDTH}, "lag", "law-scatters"),
+        (
+            {"lag": values(FALLS), **WIDTH},
+            "lag",
+            f"law-falls {LAG[0]:.3g} {DEPTHS[0]:g} {FALLS[1]:.3g} {DEPTHS[1]:g}",
+        ),
         (
             {"lag": values(LAG / 25.4, DEPTHS / 25.4), "width": values(2 * HALF / 25.4, DEPTHS / 25.4)},
-            "0.394 mm at most",
+            "depth_mm",
+            "not-millimetres 0.394",
         ),
+        ({"lag": values(LAG), **WIDTH}, "", ""),
     ],
 )
-def test_what_is_odd_is_said(rows, said, tmp_path, capsys):
-    """In the report, which gives no codes."""
+def test_what_is_odd_is_said(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
-    assert said in capsys.readouterr().out
+    status, _, told = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
+    of_it = [one for file, one in told if file == str(tmp_path / "m.json")]
+    assert status == 0
+    if said:
+        assert any(one.where == where and agrees(one, said) for one in of_it), told
+    else:
+        assert not of_it
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "where"),
+    [
+        ("kind,depth_in,value_in", "lag,0.1,0.2", "line 1"),
+        ("kind,depth_mm,value_mm,value (inches)", "lag,1,2,0.08", "line 1"),
+        ("kind;depth_mm;value [cm]", "lag;1;0.4", "line 1"),
+        ("kind,depth_mm,value_mm,unit", "lag,1,2,in", "line 2"),
+    ],
+)
+def test_a_table_that_names_another_unit_is_refused(head, row, where):
+    with pytest.raises(Error) as refusal:
+        read_measurements(f"{head}\n{row}\n".encode(), ".csv")
+    assert (refusal.value.code, refusal.value.where) == ("not-millimetres", where)
+
+
+def test_a_column_of_millimetres_is_no_other_unit():
+    found = read_measurements(b"kind,depth_mm,value_mm,unit,value_min,depth in mm\nlag,1,2,mm,1,1\n", ".csv")
+    assert [row.numbers["value_mm"] for row in found.rows["lag"]] == [2.0]
 
 
 @pytest.mark.parametrize(

@@ -1235,3 +1235,14 @@ def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
     assert (status, told.where, told.code) == (1, "hair", "never-pressed")
     assert call(capsys, "convert", "two.svg", "two.gcode", "--cell", "grbl-3axis")[0] == 0
     assert call(capsys, "check", "two.gcode", "two.svg")[0] == 0
+
+
+def test_what_of_a_drawing_is_left_out_is_told_again(desk, capsys):
+    text = '<text id="words" x="10" y="60">Hello</text></svg>'
+    (desk / "two.svg").write_text(DRAWING.replace("</svg>", text))
+    assert in_json(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    status, _, told = in_json(capsys, "check", "two.ngc", "two.svg")
+    assert status == 0 and [file for file, _ in told] == ["two.svg"] and is_told(told, "text-unread", "words")
+    assert in_json(capsys, "border", "two.svg", "around.ngc")[0] == 0
+    status, _, told = in_json(capsys, "check", "around.ngc", "two.svg")
+    assert status == 0 and is_told(told, "text-unread", "words")

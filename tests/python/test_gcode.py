@@ -7,17 +7,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import in_json, is_told, refused
 from programs import program
 
-from brushsvg import _core, find_brush, read_plan, write_program
+from brushsvg import _core, find_brush, read_plan, save_brush, write_cell, write_program
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
 from brushsvg.machine.rounding import as_written
-from brushsvg.verification.readback import read_program
 from brushsvg.verification.readback.gcode import read_gcode
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
@@ -220,16 +219,59 @@ def test_the_first_rise_is_over_every_place_of_paper_that_leans():
     assert heights[0] == pytest.approx(right_edge, abs=1e-3) and heights[0] == max(heights)
 
 
+def cpp_golden(name: str) -> str:
+    """What tests/cpp/linuxcnc_test.cpp holds brushsvg::posts against, of the plan flat_machine.plan.json."""
+    return GOLDEN.with_name(name).read_text(encoding="ascii")
+
+
+FLAT_PLAN = GOLDEN.with_name("flat_machine.plan.json")
+
+
 def test_cpp_writes_the_same_program(tmp_path):
-    """flat_machine.ngc is what brushsvg::posts writes of the plan beside it; comments may differ, nothing else."""
-    plan = GOLDEN.with_name("flat_machine.plan.json")
-    text = GOLDEN.with_name("flat_machine.ngc").read_text(encoding="ascii")
-    write_program(tmp_path / "it.ngc", read_plan(plan), find_brush("round-6"))
-    own = (tmp_path / "it.ngc").read_text(encoding="ascii")
-    assert code_lines(own) == code_lines(text)
+    write_program(tmp_path / "it.ngc", read_plan(FLAT_PLAN), find_brush("round-6"))
+    text = cpp_golden("flat_machine.ngc")
+    assert (tmp_path / "it.ngc").read_text(encoding="ascii") == text
     assert {line[:2] for line in code_lines(text)} >= {"G0", "G1", "G2", "G3", "F4", "F6"}
-    cell = find_cell("linuxcnc-3axis")
-    ours, theirs = (read_program(each, ".ngc", cell) for each in (own, text))
-    moves = [[act._replace(line=0) for act in each.acts if act.kind != "text"] for each in (ours, theirs)]
-    assert moves[0] == moves[1] and len(moves[0]) > 40
-    assert [len(each.steps) for each in ours.sections] == [len(each.steps) for each in theirs.sections]
+
+
+def bench():
+    """A machine, brush and title with numbers and letters of their own, as linuxcnc_test.cpp has them."""
+    like = find_cell("linuxcnc-3axis")
+    speeds = replace(
+        like.speeds,
+        approach_mm_s=20.0,
+        press_mm_s=5.0,
+        paint_mm_s=40.0,
+        travel_mm_s=8.0,
+        acceleration_mm_s2=300.0,
+    )
+    heights = replace(like.heights, safe_mm=15.0, clearance_mm=2.0)
+    blending = replace(like.blending, tolerance_mm=0.0)
+    brush, plan = find_brush("round-6"), read_plan(FLAT_PLAN)
+    plan.brush = brush.name = "Bürste u\u0308ø"
+    return (
+        plan,
+        brush,
+        "Weiß\t(Łódź)",
+        replace(like, name="bench", speeds=speeds, heights=heights, blending=blending),
+    )
+
+
+def test_cpp_writes_the_same_program_for_another_machine(tmp_path):
+    write_program(tmp_path / "it.ngc", *bench())
+    assert (tmp_path / "it.ngc").read_text(encoding="ascii") == cpp_golden("flat_bench.ngc")
+
+
+def test_check_allows_what_cpp_writes_and_finds_what_was_changed(tmp_path, capsys):
+    (tmp_path / "it.ngc").write_text(cpp_golden("flat_machine.ngc"))
+    for call in ([], [FLAT_PLAN]):
+        assert in_json(capsys, "check", tmp_path / "it.ngc", *call)[::2] == (0, [])
+    _, brush, _, cell = bench()
+    save_brush(brush, tmp_path / "own.json")
+    (tmp_path / "bench.toml").write_text(write_cell(cell))
+    (tmp_path / "it.ngc").write_text(cpp_golden("flat_bench.ngc"))
+    call = ("check", tmp_path / "it.ngc", "--cell", tmp_path / "bench.toml", "--brush", tmp_path / "own.json")
+    assert in_json(capsys, *call)[::2] == (0, [])
+    (tmp_path / "it.ngc").write_text(cpp_golden("flat_bench.ngc").replace("F300.0", "F900.0", 1))
+    status, _, told = in_json(capsys, *call)
+    assert status == 1 and is_told(told, "program-changed 15.0 5.0")

@@ -3,16 +3,38 @@
 from __future__ import annotations
 
 import copy
+import difflib
 import hashlib
 import json
 import os
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, Notice, need
 from ..files import find_file, names_in, read_bytes, write_files
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
+_LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
+# what a brush file may hold, docs/brush.md
+_KEYS = (
+    *(
+        "format",
+        "version",
+        "name",
+        "kind",
+        "about",
+        "learned",
+        "depth_range_mm",
+        "max_speed_mm_s",
+        "paint_depth_mm",
+    ),
+    *(*_LAWS, "covariance", "footprints"),
+)
+_KEYS_OF_LAW = (
+    *("coefficients", "floor", "floor_slope", "calibrated_mm", "source", "assumed"),
+    *("half_interval_95", "rmse_mm", "degrees_of_freedom"),
+)
+_KEYS_OF_FOOTPRINTS = ("dragged", "pressed", "source", "assumed", "standard_error_mm")
 
 
 def brush_names() -> list[str]:
@@ -40,6 +62,55 @@ def parse_brush(data: bytes) -> _core.Brush:
     _core.check(brush)
     brush.sha256 = hashlib.sha256(data).hexdigest()
     return brush
+
+
+def unknown_keys(brush: _core.Brush) -> list[Notice]:
+    """A notice for each key of its file that brushsvg does not know: kept, and without effect."""
+    said = _object(brush.extra)
+    tables = [
+        ("", said, _KEYS),
+        ("footprints.", _object(json.dumps(said.get("footprints"))), _KEYS_OF_FOOTPRINTS),
+    ]
+    tables += [(f"{law}.", _object(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
+    return [
+        _unknown(where + key, where, key, known)
+        for where, said, known in tables
+        for key in said
+        if key not in known
+    ]
+
+
+def _object(text: str) -> dict:
+    """A brush made by hand may say anything there: what is no object is refused where it is written."""
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
+    near = difflib.get_close_matches(key, known, 1, NEAR)
+    meant = f": is {where}{near[0]} meant?" if near else ""
+    return Notice(
+        path,
+        f"this key is not known and has no effect{meant}",
+        code="key-unknown",
+        about=near[0] if near else "",
+    )
+
+
+NEAR = 0.7  # how like a mistyped key is to a known one: rmse by 0.73; author is like about by 0.55, and is a note
+
+
+def mistyped_keys(brush: _core.Brush) -> list[Notice]:
+    """Those of them that may be another key, mistyped: who paints is told; notes that somebody keeps in a file are
+    none."""
+    found = [notice for notice in unknown_keys(brush) if notice.about]
+    return [
+        Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code)
+        for notice in found
+    ]
 
 
 def brush_like(name: str, like: _core.Brush) -> _core.Brush:

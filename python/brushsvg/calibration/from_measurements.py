@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from ..brush import footprint_shapes
 from ..brush.confidence import half_interval_mm
-from ..errors import Error
+from ..errors import Error, Notice
 from ..laws.fitted import need_fits
 from . import plausibility
 from .centre_lines import Turn, read_turn
@@ -78,11 +78,12 @@ class Fitted:
 
 @dataclass(frozen=True, repr=False)
 class Calibration:
-    """A brush that can be used, and how each law came about."""
+    """A brush that can be used, and how each law came about. doubts: notices of what may be, but seldom is."""
 
     brush: _core.Brush
     laws: tuple[Fitted, ...]
     remarks: tuple[str, ...]
+    doubts: tuple[Notice, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Calibration of {self.brush!r}, {len(self.remarks)} remarks>"
@@ -123,7 +124,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     plausibility.refuse_brush(brush)
     for law in ("lag", "half_width"):  # what a plan is led by
         plausibility.refuse_open(brush, maker.done[law])
-    return Calibration(brush, laws, tuple([*remarks, *maker.remarks, *plausibility.odd(brush, laws)]))
+    return Calibration(brush, laws, (*remarks, *maker.remarks), tuple(plausibility.odd(brush, laws)))
 
 
 def _direct(

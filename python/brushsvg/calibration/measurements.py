@@ -126,6 +126,7 @@ def _table_rows(
         for line in table:
             where = f"line {table.line_num}"
             _refuse_surplus(line, where, table.reader.dialect.delimiter)
+            _refuse_other_unit(line, where)
             if any((line[name] or "").strip() for name in table.fieldnames):
                 rows.append((where, {name: (line[name] or "").strip() for name in columns}))
     except csv.Error:
@@ -135,7 +136,10 @@ def _table_rows(
     told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
     for where, cell in told:
         if not _NUMBER.fullmatch(cell):
-            raise Error(f"{cell!r} is not a number", where, code="not-a-number")
+            advice = (
+                "write a number of mm, without its unit" if _NUMBER.match(cell) else "write a number of mm"
+            )
+            raise Error(f"{cell!r} is not a number: {advice}", where, code="not-a-number")
     points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
     if points and commas:
         raise Error(
@@ -159,6 +163,7 @@ def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
     tables = [csv.DictReader(io.StringIO(text), delimiter=separator) for separator in _SEPARATORS]
     for table in tables:
         table.fieldnames = [name.strip() for name in table.fieldnames or ()]
+        _refuse_other_units(table.fieldnames)
     missing = [[name for name in columns if name not in table.fieldnames] for table in tables]
     least = min(missing, key=len)
     if least:
@@ -177,6 +182,35 @@ def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
     if twice := [name for name in names if name and names.count(name) > 1]:
         raise Error(f"the column {twice[0]} stands twice", "line 1", code="key-twice")
     return found[0]
+
+
+_OF_LENGTH = re.compile(
+    r"(?P<what>\w*?(?:depth|value|width|lag))(?:[ _]*[(\[]|[ _]+)(?P<unit>in|inch|inches|cm|m|um|\")[)\]]?",
+    re.I,
+)
+
+
+def _refuse_other_units(names: list[str]) -> None:
+    """Error for a column that says it counts in something else than mm."""
+    for name in names:
+        if found := _OF_LENGTH.fullmatch(name):
+            raise Error(
+                f"the column {name[:40]!r} does not count in millimetres: write {found['what'].lower()}_mm, and "
+                "an inch as 25.4",
+                "line 1",
+                code="not-millimetres",
+            )
+
+
+def _refuse_other_unit(line: dict, where: str) -> None:
+    """The same for a row whose cell in a column of units is not mm."""
+    for name, cell in line.items():
+        if name and name.lower() in ("unit", "units") and (cell or "").strip() not in ("", "mm"):
+            raise Error(
+                f"the unit {cell.strip()[:20]!r} is not mm: write all lengths in mm, an inch as 25.4",
+                where,
+                code="not-millimetres",
+            )
 
 
 def _refuse_surplus(line: dict, where: str, separator: str) -> None:

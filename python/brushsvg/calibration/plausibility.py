@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..brush.confidence import law_band
-from ..errors import Error
+from ..errors import Error, Notice
 
 LEAST_ALPHA0_DEG = (
     5.0  # a series that starts nearer to the motion cannot be read; in radians 90 degrees are 1.57
@@ -25,7 +25,9 @@ SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
 LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
 APART = 0.15  # share of their size by which half widths and widths contradict each other
 MISTAKEN = 3.0  # times closer they go together if one was taken for the other
-HALF_PER_DEPTH = (0.01, 20.0)  # 0.42 with round-6
+# 0.42 with round-6, 0.2 with a liner; read in inches 25.4 times less, or of depths in inches as much more
+HALF_PER_DEPTH, ODD_HALF_PER_DEPTH = (0.01, 20.0), (0.05, 5.0)
+SEEN_MM = 0.3  # where a mark begins is seen to some tenths: lags that differ by less may be one
 BEYOND = 1.5  # of the deepest measurement: a law of fourth degree says nothing there
 SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in inches
 
@@ -335,26 +337,61 @@ def refuse_open(brush, fitted) -> None:
     )
 
 
-def odd(brush, laws) -> list[str]:
-    """Sentences on what may be, but seldom is."""
+def odd(brush, laws) -> list[Notice]:
+    """On what may be, but seldom is. laws: calibrate.Fitted of each."""
     depth = brush.depth_range_mm[1]
+    lag, half = brush.lag(depth), brush.half_width(depth)
     said = []
     if depth < SMALL_MM:
         said.append(
-            f"the brush is pressed {depth:.3g} mm at most: were depths and values read in millimetres?"
-        )
-    share = brush.lag(depth) / brush.half_width(depth)
-    if not ODD_LAG_PER_HALF[0] <= share <= ODD_LAG_PER_HALF[1]:
-        said.append(
-            f"the lag is {share:.2g} half widths at depth {depth:g} mm, which is odd: check the units"
-        )
-    for fitted in laws:
-        if fitted.name != "lag" or fitted.fit is None or len(fitted.points) < 4 or fitted.outliers:
-            continue
-        mean = np.mean([point.value_mm for point in fitted.points])
-        rmse = fitted.fit.law.rmse_mm
-        if rmse is not None and rmse > 0.25 * mean:
-            said.append(
-                f"the lag scatters by {rmse:.2g} mm round a mean of {mean:.2g} mm: are the rows in the right order?"
+            Notice(
+                "depth_mm",
+                f"the brush is pressed {depth:.3g} mm at most: were depths and values read in millimetres?",
+                code="not-millimetres",
             )
+        )
+    elif not ODD_HALF_PER_DEPTH[0] <= half / depth <= ODD_HALF_PER_DEPTH[1]:
+        what = "widths" if half < depth else "depths"
+        said.append(
+            Notice(
+                "half_width",
+                f"the width is {2 * half:.3g} mm at depth {depth:g} mm, which is odd: were {what} read in inches? All "
+                "lengths count in millimetres",
+                code="not-millimetres",
+            )
+        )
+    if not ODD_LAG_PER_HALF[0] <= lag / half <= ODD_LAG_PER_HALF[1]:
+        said.append(
+            Notice(
+                "lag",
+                f"the lag is {lag / half:.2g} half widths at depth {depth:g} mm, which is odd: was one of them read in "
+                "inches? All lengths count in millimetres",
+                code="not-millimetres",
+            )
+        )
+    fitted = next(each for each in laws if each.name == "lag")
+    return said + _odd_lags(fitted) if fitted.fit is not None else said
+
+
+def _odd_lags(fitted) -> list[Notice]:
+    """Of lags as they were read, which scatter or fall with depth."""
+    said = []
+    mean, rmse = np.mean([point.value_mm for point in fitted.points]), fitted.fit.law.rmse_mm
+    if len(fitted.points) >= 4 and not fitted.outliers and rmse is not None and rmse > 0.25 * mean:
+        sentence = f"the lag scatters by {rmse:.2g} mm round a mean of {mean:.2g} mm: are the rows in the right order?"
+        said.append(Notice("lag", sentence, code="law-scatters"))
+    scatter_mm = 1.48 * float(
+        np.median(np.abs(fitted.fit.residual_mm))
+    )  # of what one bad reading hardly moves
+    depths = sorted({point.depth_mm for point in fitted.points})
+    read = [
+        np.mean([point.value_mm for point in fitted.points if point.depth_mm == depth]) for depth in depths
+    ]
+    for k in range(len(depths) - 1):
+        if read[k] - read[k + 1] > max(SEEN_MM, 2 * scatter_mm):
+            sentence = (
+                f"the lag was measured {read[k]:.3g} mm at depth {depths[k]:g} mm and {read[k + 1]:.3g} mm at "
+                f"{depths[k + 1]:g} mm, but bristles that are pressed deeper trail farther: measure both again"
+            )
+            said.append(Notice("lag", sentence, code="law-falls"))
     return said

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core, drawing
-from ..brush.library import find_brush
+from ..brush.library import find_brush, mistyped_keys
 from ..drawing import layout
 from ..drawing.design import Design, Notice
 from ..errors import Error
@@ -131,7 +131,7 @@ def prepare(source, options: Options = Options(), stage=lambda text: None, partl
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
     plan = _at_speed(_with_speeds(plan, strokes), options)
     told = _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
-    notices = [*design.notices, *notices, *told]
+    notices = [*mistyped_keys(brush), *design.notices, *notices, *told]
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     planned = [stroke for stroke in drawn if stroke.id not in without]
@@ -384,7 +384,7 @@ def _astray(painted, wanted, plan, tracking_errors, moved, brush, options: Optio
 
 def _prepare_plan(plan, options: Options) -> Work:
     brush = options.brush or find_brush(plan.brush)
-    notices = []
+    notices = mistyped_keys(brush)
     if brush.name != plan.brush:
         notices.append(
             Notice(

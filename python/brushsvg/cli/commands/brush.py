@@ -6,7 +6,7 @@ import os
 
 from ..._core import remarks, write_brush
 from ...brush.describe import LAWS, one_line, page, reach
-from ...brush.library import brush_like, brush_names, find_brush
+from ...brush.library import brush_like, brush_names, find_brush, unknown_keys
 from ...errors import Error, Notice
 from ...files import read_bytes
 from ..console import RefusedError, about, tell, warn
@@ -25,7 +25,7 @@ def brush_show(args) -> None:
 def brush_check(args) -> None:
     with about(args.input):
         brush = find_brush(args.input)
-        odd = remarks(brush)
+        odd = [*unknown_keys(brush), *remarks(brush)]
     warn(args.input, odd)
     tell(f"{args.input}: brush {brush.name} can be used\n")
 

@@ -42,6 +42,8 @@ def calibrate_file(args) -> None:
                 from ...calibration.mark_report import report, report_picture
 
                 warn(args.input, doubts(made.painted, made.expected))
+            else:
+                warn(args.input, made.doubts)
         files = {args.output: write_brush(made.brush)}
         if args.plot:
             files[args.plot] = report_picture(made, suffix_of(args.plot))

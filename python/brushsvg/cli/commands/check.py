@@ -23,7 +23,7 @@ from ...pipeline.choices import LAYOUT_FLAGS, MADE_FLAGS
 from ...pipeline.foreign_program import foreign_program
 from ...text_summary import summarized
 from ...units import clock
-from ..console import RefusedError, about, stage, tell
+from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import brush_of, cell_of, exact_cell, typed, warn_of_arm
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
@@ -233,7 +233,8 @@ def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
 
 
 def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
-    """The drawing or plan that a program should paint, prepared as its header says."""
+    """The drawing or plan that a program should paint, prepared as its header says; what of it is left out, or painted
+    otherwise, is told again: this is the last look."""
     if made.is_corrected and args.corrections is None:
         with about(args.program):
             raise Error(
@@ -256,4 +257,5 @@ def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
             wide=wide,
         )
     work = prepare(chosen, cell, brush)
+    warn(args.input, work.notices)
     return preparation.nearest_first(work) if made.nearest_first else work
