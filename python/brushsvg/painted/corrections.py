@@ -96,7 +96,7 @@ def _of_another_job(stroke: str, why: str) -> Error:
     )
 
 
-def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
+def read_corrections(path: str | os.PathLike[str]) -> tuple[Correction, ...]:
     """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
     damaged, or when it holds no corrections."""
     try:
@@ -131,7 +131,7 @@ def _sha256(content: dict, key: str) -> str:
     return said
 
 
-def aside_before_mm(path: str | os.PathLike) -> dict[str, float]:
+def aside_before_mm(path: str | os.PathLike[str]) -> dict[str, float]:
     """By stroke how far it lay aside on the sheet that these corrections are of; without those of which the file does
     not say it. Error as for read_corrections."""
     rows = json_fields.objects(json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes")
