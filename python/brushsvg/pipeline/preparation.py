@@ -19,7 +19,7 @@ from ..machine.cell import LEAST_SPEED_MM_S, Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
 from ..machine.program import Job, walked
-from ..painted.corrections import Correction, corrected
+from ..painted.corrections import Correction, beside_machine, corrected
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
@@ -63,6 +63,8 @@ class Options:
     def __post_init__(self):
         if self.cell is not None:  # from here on it is as exact as the plan
             object.__setattr__(self, "cell", as_exact_as(self.cell, self.tolerance_mm))
+        left = beside_machine(self.corrections, self.cell.machine if self.cell else None)
+        object.__setattr__(self, "corrections", left)
 
 
 @dataclass(frozen=True)
