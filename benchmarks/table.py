@@ -159,7 +159,7 @@ def advance(row: str) -> Callable[[Path], Spent]:
     def measure(tree: Path) -> Spent:
         bench = tree / "build" / "release" / "benchmarks" / "advance_bench"
         if not bench.exists():
-            sys.exit(f"{bench}: not built: make bench builds it, or cmake --preset release and its target advance_bench")
+            sys.exit(f"{bench} is not there: make bench builds it")
         _, told = run([bench])
         ns = float(re.search(rf"{re.escape(row)}.*? ([\d.]+) ns", told)[1])
         return Spent(ns / 1e9, ns / 1e9)
