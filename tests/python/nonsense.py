@@ -238,6 +238,11 @@ ARGUMENTS = {
     "Compensated": [],
     "Conversion": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
+    "Footprint": [[3.0, *NUMBERS], [[[0, 0], [4, -2], [6, 0], [4, 2]], [], [[NAN, 0]] * 3, [[1e300, 0]] * 3]],
+    "FootprintTable": [
+        lambda: [footprints(lambda shapes: shapes).dragged, (), [_core.Footprint(NAN, [])]],
+        [(), [_core.Footprint(3, [[0, 0]])]],
+    ],
     "Marks": [],
     "Pass": [
         ["a", *TEXTS],
@@ -245,6 +250,7 @@ ARGUMENTS = {
         [20.0, *NUMBERS],
     ],
     "Plan": [["b", *TEXTS], ["", *TEXTS], [(9, 9), (NAN, INF), (9,)], [[a_pass()], []], ["{}", *TEXTS]],
+    "Profile": [[[3.0], [], [NAN], [1e300] * 5000]],
     "ReadOptions": [],
     "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
