@@ -516,6 +516,25 @@ def calls(name):
             yield [value] * count
 
 
+def truths(name):
+    """Arguments of calls with True in place of one number, or of the numbers of a tuple."""
+    given = ARGUMENTS.get(name, [])
+    sound = [next(iter(choice() if callable(choice) else choice)) for choice in given]
+    for index, value in enumerate(sound):
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            yield [*sound[:index], True, *sound[index + 1 :]]
+        elif isinstance(value, tuple) and value and all(isinstance(each, int | float) for each in value):
+            yield [*sound[:index], (True, *value[1:]), *sound[index + 1 :]]
+
+
+def is_refused(call) -> bool:
+    try:
+        call()
+    except (brushsvg.Error, TypeError):
+        return True
+    return False
+
+
 def values_of(name):
     """Values of a class, sound and not."""
     made = {
@@ -549,8 +568,9 @@ def outcome(call, words) -> str | None:
     """What it ended in, if that is wrong."""
     try:
         call()
-    except (brushsvg.Error, TypeError):
-        return None
+    except (brushsvg.Error, TypeError) as refusal:
+        is_one_line = "\n" not in str(refusal) or words.startswith(tuple(FITS))
+        return None if is_one_line else f"{words}: more than one line: {str(refusal)[:200]}"
     except BaseException as error:  # every other kind is what is looked for
         return f"{words}: {type(error).__name__}: {str(error)[:200]}"
     return None
@@ -568,6 +588,9 @@ def main(names):
                 public(*arguments)  # the sound one: what it is to be nonsense beside
             if wrong := outcome(lambda f=public, given=arguments: f(*given), words):
                 print(wrong, flush=True)
+        for arguments in truths(name):
+            if not is_refused(lambda f=public, given=arguments: f(*given)):
+                print(f"{name}({arguments}): True is taken for a number", flush=True)
         if not inspect.isclass(public):
             continue
         for value in values_of(name):
