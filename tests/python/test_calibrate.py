@@ -238,6 +238,21 @@ def test_a_table_that_names_another_unit_is_refused(head, row, where):
     assert (refusal.value.code, refusal.value.where) == ("not-millimetres", where)
 
 
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ("lag,0,7", "depth-out-of-range contact"),
+        ("lag,3,1200", "out-of-range millimetres"),
+        ("straight,3,7", "measurement-kind JSON"),
+        ("lag,3,7 mm", "not-a-number unit"),
+        ("", "measurement-missing rows lag width"),
+    ],
+)
+def test_a_row_that_is_refused_is_told_how_to_write_it(row, expected):
+    with refused(expected):
+        read_measurements(f"kind,depth_mm,value_mm\n{row}\n".encode(), ".csv")
+
+
 def test_a_column_of_millimetres_is_no_other_unit():
     found = read_measurements(b"kind,depth_mm,value_mm,unit,value_min,depth in mm\nlag,1,2,mm,1,1\n", ".csv")
     assert [row.numbers["value_mm"] for row in found.rows["lag"]] == [2.0]
