@@ -204,6 +204,14 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
             "lag",
             f"law-falls {LAG[0]:.3g} {DEPTHS[0]:g} {FALLS[1]:.3g} {DEPTHS[1]:g}",
         ),
+        (  # a straight line through four values is off by more than the fall
+            {
+                "lag": values([9.1, 10.5, 9.2, 13.9], [0.5, 1, 2, 4]),
+                "width": values([0.5, 0.8, 1.2, 1.9], [0.5, 1, 2, 4]),
+            },
+            "lag",
+            "law-falls 10.5 1 9.2 2",
+        ),
         (
             {"lag": values(LAG / 25.4, DEPTHS / 25.4), "width": values(2 * HALF / 25.4, DEPTHS / 25.4)},
             "depth_mm",
