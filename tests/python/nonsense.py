@@ -321,7 +321,7 @@ ARGUMENTS = {
     "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
     "read_cell": [[SOUND_CELL, *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
-    "read_drawing": [[FOLDER / "d.svg", *PATHS]],
+    "read_drawing": [[FOLDER / "d.svg", *PATHS], lambda: read_options()],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
     "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
     "save_brush": [brushes, [FOLDER / "b.json", *PATHS]],
@@ -374,6 +374,15 @@ ARGUMENTS = {
     "laws.tip_offset": [ANGLES, WAYS, WAYS],
     "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
 }
+
+
+def read_options():
+    yield brushsvg.ReadOptions()
+    for value in [*SHEETS[1:], (True, 9), (1, 2, 3), *NUMBERS, *WRONG_TYPES]:
+        yield brushsvg.ReadOptions(sheet_mm=value)
+    for value in ["furlong", *NUMBERS, *WRONG_TYPES]:
+        yield brushsvg.ReadOptions(units=value)
+        yield brushsvg.ReadOptions(select=value)
 
 
 def laws_asked():
