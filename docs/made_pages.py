@@ -56,9 +56,11 @@ def _python() -> Iterator[str]:
             continue
         named = getattr(brushsvg, name)
         kind = "module" if inspect.ismodule(named) else "class" if inspect.isclass(named) else "function"
-        members = "\n:members:" if kind != "function" else ""
         yield f"```{{eval-rst}}\n.. auto{kind}:: brushsvg.{name}"
-        yield ("   :members:\n" if members else "") + "```\n"
+        told = "" if kind == "function" else "   :members:\n"
+        if kind == "module":  # what stands on this page by itself
+            told += f"   :exclude-members: {', '.join(sorted(set(named.__all__) & set(brushsvg.__all__)))}\n"
+        yield told + "```\n"
 
 
 def _cells() -> Iterator[str]:

@@ -3,38 +3,55 @@
 
 void bind_brush(py::module_& m) {
     using brushsvg::Brush;
-    py::class_<Brush> type(m, "Brush", R"(Four laws against depth and the footprints; all lengths in mm.
+    py::class_<Brush> type(
+        m, "Brush",
+        R"(Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
 
-Set a law, the footprints, the range of depths or the covariance as a whole: each is a value that cannot be changed.)");
+lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile; footprints: a FootprintTable. Outlines rule what is
+painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
+depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
+save_brush, simulate, compensate and convert refuse what no brush can be.)");
     type.def(py::init<>())
-        .def_readwrite("name", &Brush::name)
-        .def_readwrite("kind", &Brush::kind)
-        .def_property("depth_range_mm", frozen_copy(&Brush::depth_range_mm),
-                      [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); })
+        .def_readwrite("name", &Brush::name, "What plans and messages call it.")
+        .def_readwrite("kind", &Brush::kind, "A word for people: round, pen.")
+        .def_property(
+            "depth_range_mm", frozen_copy(&Brush::depth_range_mm),
+            [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); },
+            "(least, greatest) depth [mm] to which it may be pressed.")
         .def_property(
             "lag", [](const Brush& b) { return b.lag; },
-            [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); })
+            [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); },
+            "r(d): how far the centre of friction trails the TCP, bristles taut. A Profile, 0 everywhere for a pen.")
         .def_property(
             "tip_gap", [](const Brush& b) { return b.tip_gap; },
-            [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); })
+            [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); },
+            "b(d): from the tip of the footprint to the centre of friction. A Profile.")
         .def_property(
             "tip_to_widest", [](const Brush& b) { return b.tip_to_widest; },
-            [](Brush& b, brushsvg::Profile value) { b.tip_to_widest = std::move(value); })
+            [](Brush& b, brushsvg::Profile value) { b.tip_to_widest = std::move(value); },
+            "x_w(d): from the tip of the footprint to its widest section. A Profile.")
         .def_property(
             "half_width", [](const Brush& b) { return b.half_width; },
-            [](Brush& b, brushsvg::Profile value) { b.half_width = std::move(value); })
+            [](Brush& b, brushsvg::Profile value) { b.half_width = std::move(value); },
+            "h(d): half of the footprint's greatest width. A Profile that never falls.")
         .def_property(
             "footprints", [](const Brush& b) -> const brushsvg::FootprintTable& { return b.footprints; },
-            replace(&Brush::footprints))
-        .def_property("covariance", frozen_copy(&Brush::covariance),
-                      [](Brush& b, std::vector<std::vector<double>> value) { b.covariance = std::move(value); })
-        .def_readwrite("max_speed_mm_s", &Brush::max_speed_mm_s)
-        .def_readwrite("paint_depth_mm", &Brush::paint_depth_mm)
-        .def_readwrite("sha256", &Brush::sha256)
-        .def_readwrite("extra", &Brush::extra)
-        .def("is_rigid", &Brush::is_rigid)
-        .def("width_follows_depth", &Brush::width_follows_depth)
-        .def("half_width_range_mm", &Brush::half_width_range_mm)
+            replace(&Brush::footprints), "Outlines by depth: a FootprintTable.")
+        .def_property(
+            "covariance", frozen_copy(&Brush::covariance),
+            [](Brush& b, std::vector<std::vector<double>> value) { b.covariance = std::move(value); },
+            "Of all coefficients, in the order of the four laws, or empty.")
+        .def_readwrite("max_speed_mm_s", &Brush::max_speed_mm_s,
+                       "The greatest speed [mm/s] at which the model holds; it has no inertia.")
+        .def_readwrite("paint_depth_mm", &Brush::paint_depth_mm,
+                       "Depth [mm] to paint at where half_width does not depend on depth.")
+        .def_readwrite("sha256", &Brush::sha256, "Of the bytes of the file it was read from, or empty.")
+        .def_readwrite("extra", &Brush::extra,
+                       "JSON object of the keys of its file that are not known, written back as read.")
+        .def("is_rigid", &Brush::is_rigid, "Whether the lag is 0 everywhere: a pen.")
+        .def("width_follows_depth", &Brush::width_follows_depth, "Whether half_width depends on depth.")
+        .def("half_width_range_mm", &Brush::half_width_range_mm,
+             "(least, greatest) half width [mm] within depth_range_mm.")
         .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
              "Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.")
         .def("lever_to_widest", &Brush::lever_to_widest, py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.")

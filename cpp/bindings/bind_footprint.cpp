@@ -4,7 +4,10 @@
 void bind_footprint(py::module_& m) {
     using namespace brushsvg;
     py::class_<Footprint> one(m, "Footprint",
-                              "Contact patch outline (n, 2) [mm] at one depth [mm]; first vertex the tip at (0, 0).");
+                              R"(The outline (n, 2) [mm] of the contact patch at one depth [mm].
+
+outline_mm, at depth_mm: a simple ring, counter-clockwise, unclosed, whose first point is the tip at (0, 0); x points
+towards the TCP.)");
     one.def(py::init([](double depth_mm, const Ring& outline_mm) { return Footprint{depth_mm, outline_mm}; }),
             py::arg("depth_mm"), py::arg("outline_mm"))
         .def_readonly("depth_mm", &Footprint::depth_mm)
@@ -20,7 +23,10 @@ void bind_footprint(py::module_& m) {
         });
     as_fixed_value(one);
     py::class_<FootprintTable> table(m, "FootprintTable",
-                                     "Footprints in tuples, depths ascending; pressed may be empty.");
+                                     R"(The outlines of a brush at several depths, in tuples, depths ascending.
+
+dragged: while the brush is drawn along; pressed: straight down, () where that is the same. All have equally many points,
+between which outlines of other depths are blended one by one.)");
     table
         .def(py::init([](std::vector<Footprint> dragged, std::vector<Footprint> pressed) {
                  return FootprintTable{std::move(dragged), std::move(pressed)};

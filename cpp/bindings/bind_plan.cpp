@@ -24,7 +24,7 @@ direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 1
     py::class_<Pass> one(m, "Pass", R"(One stroke's motion.
 
 stroke: the name of what it paints, made of origin, a StrokeId, and set by a name or one.
-poses_mm: (n, 3) x, y, z [mm], straight moves in between, depth linear along each; read-only and not copied when read,
+poses_mm: (n, 3) x, y, z = -depth [mm], straight moves in between, depth linear along each; read-only and not copied when read,
 to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
 the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
 load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the

@@ -6,10 +6,13 @@
 void bind_profile(py::module_& m) {
     using brushsvg::Profile;
     py::class_<Profile> type(
-        m, "Profile", R"(One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).
+        m, "Profile",
+        R"(A law of a brush: one parameter [mm] against press depth d [mm], max(floor + floor_slope d, c0 + c1 d + ...).
 
-A value: it is not changed, but another one made. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values
-to spare.)");
+Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm; depths may be an array. coefficients: at most nine, in ascending powers of
+d. calibrated_mm: (least, greatest) depth that was measured, None where nobody says; source: where it comes from, in words;
+assumed: nobody measured it. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values to spare. extra:
+unknown keys of its file, as JSON. A value: it is not changed, but another one made.)");
     type.def(py::init([](std::vector<double> coefficients, double floor, double floor_slope,
                          std::optional<std::array<double, 2>> calibrated_mm, std::string source, bool assumed,
                          std::vector<double> half_interval_95, std::optional<double> rmse_mm,
@@ -37,7 +40,7 @@ to spare.)");
             [](const Profile& p, const Numbers& depth_mm) {
                 return py::vectorize([&p](double d) { return p(d); })(depth_mm.values);
             },
-            py::arg("depth_mm"))
+            py::arg("depth_mm"), "The law at a depth [mm], or at an array of them.")
         .def_property_readonly("coefficients", frozen_copy(&Profile::coefficients))
         .def_readonly("floor", &Profile::floor)
         .def_readonly("floor_slope", &Profile::floor_slope)

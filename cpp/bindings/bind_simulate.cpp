@@ -19,7 +19,10 @@ void bind_simulate(py::module_& m) {
 
 tolerance_mm: how far the painted area between two rows may be off the hull of both; it has nothing to do with the
 tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
-widest_points. progress: called with (passes done, passes).)");
+widest_points. progress: called with (passes done, passes).
+
+z = -depth: on the way above the paper, z > 0, the brush hangs free. Error for a pass all of which is above the paper, and
+for a pose deeper than the brush may be pressed.)");
     m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"), py::call_guard<Unlocked>(),
           "Centre of the widest section at every row (n, 2) [mm].");
 }

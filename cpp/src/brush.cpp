@@ -301,7 +301,8 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
         throw Error("width-out-of-reach",
                     format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
                            2.0 * wide) +
-                        " that brush " + name + " can paint",
+                        " that brush " + name + " can paint: draw it " +
+                        (half_width_mm > narrow ? "narrower" : "wider") + ", or take another brush",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
     double a = depth_range_mm[0], b = depth_range_mm[1];
     if (half_width.coefficients.size() == 2 && std::isinf(half_width.floor))

@@ -299,6 +299,15 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
             throw Error("depth-out-of-range", text + brush.name, pass.stroke, depth, brush.depth_range_mm);
         }
     }
+    const double lowest = pass.poses_mm.rows() > 0 ? pass.poses_mm.col(2).minCoeff() : 0.0;
+    if (lowest > 0.0) {  // all of it: a wrong sign, for a way above the paper paints nothing
+        char text[200];
+        std::snprintf(
+            text, sizeof text,
+            "the brush never touches the paper: its lowest pose lies %.3g mm above it; z is the negative depth",
+            lowest);
+        throw Error("never-pressed", text, pass.stroke, lowest);
+    }
 }
 
 }  // namespace

@@ -17,9 +17,12 @@ if TYPE_CHECKING:  # what the table below resolves to
         Arc,
         Brush,
         Compensated,
+        Footprint,
+        FootprintTable,
         Marks,
         Pass,
         Plan,
+        Profile,
         Settings,
         Stroke,
         area,
@@ -93,9 +96,12 @@ _HOME = {
         "Arc",
         "Brush",
         "Compensated",
+        "Footprint",
+        "FootprintTable",
         "Marks",
         "Pass",
         "Plan",
+        "Profile",
         "Settings",
         "Stroke",
         "area",
@@ -123,9 +129,12 @@ __all__ = [
     "Compensated",
     "Conversion",
     "Error",
+    "Footprint",
+    "FootprintTable",
     "Marks",
     "Pass",
     "Plan",
+    "Profile",
     "ReadOptions",
     "Settings",
     "Stroke",
@@ -193,6 +202,11 @@ def __getattr__(name: str):
         value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if core := sys.modules.get(f"{__name__}._core"):
+        wrong_types = importlib.import_module(".wrong_types", __name__)
+        wrong_types.with_classes_in_words(core)
+        if _HOME.get(name) == "_core" and not isinstance(value, type):
+            value = wrong_types.in_words(value)
     globals()[name] = value
     if "IPython" in sys.modules:
         importlib.import_module(".notebook", __name__)

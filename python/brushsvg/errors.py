@@ -94,8 +94,9 @@ def told(sentence: str, advice: str) -> str:
 
 
 def need(value, kind: type | tuple[type, ...], what: str) -> None:
-    """Error for a value of another Python type than what it should be, in words."""
-    if not isinstance(value, kind):
+    """Error for a value of another Python type than what it should be, in words. True is no number."""
+    kinds = kind if isinstance(kind, tuple) else (kind,)
+    if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
 
 

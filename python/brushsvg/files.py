@@ -70,11 +70,19 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
         return shipped / f"{name_or_path}{suffix}"
     if name_or_path.endswith(suffix) or "/" in name_or_path or os.sep in name_or_path:
         return Path(name_or_path)
-    known = ", ".join(names)
+    known, own = ", ".join(names), f"{name_or_path}{suffix}"
     raise Error(
         f"{kind} {name_or_path!r} is not known; known are {known}, and any file that ends in {suffix}",
         code=f"{kind}-unknown",
+        advice=f"{own} lies here: give its name with the ending" if _is_file(own) else "",
     )
+
+
+def _is_file(path: str) -> bool:
+    try:
+        return os.path.isfile(path)
+    except ValueError:  # a name that no file can have
+        return False
 
 
 def names_in(folder: Path, suffix: str) -> list[str]:

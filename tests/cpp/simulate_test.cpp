@@ -86,6 +86,18 @@ TEST_CASE("too deep or not finite is refused with the pose, the depth and the ra
     CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);
 }
 
+TEST_CASE("a pass that is above the paper from end to end is refused, a way above it is not") {
+    try {
+        simulate(pass_of({{0, 0, 5}, {20, 0, 5}, {40, 0, 5}}), shipped("round-6"));
+        FAIL("it is taken for a stroke");
+    } catch (const Error& error) {
+        CHECK(error.code() == "never-pressed");
+        CHECK(error.value() == 5.0);
+    }
+    CHECK(simulate(pass_of({{0, 0, 5}, {20, 0, -2}, {40, 0, 5}}), shipped("round-6")).pose.size() > 3);
+    CHECK_NOTHROW(simulate(pass_of({{0, 0, 0}, {20, 0, 0}}), shipped("round-6")));  // some brushes paint at depth 0
+}
+
 TEST_CASE("an arc is followed on its circle: rows at its poses and between, fractional within each") {
     const Brush brush = shipped("round-6");
     const double R = 30.0, a = 0.9;

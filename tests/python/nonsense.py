@@ -238,6 +238,11 @@ ARGUMENTS = {
     "Compensated": [],
     "Conversion": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
+    "Footprint": [[3.0, *NUMBERS], [[[0, 0], [4, -2], [6, 0], [4, 2]], [], [[NAN, 0]] * 3, [[1e300, 0]] * 3]],
+    "FootprintTable": [
+        lambda: [footprints(lambda shapes: shapes).dragged, (), [_core.Footprint(NAN, [])]],
+        [(), [_core.Footprint(3, [[0, 0]])]],
+    ],
     "Marks": [],
     "Pass": [
         ["a", *TEXTS],
@@ -245,6 +250,7 @@ ARGUMENTS = {
         [20.0, *NUMBERS],
     ],
     "Plan": [["b", *TEXTS], ["", *TEXTS], [(9, 9), (NAN, INF), (9,)], [[a_pass()], []], ["{}", *TEXTS]],
+    "Profile": [[[3.0], [], [NAN], [1e300] * 5000]],
     "ReadOptions": [],
     "Settings": [],
     "Stroke": [["a", *TEXTS], [LINE, [], [[NAN] * 8]], [False, *NUMBERS], [[(0, 1)], [(NAN, INF)], [(1,)]]],
@@ -315,7 +321,7 @@ ARGUMENTS = {
     "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
     "read_cell": [[SOUND_CELL, *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
-    "read_drawing": [[FOLDER / "d.svg", *PATHS]],
+    "read_drawing": [[FOLDER / "d.svg", *PATHS], lambda: read_options()],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
     "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
     "save_brush": [brushes, [FOLDER / "b.json", *PATHS]],
@@ -368,6 +374,15 @@ ARGUMENTS = {
     "laws.tip_offset": [ANGLES, WAYS, WAYS],
     "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
 }
+
+
+def read_options():
+    yield brushsvg.ReadOptions()
+    for value in [*SHEETS[1:], (True, 9), (1, 2, 3), *NUMBERS, *WRONG_TYPES]:
+        yield brushsvg.ReadOptions(sheet_mm=value)
+    for value in ["furlong", *NUMBERS, *WRONG_TYPES]:
+        yield brushsvg.ReadOptions(units=value)
+        yield brushsvg.ReadOptions(select=value)
 
 
 def laws_asked():
@@ -510,6 +525,25 @@ def calls(name):
             yield [value] * count
 
 
+def truths(name):
+    """Arguments of calls with True in place of one number, or of the numbers of a tuple."""
+    given = ARGUMENTS.get(name, [])
+    sound = [next(iter(choice() if callable(choice) else choice)) for choice in given]
+    for index, value in enumerate(sound):
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            yield [*sound[:index], True, *sound[index + 1 :]]
+        elif isinstance(value, tuple) and value and all(isinstance(each, int | float) for each in value):
+            yield [*sound[:index], (True, *value[1:]), *sound[index + 1 :]]
+
+
+def is_refused(call) -> bool:
+    try:
+        call()
+    except (brushsvg.Error, TypeError):
+        return True
+    return False
+
+
 def values_of(name):
     """Values of a class, sound and not."""
     made = {
@@ -543,8 +577,9 @@ def outcome(call, words) -> str | None:
     """What it ended in, if that is wrong."""
     try:
         call()
-    except (brushsvg.Error, TypeError):
-        return None
+    except (brushsvg.Error, TypeError) as refusal:
+        is_one_line = "\n" not in str(refusal) or words.startswith(tuple(FITS))
+        return None if is_one_line else f"{words}: more than one line: {str(refusal)[:200]}"
     except BaseException as error:  # every other kind is what is looked for
         return f"{words}: {type(error).__name__}: {str(error)[:200]}"
     return None
@@ -562,6 +597,9 @@ def main(names):
                 public(*arguments)  # the sound one: what it is to be nonsense beside
             if wrong := outcome(lambda f=public, given=arguments: f(*given), words):
                 print(wrong, flush=True)
+        for arguments in truths(name):
+            if not is_refused(lambda f=public, given=arguments: f(*given)):
+                print(f"{name}({arguments}): True is taken for a number", flush=True)
         if not inspect.isclass(public):
             continue
         for value in values_of(name):

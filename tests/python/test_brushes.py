@@ -318,3 +318,13 @@ def test_whatever_a_brush_made_by_hand_says_beside_its_laws(extra):
     brush = find_brush("round-6")
     brush.extra = extra
     assert unknown_keys(brush) == []
+
+
+def test_a_file_that_lies_here_is_named_where_its_ending_was_left_out(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    save_brush(find_brush("round-6"), "own.json")
+    with refused("brush-unknown own.json"):
+        find_brush("own")
+    with refused("brush-unknown") as caught:
+        find_brush("other")
+    assert caught.value.advice == ""

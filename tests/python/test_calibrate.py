@@ -204,6 +204,14 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
             "lag",
             f"law-falls {LAG[0]:.3g} {DEPTHS[0]:g} {FALLS[1]:.3g} {DEPTHS[1]:g}",
         ),
+        (  # a straight line through four values is off by more than the fall
+            {
+                "lag": values([9.1, 10.5, 9.2, 13.9], [0.5, 1, 2, 4]),
+                "width": values([0.5, 0.8, 1.2, 1.9], [0.5, 1, 2, 4]),
+            },
+            "lag",
+            "law-falls 10.5 1 9.2 2",
+        ),
         (
             {"lag": values(LAG / 25.4, DEPTHS / 25.4), "width": values(2 * HALF / 25.4, DEPTHS / 25.4)},
             "depth_mm",
@@ -236,6 +244,21 @@ def test_a_table_that_names_another_unit_is_refused(head, row, where):
     with pytest.raises(Error) as refusal:
         read_measurements(f"{head}\n{row}\n".encode(), ".csv")
     assert (refusal.value.code, refusal.value.where) == ("not-millimetres", where)
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ("lag,0,7", "depth-out-of-range contact"),
+        ("lag,3,1200", "out-of-range millimetres"),
+        ("straight,3,7", "measurement-kind JSON"),
+        ("lag,3,7 mm", "not-a-number unit"),
+        ("", "measurement-missing rows lag width"),
+    ],
+)
+def test_a_row_that_is_refused_is_told_how_to_write_it(row, expected):
+    with refused(expected):
+        read_measurements(f"kind,depth_mm,value_mm\n{row}\n".encode(), ".csv")
 
 
 def test_a_column_of_millimetres_is_no_other_unit():

@@ -217,7 +217,7 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
     assert agrees(told, "width-out-of-reach 30.000", "p0")
     drawing('2" transform="translate(-30)')
     told = refusal(capsys, "convert", "w.svg", "x.json")
-    assert agrees(told, "mark-off-sheet left", "p0 and 5 like it")
+    assert agrees(told, "mark-off-sheet left --fit", "p0 and 5 like it")
 
 
 def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):

@@ -236,7 +236,9 @@ def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, sai
 
 def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
-    assert is_told(refusal_of(capsys, "convert", "d.svg", "x.ngc"), "setting-invalid data-brushsvg-cell", "a")
+    assert is_told(
+        refusal_of(capsys, "convert", "d.svg", "x.ngc"), "setting-invalid data-brushsvg-cell whole svg", "a"
+    )
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
     assert main(["convert", "d.svg", "x.json"]) == 0
     assert [each.settings for each in read_plan(desk / "x.json").passes] == [Settings(), Settings()]

@@ -47,3 +47,14 @@ def test_a_law_tells_shapes_errors_and_each_of_its_arguments(name):
     for argument in inspect.signature(law).parameters:
         assert re.search(rf"\b{argument}\b", told), f"{argument} is not told of"
     assert re.search(r"\((\d+)\)|section \d|Theorem \d|Lemma", told), "no source"
+
+
+@pytest.mark.parametrize("name", ["Brush", "Profile", "Footprint", "FootprintTable"])
+def test_each_field_and_method_of_a_brush_is_told_of(name):
+    """In its own words, or among those of its class."""
+    kind = getattr(brushsvg, name)
+    for field, body in vars(kind).items():
+        if field.startswith("_"):
+            continue
+        own = re.sub(r"^\w+\(.*\) -> .*$", "", inspect.getdoc(body) or "", flags=re.M).strip()
+        assert own or re.search(rf"\b{field}\b", words_of(name)), f"{name}.{field}"

@@ -7,7 +7,7 @@ import pytest
 from diagnostics import in_json
 
 from brushsvg import find_brush
-from brushsvg.brush.plot import brush_picture, law_band
+from brushsvg.brush.plot import brush_picture, brush_picture_on, law_band, new_figure
 
 
 @pytest.mark.parametrize("name", ["round-6", "rigid"])
@@ -33,6 +33,21 @@ def test_bands():
     np.testing.assert_allclose(half, 1.959963985 * np.sqrt(0.04 - 0.02 * depths + 0.01 * depths**2))
     assert "95 %" in what
     assert "RMSE" in law_band(brush, "lag", depths)[1]
+
+
+def test_every_curve_is_named_once_and_no_name_lies_on_a_law():
+    """In one legend below the laws, of which each has its line, its band and what was measured of it."""
+    brush = find_brush("round-6")
+    figure = new_figure((11, 7.2))
+    brush_picture_on(figure, brush, {"lag": np.array([[1, 4.0], [9, 13.0]])})
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert len(names) == len(set(names)) == 4 and "measured" in names
+    below = legend.get_window_extent().y1
+    assert all(axes.get_legend() is None and axes.get_window_extent().y0 > below for axes in figure.axes)
+    drawn = [each for axes in figure.axes[:4] for each in (*axes.lines, *axes.collections)]
+    assert all(each.get_label() in names for each in drawn)
 
 
 def test_without_matplotlib_the_command_to_run_is_said(tmp_path, monkeypatch, capsys):

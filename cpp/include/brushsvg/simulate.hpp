@@ -12,9 +12,9 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// tightening, touching, lifting) and in between as closely as `tolerance_mm` asks: half way between two
 /// rows no point of the footprint is farther than it from the straight line between them. Where a pen turns there are
 /// two at the same pose: it heads for the next one at once.
-/// Throws Error when a pose is deeper than the brush allows or not finite.
-/// `for_outlines` false leaves out the rows that only the footprint's shape needs, not its motion: quick, enough for
-/// widest_points().
+/// z > 0 is above the paper: there the brush hangs free. Throws Error when a pose is deeper than the brush allows or
+/// not finite, and when all poses are above the paper. `for_outlines` false leaves out the rows that only the
+/// footprint's shape needs, not its motion: quick, enough for widest_points().
 PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm = 0.02, bool for_outlines = true);
 Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm = 0.02);
 

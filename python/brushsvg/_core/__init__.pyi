@@ -94,12 +94,17 @@ __all__: list[str] = [
 
 class Profile:
     """
-    One brush parameter [mm] against press depth [mm]: max(floor + floor_slope d, c0 + c1 d + ...).
+    A law of a brush: one parameter [mm] against press depth d [mm], max(floor + floor_slope d, c0 + c1 d + ...).
 
-    A value: it is not changed, but another one made. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values
-    to spare.
+    Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm; depths may be an array. coefficients: at most nine, in ascending powers of
+    d. calibrated_mm: (least, greatest) depth that was measured, None where nobody says; source: where it comes from, in words;
+    assumed: nobody measured it. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values to spare. extra:
+    unknown keys of its file, as JSON. A value: it is not changed, but another one made.
     """
-    def __call__(self, depth_mm: numpy.typing.ArrayLike) -> typing.Any: ...
+    def __call__(self, depth_mm: numpy.typing.ArrayLike) -> typing.Any:
+        """
+        The law at a depth [mm], or at an array of them.
+        """
     def __copy__(self) -> Profile: ...
     def __deepcopy__(self, memo: dict) -> Profile: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -144,7 +149,10 @@ class Profile:
 
 class Footprint:
     """
-    Contact patch outline (n, 2) [mm] at one depth [mm]; first vertex the tip at (0, 0).
+    The outline (n, 2) [mm] of the contact patch at one depth [mm].
+
+    outline_mm, at depth_mm: a simple ring, counter-clockwise, unclosed, whose first point is the tip at (0, 0); x points
+    towards the TCP.
     """
     def __copy__(self) -> Footprint: ...
     def __deepcopy__(self, memo: dict) -> Footprint: ...
@@ -161,7 +169,10 @@ class Footprint:
 
 class FootprintTable:
     """
-    Footprints in tuples, depths ascending; pressed may be empty.
+    The outlines of a brush at several depths, in tuples, depths ascending.
+
+    dragged: while the brush is drawn along; pressed: straight down, () where that is the same. All have equally many points,
+    between which outlines of other depths are blended one by one.
     """
     def __copy__(self) -> FootprintTable: ...
     def __deepcopy__(self, memo: dict) -> FootprintTable: ...
@@ -182,21 +193,15 @@ class FootprintTable:
 
 class Brush:
     """
-    Four laws against depth and the footprints; all lengths in mm.
+    Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
 
-    Set a law, the footprints, the range of depths or the covariance as a whole: each is a value that cannot be changed.
+    lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile; footprints: a FootprintTable. Outlines rule what is
+    painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
+    depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
+    save_brush, simulate, compensate and convert refuse what no brush can be.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
-    extra: str
-    footprints: FootprintTable
-    half_width: Profile
-    kind: str
-    lag: Profile
-    name: str
-    sha256: str
-    tip_gap: Profile
-    tip_to_widest: Profile
     def __copy__(self) -> Brush: ...
     def __deepcopy__(self, memo: dict) -> Brush: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -208,31 +213,115 @@ class Brush:
         """
         Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.
         """
-    def half_width_range_mm(self) -> list[float]: ...
-    def is_rigid(self) -> bool: ...
+    def half_width_range_mm(self) -> list[float]:
+        """
+        (least, greatest) half width [mm] within depth_range_mm.
+        """
+    def is_rigid(self) -> bool:
+        """
+        Whether the lag is 0 everywhere: a pen.
+        """
     def lever_to_widest(self, depth_mm: float) -> float:
         """
         e(d) = x_w(d) - b(d) [mm], signed.
         """
-    def width_follows_depth(self) -> bool: ...
+    def width_follows_depth(self) -> bool:
+        """
+        Whether half_width depends on depth.
+        """
     @property
-    def covariance(self) -> tuple[tuple[float, ...], ...]: ...
+    def covariance(self) -> tuple[tuple[float, ...], ...]:
+        """
+        Of all coefficients, in the order of the four laws, or empty.
+        """
     @covariance.setter
     def covariance(
         self, arg1: collections.abc.Sequence[collections.abc.Sequence[float]]
     ) -> None: ...
     @property
-    def depth_range_mm(self) -> tuple[float, ...]: ...
+    def depth_range_mm(self) -> tuple[float, ...]:
+        """
+        (least, greatest) depth [mm] to which it may be pressed.
+        """
     @depth_range_mm.setter
     def depth_range_mm(self, arg1: collections.abc.Sequence[float]) -> None: ...
     @property
-    def max_speed_mm_s(self) -> float: ...
+    def extra(self) -> str:
+        """
+        JSON object of the keys of its file that are not known, written back as read.
+        """
+    @extra.setter
+    def extra(self, arg0: str) -> None: ...
+    @property
+    def footprints(self) -> FootprintTable:
+        """
+        Outlines by depth: a FootprintTable.
+        """
+    @footprints.setter
+    def footprints(self, arg1: FootprintTable) -> None: ...
+    @property
+    def half_width(self) -> Profile:
+        """
+        h(d): half of the footprint's greatest width. A Profile that never falls.
+        """
+    @half_width.setter
+    def half_width(self, arg1: Profile) -> None: ...
+    @property
+    def kind(self) -> str:
+        """
+        A word for people: round, pen.
+        """
+    @kind.setter
+    def kind(self, arg0: str) -> None: ...
+    @property
+    def lag(self) -> Profile:
+        """
+        r(d): how far the centre of friction trails the TCP, bristles taut. A Profile, 0 everywhere for a pen.
+        """
+    @lag.setter
+    def lag(self, arg1: Profile) -> None: ...
+    @property
+    def max_speed_mm_s(self) -> float:
+        """
+        The greatest speed [mm/s] at which the model holds; it has no inertia.
+        """
     @max_speed_mm_s.setter
     def max_speed_mm_s(self, arg0: float) -> None: ...
     @property
-    def paint_depth_mm(self) -> float: ...
+    def name(self) -> str:
+        """
+        What plans and messages call it.
+        """
+    @name.setter
+    def name(self, arg0: str) -> None: ...
+    @property
+    def paint_depth_mm(self) -> float:
+        """
+        Depth [mm] to paint at where half_width does not depend on depth.
+        """
     @paint_depth_mm.setter
     def paint_depth_mm(self, arg0: float) -> None: ...
+    @property
+    def sha256(self) -> str:
+        """
+        Of the bytes of the file it was read from, or empty.
+        """
+    @sha256.setter
+    def sha256(self, arg0: str) -> None: ...
+    @property
+    def tip_gap(self) -> Profile:
+        """
+        b(d): from the tip of the footprint to the centre of friction. A Profile.
+        """
+    @tip_gap.setter
+    def tip_gap(self, arg1: Profile) -> None: ...
+    @property
+    def tip_to_widest(self) -> Profile:
+        """
+        x_w(d): from the tip of the footprint to its widest section. A Profile.
+        """
+    @tip_to_widest.setter
+    def tip_to_widest(self, arg1: Profile) -> None: ...
 
 class Settings:
     """
@@ -425,7 +514,7 @@ class Pass:
     One stroke's motion.
 
     stroke: the name of what it paints, made of origin, a StrokeId, and set by a name or one.
-    poses_mm: (n, 3) x, y, z [mm], straight moves in between, depth linear along each; read-only and not copied when read,
+    poses_mm: (n, 3) x, y, z = -depth [mm], straight moves in between, depth linear along each; read-only and not copied when read,
     to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
     the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
     load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
@@ -1483,6 +1572,9 @@ def simulate(
     tolerance_mm: how far the painted area between two rows may be off the hull of both; it has nothing to do with the
     tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
     widest_points. progress: called with (passes done, passes).
+
+    z = -depth: on the way above the paper, z > 0, the brush hangs free. Error for a pass all of which is above the paper, and
+    for a pose deeper than the brush may be pressed.
     """
 
 def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:

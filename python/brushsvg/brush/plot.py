@@ -34,9 +34,19 @@ def brush_picture_on(figure, brush, data: dict | None = None) -> None:
         axes = figure.add_subplot(grid[number // 2, number % 2])
         _law(axes, depths, name, meaning, getattr(brush, name), law_band(brush, name, depths))
         if data and name in data:
-            axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6)
+            axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6, label="measured")
+    _legend(figure)
     _footprints(figure.add_subplot(grid[:, 2]), brush)
     figure.suptitle(_plain(brush.name))
+
+
+def _legend(figure) -> None:
+    """One for all laws, below them: inside it would lie on some law."""
+    named = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            named.setdefault(label, handle)
+    figure.legend(named.values(), named.keys(), loc="outside lower left", ncols=4, fontsize=8, frameon=False)
 
 
 def fill_rings(axes, rings: list, colour: str) -> None:
@@ -53,12 +63,16 @@ def _law(axes, depths, name, meaning, law, band) -> None:
     if band:
         half, what = band
         axes.fill_between(
-            depths, values - half, values + half, color=BAND, alpha=0.25, linewidth=0, label=what
+            depths, values - half, values + half, color=BAND, alpha=0.25, linewidth=0, label=f"+- {what}"
         )
     measured = law.calibrated_mm or ((math.inf, -math.inf) if law.assumed else (-math.inf, math.inf))
     inside = (depths >= measured[0]) & (depths <= measured[1])
     axes.plot(
-        depths, values, color=INK, linestyle=":", label=None if inside.all() else "assumed or beyond the data"
+        depths,
+        values,
+        color=INK,
+        linestyle=":",
+        label=None if inside.all() else "assumed, or beyond the data",
     )
     if inside.any():
         axes.plot(depths, np.where(inside, values, np.nan), color=INK, label="law")
@@ -67,7 +81,6 @@ def _law(axes, depths, name, meaning, law, band) -> None:
     axes.set_ylabel("mm", fontsize=8)
     axes.set_ylim(bottom=min(0.0, values.min()))
     axes.grid(color="#e4e2dc", linewidth=0.6)
-    axes.legend(fontsize=7, frameon=False)
 
 
 def _footprints(axes, brush) -> None:
@@ -85,7 +98,9 @@ def _footprints(axes, brush) -> None:
             linewidth=0.5,
         )
     axes.set_aspect("equal")
-    axes.set_title("footprints, dragged\nthe tool is on the right", fontsize=9)
+    shown = [shape.depth_mm for shape in brush.footprints.dragged]
+    title = f"footprints, dragged, at depths {min(shown):g} to {max(shown):g} mm\nthe tool is on the right"
+    axes.set_title(title, fontsize=9)
     axes.set_xlabel("mm from the tip", fontsize=8)
 
 

@@ -377,7 +377,8 @@ class _Maker:
             and (law in ("lag", "half_width") or (law == "tip_gap" and np.mean(values) < 0))
         ):
             sentence = (
-                f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative"
+                f"the {law} is {worst.value_mm:.3g} mm at depth {worst.depth_mm:g} mm; it cannot be negative: "
+                "write the length without a sign, or leave the row out"
             )
             raise Error(sentence, worst.where, worst.value_mm, code="law-negative")
         different = plausibility.different(depths)

@@ -57,7 +57,7 @@ def new_brush(
             f"the greatest depth {deepest:g} mm is outside the range [{widths[-1][0]:g}, {LONGEST_MM:g}] mm"
         )
         raise Error(
-            f"{sentence} from the deepest width to the longest brush",
+            f"{sentence} from the deepest width to the longest brush: give a greater one, or leave deeper widths out",
             "depth",
             deepest,
             code="depth-out-of-range",

@@ -73,7 +73,10 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         return found
     depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
     if not depths:
-        raise Error("there is no measurement in it", code="measurement-missing")
+        sentence = (
+            "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
+        )
+        raise Error(sentence, code="measurement-missing")
     if depths[-1] <= SHALLOWEST_MM:
         raise Error(
             f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres",
@@ -105,8 +108,13 @@ def _read_table(text: str) -> Measurements:
     for where, row in _table_rows(text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")):
         kind = row.pop("kind")
         if kind not in _TABLE:
+            other = (
+                "; it has several numbers a row, so write a JSON file"
+                if kind in KINDS or kind in _READERS
+                else ""
+            )
             raise Error(
-                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}",
+                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}{other}",
                 where,
                 code="measurement-kind",
             )
@@ -298,7 +306,10 @@ def _row(kind: str, row: dict, where: str) -> list[Row]:
         for i, each in enumerate(value if isinstance(value, tuple) else (value,)):
             at = f"{where}.{name}[{i}]" if isinstance(value, tuple) else f"{where}.{name}"
             if abs(each) > most:
-                sentence = f"{each:g} {unit} is more than the {most:g} {unit} that are taken for true"
+                sentence = (
+                    f"{each:g} {unit} is more than the {most:g} {unit} that are taken for true: lengths count in "
+                    "millimetres, angles in degrees"
+                )
                 raise Error(sentence, at, each, code="out-of-range")
             if name == "s_mm" and each < 0:
                 sentence = (
@@ -311,7 +322,8 @@ def _row(kind: str, row: dict, where: str) -> list[Row]:
 def _refuse_depth(depth_mm: float, where: str) -> None:
     if not 0 < depth_mm <= LONGEST_MM:
         raise Error(
-            f"the depth {depth_mm:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+            f"the depth {depth_mm:g} mm is outside the range (0, {LONGEST_MM:g}] mm: depths count down from first "
+            "contact, in millimetres",
             where,
             depth_mm,
             code="depth-out-of-range",

@@ -27,6 +27,7 @@ APART = 0.15  # share of their size by which half widths and widths contradict e
 MISTAKEN = 3.0  # times closer they go together if one was taken for the other
 # 0.42 with round-6, 0.2 with a liner; read in inches 25.4 times less, or of depths in inches as much more
 HALF_PER_DEPTH, ODD_HALF_PER_DEPTH = (0.01, 20.0), (0.05, 5.0)
+FALLEN = 0.1  # of a lag: read to half a millimetre one that rises falls by so much once in fifty times
 SEEN_MM = 0.3  # where a mark begins is seen to some tenths: lags that differ by less may be one
 BEYOND = 1.5  # of the deepest measurement: a law of fourth degree says nothing there
 SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in inches
@@ -388,7 +389,8 @@ def _odd_lags(fitted) -> list[Notice]:
         np.mean([point.value_mm for point in fitted.points if point.depth_mm == depth]) for depth in depths
     ]
     for k in range(len(depths) - 1):
-        if read[k] - read[k + 1] > max(SEEN_MM, 2 * scatter_mm):
+        # few values are followed badly: then the scatter is that of the law
+        if read[k] - read[k + 1] > max(SEEN_MM, min(2 * scatter_mm, FALLEN * read[k])):
             sentence = (
                 f"the lag was measured {read[k]:.3g} mm at depth {depths[k]:g} mm and {read[k + 1]:.3g} mm at "
                 f"{depths[k + 1]:g} mm, but bristles that are pressed deeper trail farther: measure both again"

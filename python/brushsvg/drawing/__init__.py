@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 from xml.etree import ElementTree
 
-from ..errors import Error
+from ..errors import Error, need, need_number, need_one_of
 from ..files import read_bytes
 from .damage import refuse_damage
 
@@ -34,6 +34,25 @@ class ReadOptions:
 
 
 AS_DRAWN = ReadOptions()
+SIZE_MM = (0.001, 1e6)  # of a sheet's sides
+UNITS = ("mm", "in")
+
+
+def refuse_unusable(options: ReadOptions) -> None:
+    """Error for options that no drawing can be read with."""
+    need(options, ReadOptions, "options to read a drawing with, as ReadOptions are")
+    if options.sheet_mm is not None:
+        need(options.sheet_mm, (tuple, list), "a sheet's width and height [mm]")
+        if len(options.sheet_mm) != 2:
+            raise Error(
+                f"sheet_mm has {len(options.sheet_mm)} numbers, not two", "sheet_mm", code="wrong-type"
+            )
+        for side in options.sheet_mm:
+            need_number(side, "a side of the sheet [mm]", *SIZE_MM)
+    if options.units is not None:
+        need_one_of(options.units, UNITS, "units")
+    if options.select is not None:
+        need(options.select, str, "a text, which select is")
 
 
 @dataclass(frozen=True)
@@ -115,6 +134,7 @@ def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
     is not asked for.
     """
+    refuse_unusable(options)
     reader, data = _opened(path)
     design = reader(data, options)
     if not options.lenient:

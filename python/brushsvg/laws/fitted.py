@@ -33,6 +33,8 @@ def fit_law(
     need_fits()
     depth = numbers(depth_mm, "the depth [mm]", 0.0, DEEPEST_MM)
     value = numbers(value_mm, "the value [mm]", -FARTHEST_MM, FARTHEST_MM)
+    if depth.ndim != 1 or value.ndim != 1:
+        raise Error("depths and values are lists of numbers", code="wrong-type")
     need(degree, int, "a degree")
     shape = _core.LawShape(
         (float(depth.min(initial=0.0)), float(depth.max(initial=1.0))),

@@ -16,7 +16,7 @@ def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
         found = np.asarray(given)
     except ValueError:  # rows of different lengths
         raise Error(f"{what} is no number and no array of them", code="wrong-type") from None
-    if found.dtype.kind not in "biuf":
+    if found.dtype.kind not in "iuf":
         raise Error(f"{what} is no number and no array of them", code="wrong-type")
     found = found.astype(float)
     outside = found[~((found >= least) & (found <= greatest))]

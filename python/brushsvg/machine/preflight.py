@@ -83,6 +83,7 @@ def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm) -> list[Notice]:
                 f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet",
                 code="mark-off-sheet",
                 about=side,
+                advice="move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH",
             )
             for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
             if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint

@@ -131,11 +131,13 @@ def write_program(
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
+    need(plan, _core.Plan, "a plan")
+    need(brush, _core.Brush, "a brush")
     need(title, str, "a title")
     # a cell made by hand must be one that a file may hold: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     suffix = Path(path).suffix.lower()
     cell = painting_cell(suffix, as_exact_as(cell, DEFAULT_TOLERANCE_MM))
-    marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)  # the former refuses other types
+    marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)
     walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
     write_files(in_files(path, encoded(suffix, plan, walk, brush, title)))

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, need
 from .marks_svg import BAND, EDGE, Band, check_picture, known_colour
 from .overlap_svg import MISSING
 from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, canvas, encoded, lay, write
@@ -25,6 +25,7 @@ def marks_png(
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
     with a legend; blank: rings of what of shapes stays blank, outlined."""
     check_picture(marks, sheet_mm, colours)
+    need(brush, _core.Brush, "a brush")
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
     image = None

@@ -10,7 +10,7 @@ from typing import TypedDict
 
 from .. import _core
 from ..brush.library import brush_names, find_brush
-from ..drawing import ReadOptions, settings_in
+from ..drawing import SIZE_MM, UNITS, ReadOptions, settings_in
 from ..drawing.layout import Layout
 from ..errors import Error, Notice, need, need_number, need_one_of
 from ..machine.cell import Cell
@@ -20,7 +20,6 @@ from .preparation import Options
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
 MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
-SIZE_MM = (0.001, 1e6)
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
@@ -30,7 +29,7 @@ RANGES = {  # the same as a flag's
     "z_offset": (-20.0, 20.0),
 }
 ONE_OF = {
-    "units": ("mm", "in"),
+    "units": UNITS,
     "paths_as": ("stroke", "outline"),
     "wide": ("auto", "clamp", "passes", "refuse"),
     "corners": ("auto", "turn"),

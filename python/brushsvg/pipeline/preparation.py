@@ -141,6 +141,7 @@ def prepare(
     if options.compensation == "refined":
         better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
+        notices += [told] if (told := better.nothing_moved()) else []
     plan = _at_speed(_with_speeds(plan, strokes), options)
     told = _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
     notices = [*mistyped_keys(brush), *design.notices, *notices, *told]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
+from ..errors import Notice
 from .touching_strokes import worse
 
 # Of the brush's greatest half width, missing on the mean of a stroke. At 0.1 of it a bar's middle waves by 0.2 mm to
@@ -18,11 +19,31 @@ SPARED = 0.1
 
 @dataclass(frozen=True)
 class Refined:
-    """One of each per pass. moved: whether it is another pass than the one in closed form."""
+    """One of each per pass. moved: whether it is another pass than the one in closed form; kept: why it is not."""
 
     passes: list
     tracking_errors: list
     moved: list[bool]
+    kept: list[str]
+
+    def nothing_moved(self) -> Notice | None:
+        """Where all passes are those in closed form: that, and why."""
+        if any(self.moved) or not self.moved:
+            return None
+        count = {why: self.kept.count(why) for why in self.kept}
+        told = (f"for {n} {'stroke' if n == 1 else 'strokes'} {why}" for why, n in count.items())
+        return Notice(
+            "",
+            f"refining changed nothing, the plan is that of closed: {', '.join(told)}",
+            code="flag-without-effect",
+            about="compensation",
+        )
+
+
+# why a stroke stays as it is in closed form
+NO_GAIN = "no way was found that paints the drawing better"
+FORBIDDEN = "a refined way would break a limit of the cell or the sheet"
+WORSE = "a refined way would paint the letter worse"
 
 
 def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=None) -> Refined:
@@ -35,25 +56,25 @@ def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=N
     aims = [towards_reach(*pair, brush) for pair in zip(painted, wanted, strict=True)]
     done = compensated(aims, "refined")
     passes, tracking_errors, moved = list(done.plan.passes), list(done.misses), [True] * len(painted)
+    kept = [""] * len(painted)
     fallback = list(zip(closed.plan.passes, closed.misses, strict=True))
 
-    def keep_closed(numbers):
+    def keep_closed(numbers, why):
         for k in numbers:
             passes[k], tracking_errors[k] = fallback[k]
-            moved[k] = False
+            moved[k], kept[k] = False, kept[k] or why
 
     def worse_of(groups):
         return worse(passes, closed.plan.passes, wanted, brush, groups)
 
-    keep_closed(
-        k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)
-    )
+    same = [k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)]
+    keep_closed(same, NO_GAIN)
     if forbidden:
-        keep_closed(_forbidden(passes, closed.plan, moved, forbidden))
+        keep_closed(_forbidden(passes, closed.plan, moved, forbidden), FORBIDDEN)
     if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
-        keep_closed(worse_of(redirected))  # they were judged by what they aimed at
-    keep_closed(worse_of(_core.touching(wanted)))
-    return Refined(passes, tracking_errors, moved)
+        keep_closed(worse_of(redirected), WORSE)  # they were judged by what they aimed at
+    keep_closed(worse_of(_core.touching(wanted)), WORSE)
+    return Refined(passes, tracking_errors, moved, kept)
 
 
 def towards_reach(painted, wanted, brush):

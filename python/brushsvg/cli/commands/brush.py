@@ -41,7 +41,11 @@ def brush_new(args) -> None:
         raise RefusedError(args.name, [why])
     check_places(path)
     if os.path.exists(path):
-        why = Notice("", "the file is there already: it might be somebody's brush", code="file-exists")
+        why = Notice(
+            "",
+            "the file is there already: it might be somebody's brush; give yours another name",
+            code="file-exists",
+        )
         raise RefusedError(path, [why])
     widths = list(args.width_at)
     if args.widths:

@@ -34,7 +34,9 @@ def _read(attributes: dict[str, str], known: dict) -> tuple[dict, list[str]]:
             continue
         name = attribute.removeprefix(PREFIX)
         if name not in known:
-            problems.append(f"{attribute} is not known; known: {', '.join(known)}")
+            of_all = name in _OF_THE_DOCUMENT
+            why = "holds for the whole drawing: write it on its svg element" if of_all else "is not known"
+            problems.append(f"{attribute} {why}; known here: {', '.join(known)}")
             continue
         key, read = known[name]
         try:

@@ -1,0 +1,129 @@
+"""Public names of the C++ module: values of a wrong type end in one sentence in Python's words; no True is a number."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Iterator
+from types import ModuleType
+
+# what pybind11 calls the types of arguments, and what a person does
+_IN_WORDS = (
+    (r"typing\.SupportsFloat \| typing\.SupportsIndex", "number"),
+    (r"typing\.SupportsInt \| typing\.SupportsIndex", "whole number"),
+    (r"typing\.Annotated\[numpy\.typing\.ArrayLike, numpy\.\w+, \"\[([^\"]*)\]\"\]", r"array (\1)"),
+    (r"typing\.Annotated\[collections\.abc\.Sequence\[([^\[\]]*)\], \"FixedSize\((\d+)\)\"\]", r"\2 \1s"),
+    (r"collections\.abc\.Sequence\[", "list["),
+    (r"numpy\.typing\.ArrayLike", "array"),
+    (r"brushsvg\._core\.", ""),
+    (r"\| None\b", "or None"),
+)
+_MARK = "incompatible"  # in what pybind11 says of types
+SHOWN = 40  # letters of a value
+
+
+def in_words(function: Callable) -> Callable:
+    """A public function of the C++ module that refuses so."""
+    called = _in_words(function, function.__name__)
+    called.__module__, called.__qualname__ = "brushsvg", function.__name__  # as it is pickled
+    return called
+
+
+@functools.cache
+def with_classes_in_words(module: ModuleType) -> None:
+    """All that the classes of the C++ module can do refuses so from now on."""
+    for kind in [each for each in vars(module).values() if isinstance(each, type)]:
+        for name, member in list(vars(kind).items()):
+            words = kind.__name__ if name.startswith("__") else f"{kind.__name__}.{name}"
+            if isinstance(member, property):
+                if member.fset:
+                    fset = _in_words(member.fset, words, is_method=True)
+                    setattr(kind, name, property(member.fget, fset, doc=member.__doc__))
+            elif isinstance(member, staticmethod):
+                setattr(kind, name, staticmethod(_in_words(member.__func__, words)))
+            elif callable(member) and (name in ("__init__", "__call__") or not name.startswith("_")):
+                setattr(kind, name, _in_words(member, words, is_method=True))
+
+
+def _in_words(function: Callable, words: str, is_method: bool = False) -> Callable:
+    @functools.cache
+    def ways() -> list[dict[str, str]]:
+        return list(_signatures(function.__doc__ or "", is_method))
+
+    @functools.wraps(function, updated=())
+    def called(*given, **named):
+        own = given[is_method:]
+        found = [_truth(way, own, named) for way in ways() if len(way) >= len(own)]
+        if found and all(found):
+            raise TypeError(f"{words}{found[0]}")
+        try:
+            return function(*given, **named)
+        except TypeError as wrong:
+            if _MARK not in str(wrong):
+                raise
+            raise TypeError(_told(words, ways(), own, named)) from None
+
+    return called
+
+
+def _told(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> str:
+    shown = ", ".join([*map(_short, given), *(f"{name}={_short(value)}" for name, value in named.items())])
+    if (
+        len(ways) == 1
+        and all(re.fullmatch(r"arg\d", name) for name in ways[0])
+        and len(ways[0]) == len(given) == 1
+    ):
+        kind = next(iter(ways[0].values()))
+        return f"{words} is {kind if kind[0].isdigit() else f'a {kind}'}, not {shown}"
+    taken = " or ".join(f"({', '.join(f'{name}: {kind}' for name, kind in way.items())})" for way in ways)
+    return f"{words} takes {taken}, not ({shown})"
+
+
+def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
+    """What is said of True or False where numbers are asked for, "" where there is none."""
+    for name, value in [*zip(way, given, strict=False), *named.items()]:
+        kind = way.get(name, "")
+        if re.search("number|array|float", kind) and "bool" not in kind and _has_truth(value):
+            return (
+                f"{'' if re.fullmatch('arg[0-9]', name) else f': {name}'} takes numbers, not {_short(value)}"
+            )
+    return ""
+
+
+def _has_truth(value: object) -> bool:
+    if isinstance(value, list | tuple):
+        return any(map(_has_truth, value))
+    return isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b"
+
+
+def _short(value: object) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."
+
+
+def _signatures(doc: str, is_method: bool) -> Iterator[dict[str, str]]:
+    """Arguments with their types in words, of each way in which a function can be called, as pybind11 tells them."""
+    for line in doc.splitlines():
+        found = re.match(r"(?:\d+\. )?[\w.]*\((.*)\)(?: -> .*)?$", line.strip())
+        if found and found[1] != "*args, **kwargs":
+            some = [each.partition(" = ")[0].partition(": ") for each in _parted(found[1])]
+            yield {name: _kind_in_words(kind) for name, _, kind in some[is_method:] if kind}
+            if not re.match(r"\d+\. ", line.strip()) and "Overloaded function." not in doc:
+                return
+
+
+def _parted(text: str) -> list[str]:
+    """At commas outside of brackets and quotes."""
+    bare = re.sub(r"'[^']*'|\"[^\"]*\"", lambda quoted: "_" * len(quoted[0]), text)
+    depth, ends = 0, [-1]
+    for place, letter in enumerate(bare):
+        depth += (letter in "([{") - (letter in ")]}")
+        if letter == "," and depth == 0:
+            ends.append(place)
+    return [text[a + 1 : b].strip() for a, b in zip(ends, [*ends[1:], len(text)], strict=True)]
+
+
+def _kind_in_words(kind: str) -> str:
+    for pattern, instead in _IN_WORDS:
+        kind = re.sub(pattern, instead, kind)
+    return kind
