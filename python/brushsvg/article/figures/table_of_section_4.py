@@ -25,16 +25,20 @@ exact = {  # what is read, and its scatter, in mm
 }
 
 
-def read(y, sigma):
+def read(y: np.ndarray, sigma: float) -> list[dict[str, float]]:
     return [{"depth_mm": d, "value_mm": v} for d, v in zip(z, y + rng.normal(0, sigma, 10), strict=True)]
 
 
 sets = [{kind: read(*one) for kind, one in exact.items()} for _ in range(20)]
 for x in (x for one in sets for x in one["straight"]):
     x |= {"path_mm": 60, "distance_mm": 60 - x.pop("value_mm")}
-ways = {"values of b": (0.14, "lag tip_gap"), "video": (0.09, "lag side_view")}
+ways: dict[str, tuple[float | None, str]] = {
+    "values of b": (0.14, "lag tip_gap"),
+    "video": (0.09, "lag side_view"),
+}
 ways["straight strokes"], ways["one fit"] = (0.11, "lag tip_to_widest straight"), (None, " ".join(exact))
-rows, found = [], []
+rows: list[tuple[str, float | None, float]] = []
+found: list[tuple[float, float]] = []
 for name, (printed, kinds) in ways.items():
     brushes = [brushsvg.calibrate({k: one[k] for k in {"width", *kinds.split()}}).brush for one in sets]
     k = np.median([made.tip_gap.half_interval_95[1] for made in brushes])
