@@ -8,8 +8,6 @@ shape does not follow from it: the article takes that from the least energy of t
 put into (2) it leaves a straight line where exp(1 - z) should stand.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -24,15 +22,15 @@ def of_article(z: np.ndarray) -> np.ndarray:
     return np.exp(1 - z)
 
 
-def stiffer(k: float) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda z: np.exp(k * (1 - z))
-
-
 ends = {"third_derivative": "w'''(1) = 0, as printed", "shear_free": "(EI w'')'(1) = 0, free of shear"}
 for end, words in ends.items():
     left.plot(laws.bristle(of_article, of_article, end)(z), z, label=words)
 for k in range(4):
-    right.plot(laws.bristle(stiffer(k), of_article)(z), z, label=f"k = {k}")
+
+    def softer(z: np.ndarray, k: float = k) -> np.ndarray:
+        return np.exp(k * (1 - z))
+
+    right.plot(laws.bristle(softer, of_article)(z), z, label=f"k = {k}")
 for axes, title in ((left, "EI = q = exp(1 - z)"), (right, "EI = exp(k (1 - z)), q = exp(1 - z)")):
     axes.set(title=title, xlabel="w, in lengths of the bristle")
     axes.legend(frameon=False, fontsize=8)

@@ -38,7 +38,7 @@ for colour in ("#3f8fd9", "#e07a2f", "#2f8f4e", "#8a4fbf"):
         distances.append(np.hypot(*(painted[:, None] - wanted.contact_mm).T).min(axis=0))
 for wanted in reference:
     above.plot(*wanted.contact_mm[::12].T, "k+", ms=3, mew=0.5)
-above.set(aspect="equal", title="(a)")
+above.set(aspect="equal", title="(a)", xlabel="mm", ylabel="mm")
 off = np.concatenate(distances)
 below.hist(off, bins=np.arange(0, off.max() + 0.1, 0.1), color="#2b3a67", log=True)
 below.set(title="(b)", xlabel="distance, mm", ylabel="points")
