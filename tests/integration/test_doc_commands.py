@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -99,6 +100,9 @@ class Desk:
                 for word in words:
                     if word not in written:
                         self.make(word)
+                for word in words:
+                    if word.endswith(".jpg") and word not in written and not (self.folder / word).exists():
+                        self.type(_photographing(word, words))
             elif words[0] in ("inkscape", "xvfb-run"):
                 self.make("word.svg")
 
@@ -109,6 +113,17 @@ def _written(words: list[str]) -> set[str | None]:
     names = ["output", "preview", "picture", "plot", "page", "report", "mended_cell"]
     names += {"chart": ["chart"], "brush": ["name"], "cell": ["name"]}.get(words[0], [])
     return {getattr(args, name, None) for name in names}
+
+
+def _photographing(photo: str, words: list[str]) -> str:
+    """The command that takes a photograph of the job which a command reads from it, painted as that is told."""
+    flags = dict(pair for pair in pairwise(words) if pair[0].startswith("--"))
+    job = flags.get("--plan") or next(word for word in words[2:] if word.endswith((".svg", ".json")))
+    painted = {"--brush": flags.get("--brush") or flags.get("--prior")}
+    painted |= {name: flags.get(name) for name in ("--cell", "--corrections")}
+    told = [word for name, value in painted.items() if value for word in (name, value)]
+    seed = re.sub(r"\D", "", photo) or "0"
+    return shlex.join(["brushsvg", "simulate-photo", job, photo, "--seed", seed, *told])
 
 
 def _letters(desk: Desk, *names: str) -> None:
@@ -165,12 +180,6 @@ MADE = {
     "IMG_2041.jpg": _chart_photo("IMG_2041.jpg"),
     "dabs.jpg": _chart_photo("dabs.jpg", "dabs.json"),
     "scan.png": _scan,
-    "IMG_2042.jpg": "brushsvg simulate-photo word.svg IMG_2042.jpg --seed 2 --brush mine.json",
-    "photo.jpg": "brushsvg simulate-photo word.svg photo.jpg --seed 1 --brush mine.json",
-    "sheet-1.jpg": "brushsvg simulate-photo word.svg sheet-1.jpg --seed 1 --brush mine.json",
-    "sheet-2.jpg": "brushsvg simulate-photo word.svg sheet-2.jpg --seed 2 --brush mine.json",
-    "sheet-3.jpg": "brushsvg simulate-photo word.svg sheet-3.jpg --seed 3 --brush mine.json",
-    "first.json": "brushsvg compare sheet-1.jpg word.svg -o first.json",
 }
 
 
