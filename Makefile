@@ -18,7 +18,7 @@ help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make quick        what is tested in a minute, for every save: all but slow tests, the laws and C++"
-	@echo "make integration  longer tests: brushes fitted to painted sheets; LinuxCNC, Inkscape, Chromium, real lettering (installs them)"
+	@echo "make integration  longer tests: brushes fitted to painted sheets; LinuxCNC, Inkscape, Chromium, pyright, real lettering (installs them)"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"

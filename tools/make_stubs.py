@@ -14,7 +14,8 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "python" / "brushsvg"
 
-# What a signature of pybind11 does not tell: a name is taken for a StrokeId, and any value may be compared.
+# What a signature of pybind11 does not tell: a name is taken for a StrokeId, any value may be compared, a number gives
+# a number and an array an array.
 TOLD = (
     (r"def __eq__\(self, arg0: \w+\) -> bool", "def __eq__(self, other: object, /) -> bool"),
     (r"\b(id|stroke): StrokeId = ''", r"\1: StrokeId | str = ''"),
@@ -23,6 +24,10 @@ TOLD = (
     (r"def warnings\(self\) -> tuple:", "def warnings(self) -> tuple[Notice, ...]:"),
     (r"def remarks\(brush: Brush\) -> list:", "def remarks(brush: Brush) -> list[Notice]:"),
     (r"\*\*kwargs\)", "**fields: object)"),
+    (
+        r"def (depth_range_mm|calibrated_mm|sheet_mm)\(self\) -> tuple\[float, \.\.\.\]",
+        r"def \1(self) -> tuple[float, float]",
+    ),
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
     (r'typing\.Annotated\[([^"]*), "[^"]*"\]', r"\1"),
@@ -31,6 +36,13 @@ TOLD = (
     (
         r"__hash__: typing\.ClassVar\[None\] = None",
         "__hash__: typing.ClassVar[None]  # type: ignore[assignment]",
+    ),
+    (
+        r"( +)def __call__\(self, depth_mm: numpy\.typing\.ArrayLike\) -> typing\.Any:\s+\.\.\.",
+        r"\1@typing.overload\n"
+        r"\1def __call__(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]\n"
+        r"\1@typing.overload\n"
+        r"\1def __call__(self, depth_mm: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]: ...",
     ),
 )
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the build tree into a new folder and builds the examples against it alone, by find_package and pkg-config, and
 # what uses brushsvg::fit if it was built; then the sources as a part of another project: run.sh BUILD_DIR SOURCE_DIR
+# What docs/cpp.md tells one to write and to type is taken from there.
 set -euo pipefail
 build=$1 source=$2
 work=$(mktemp -d)
@@ -8,6 +9,9 @@ trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --component cpp --prefix "$work/prefix" >/dev/null
 if grep -rEl --include="*.hpp" --include="*.cmake" "boost|nlohmann|pybind" "$work/prefix"; then echo "the installed package needs more than Eigen" >&2; exit 1; fi
 if grep -rEil --include="*.hpp" "ceres" "$work/prefix"; then echo "an installed header needs Ceres" >&2; exit 1; fi
+documented() {  # BEGIN: the block of docs/cpp.md that begins so
+  awk -v begin="    $1" 'index($0, begin) == 1 { inside = 1 } inside && !/^    / { exit } inside { print substr($0, 5) }' "$source/docs/cpp.md" | grep .
+}
 consume() {  # NAME FLAGS: configure, build
   cmake -S "$source/tests/consumer" -B "$work/$1" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}" >/dev/null
   cmake --build "$work/$1" >/dev/null
@@ -29,17 +33,29 @@ grep -q "^$work/missing.json: .*cannot be read$" "$work/said"
 if "$work/consumer/consumer" "$brush" "$work/missing/none.ngc" 2>"$work/said"; then echo "a program is written nowhere" >&2; exit 1; fi
 grep -q "^$work/missing/none.ngc: " "$work/said"
 if cmake -S "$source/tests/consumer" -B "$work/newer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" -DEXAMPLE="$work" -DVERSION=9.0 2>"$work/said" >/dev/null; then echo "any version will do" >&2; exit 1; fi
+ln -s "$source" "$work/brushsvg"
+(cd "$work" && eval "$(documented "cmake -S" | head -n 1)" >/dev/null)  # what follows would take minutes
+mkdir "$work/documented" "$work/embedded"
+cp "$source/examples/02_brush_file_to_gcode.cpp" "$work/documented/program.cpp"
+{ echo "cmake_minimum_required(VERSION 3.25)"; echo "project(program LANGUAGES CXX)"; echo "add_executable(program program.cpp)"; documented "find_package("; } >"$work/documented/CMakeLists.txt"
+cmake -S "$work/documented" -B "$work/documented/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+cmake --build "$work/documented/build" >/dev/null
+"$work/documented/build/program" "$brush" "$work/two.ngc"
+cmp "$work/one.ngc" "$work/two.ngc"
 if command -v pkg-config >/dev/null; then
   export PKG_CONFIG_PATH
   PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name brushsvg.pc)")
   pkg-config --exact-version="$version" brushsvg
-  # shellcheck disable=SC2046
-  c++ -std=c++17 -O1 "$source/examples/02_brush_file_to_gcode.cpp" -o "$work/by_pkg_config" $(pkg-config --cflags --libs brushsvg)
-  "$work/by_pkg_config" "$brush" "$work/two.ngc"
+  (cd "$work/documented" && eval "$(documented "c++ ")")
+  "$work/documented/program" "$brush" "$work/two.ngc"
   cmp "$work/one.ngc" "$work/two.ngc"
 fi
+cp "$source/tests/consumer/embedded/CMakeLists.txt" "$work/embedded"
+ln -s "$source" "$work/embedded/brushsvg"
+documented "include(FetchContent)" >"$work/embedded/FetchContent.cmake"
+{ echo 'add_subdirectory(brushsvg)'; documented "find_package(" | grep -v find_package; } >"$work/embedded/add_subdirectory.cmake"
 for how in add_subdirectory FetchContent; do
-  cmake -S "$source/tests/consumer/embedded" -B "$work/$how" -G Ninja -DHOW=$how -DBRUSHSVG="$source" >/dev/null
+  cmake -S "$work/embedded" -B "$work/$how" -G Ninja -DHOW=$how.cmake >/dev/null
   cmake --build "$work/$how" --target program >/dev/null
   # the library itself is built once, elsewhere
   c++ "$(find "$work/$how" -path '*program.dir*' -name '*.o')" -L"$libraries" -lbrushsvg_io -lbrushsvg_posts -lbrushsvg_core -pthread -o "$work/by_$how"

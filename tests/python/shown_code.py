@@ -54,3 +54,23 @@ def cells(notebook: Path) -> list[str]:
     """The cells of code of a notebook."""
     book = json.loads(notebook.read_text(encoding="utf-8"))
     return ["".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code"]
+
+
+# Commands that no test types as they stand: (page, what the line begins with), and why.
+NOT_RUN = {
+    ("README.md", "brushsvg calibrate photo.jpg --chart"): "as in docs/photograph.md, where it runs",
+    ("README.md", "brushsvg compare photo.jpg"): "as in docs/compare.md, where it runs",
+    ("README.md", "brushsvg calibrate photo.jpg --plan"): "as in docs/compare.md, where it runs",
+    ("README.md", "brushsvg article"): "test_article.py holds docs/article.md against what it writes",
+    ("README.md", "brushsvg install-plugin"): "as in docs/plugins.md, where it runs",
+    ("article.md", "brushsvg article"): "test_article.py holds the page itself against what it writes",
+    (
+        "batch.md",
+        "brushsvg batch letters/ --out painted --cluster",
+    ): "needs a scheduler at that address: test_batch.py",
+}
+
+
+def why_not_run(page: str, line: str) -> str:
+    """Empty for a command that is run."""
+    return next((why for (of, begin), why in NOT_RUN.items() if of == page and line.startswith(begin)), "")

@@ -47,6 +47,9 @@ COMMANDS = [
     "calibrate MEASURED -o OUT.json",
     "scan PHOTO --chart CHART -o OUT.json",
     "calibrate PHOTO --chart CHART -o OUT.json",
+    "calibrate PHOTO --plan plan.json --prior round-6 -o OUT.json",
+    "calibrate photo.jpg --plan PLAN --prior mine.json -o OUT.json",
+    "calibrate photo.jpg --plan plan.json --prior BRUSH -o OUT.json",
     "compare PHOTO a.svg -o OUT.json",
     "compare PHOTO PLAN",
     "simulate-photo IN OUT.jpg",
@@ -148,7 +151,8 @@ def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 @pytest.mark.parametrize(
-    "command", [each for each in COMMANDS if "OUT" in each and not {"MEASURED", "PHOTO"} & {*each.split()}]
+    "command",
+    [each for each in COMMANDS if "OUT" in each and not {"MEASURED", "PHOTO", "photo.jpg"} & {*each.split()}],
 )
 @pytest.mark.slow
 def test_whatever_is_written_may_have_no_place(desk, capsys, command):

@@ -1,6 +1,9 @@
-"""What README and docs show as code runs as it stands: Python page by page from top to bottom, in a folder that holds
-what the page speaks of; README's commands in their order; tables of cells; article.md's scripts run in test_article."""
+"""What README and docs show as code runs as it stands, or is read by who reads it: Python page by page from top to
+bottom, in a folder that holds what the page speaks of; README's commands in their order; files of JSON, tables of cells
+and of measurements by their readers. The rest is held elsewhere: HELD says where. A block of another kind, or on a page
+that had none of its kind, is none that anybody holds."""
 
+import json
 import re
 import shlex
 import shutil
@@ -10,38 +13,72 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from shown_code import HOUSE, PAGES, blocks, why_not_run
 
 import brushsvg
+from brushsvg.calibration.measurements import read_measurements
 from brushsvg.cli import main
+from brushsvg.cli.arguments.parser import parse
+from brushsvg.machine.cell_file import parse_cell
 
-HOUSE = Path(__file__).parents[2]
-PAGES = [HOUSE / "README.md", *sorted((HOUSE / "docs").glob("*.md"))]
+HELD = {
+    "python": "here; of article.md, which is made of scripts, in test_article.py; types in integration/test_pyright.py",
+    "commands": "integration/test_doc_commands.py; of walkthrough.md in test_walkthrough.py, of README here",
+    "make": "not run, because it sets up a machine, or takes minutes and more: its targets are held here",
+    "shell": "tests/consumer/run.sh for C++; integration/test_doc_commands.py for Inkscape",
+    "cpp": "the example, which tests/consumer/run.sh builds and runs",
+    "cmake": "tests/consumer/run.sh, which takes it from the page",
+    "json": "here",
+    "toml": "here",
+    "csv": "here",
+    "flags": "here",
+    "{toctree}": "integration/test_docs_pages.py: Sphinx builds it",
+}
+KINDS_OF_PAGES = {
+    "README.md": "commands make python",
+    "animation.md": "commands",
+    "article.md": "commands python",
+    "batch.md": "commands python",
+    "brush.md": "json",
+    "calibration.md": "commands csv json",
+    "compare.md": "commands",
+    "cpp.md": "cmake cpp shell",
+    "dabs.md": "commands",
+    "diagnostics.md": "json",
+    "drawings.md": "flags",
+    "index.md": "{toctree}",
+    "letters.md": "commands",
+    "machines.md": "commands python toml",
+    "performance.md": "make",
+    "photograph.md": "commands",
+    "plugins.md": "commands shell",
+    "python.md": "python",
+    "report.md": "commands",
+    "text.md": "commands python",
+    "walkthrough.md": "commands",
+}
 MADE = "article.md"
-BLOCK = re.compile(
-    r"^```(?P<name>\w*)\n(?P<fenced>[\s\S]*?)^```|(?P<plain>(?:^    .*\n(?:\n(?=    ))?)+)", re.MULTILINE
-)
-PYTHON = re.compile(r"^(import |from \w|[\w, ]+ = brushsvg\.|stroke = )", re.M)
+LAWS = {"lag": 1.2, "width": 0.8}  # of a brush that was measured, per mm of depth
+BLOCKS = [block for page in PAGES for block in blocks(page)]
 NEEDS_PARTS = {"import sys, serial": "a port to a machine"}  # begins of blocks that are compiled alone
-
-
-def blocks(page: Path) -> list[tuple[str, str]]:
-    """(language, code) of each block of code, without its indent."""
-    found = []
-    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
-        if block["fenced"] is not None:
-            found.append((block["name"], block["fenced"]))
-        else:
-            code = re.sub("^    ", "", block["plain"], flags=re.M)
-            found.append(("python" if PYTHON.search(code) else "toml" if code.startswith("[") else "", code))
-    return found
-
-
 OF_PYTHON = {
-    page.name: [code for language, code in blocks(page) if language == "python"]
+    page.name: [block.code for block in BLOCKS if (block.page, block.kind) == (page.name, "python")]
     for page in PAGES
     if page.name != MADE
 }
 OF_PYTHON = {name: code for name, code in OF_PYTHON.items() if code}
+
+
+def of_kind(kind: str, page: str = "") -> list[str]:
+    return [block.code for block in BLOCKS if block.kind == kind and page in ("", block.page)]
+
+
+def test_every_block_is_of_a_kind_that_is_held():
+    assert [block for block in BLOCKS if block.kind not in HELD] == []
+    found: dict[str, set[str]] = {}
+    for block in BLOCKS:
+        found.setdefault(block.page, set()).add(block.kind)
+    assert {page: " ".join(sorted(kinds)) for page, kinds in found.items()} == KINDS_OF_PAGES
 
 
 @pytest.fixture
@@ -82,31 +119,112 @@ def test_python_of_a_page_runs(page, folder, capsys):
 
 def test_the_program_of_the_page_for_cpp_is_the_example():
     example = (HOUSE / "examples" / "02_brush_file_to_gcode.cpp").read_text().split("\n", 1)[1].strip()
-    assert example in [code.strip() for _, code in blocks(HOUSE / "docs" / "cpp.md")]
+    assert [code.strip() for code in of_kind("cpp")] == [example]
 
 
-def test_tables_of_cells_are_tables():
-    tables = [code for page in PAGES for language, code in blocks(page) if language == "toml"]
-    assert len(tables) >= 3
-    for code in tables:
-        assert tomllib.loads(code)
+@pytest.mark.parametrize("code", of_kind("toml"))
+def test_a_table_of_a_cell_is_read_where_that_table_stood(code):
+    tables = list(tomllib.loads(code))
+    language = 'language = "robodk"' if "robodk" in tables else 'language = "urscript"'
+    text = re.sub('language = "urscript"', language, brushsvg.write_cell(brushsvg.find_cell("ur5e")))
+    kept = [part for part in re.split(r"\n(?=\[)", text) if not re.match(rf"\[+({'|'.join(tables)})\b", part)]
+    assert parse_cell("\n".join([*kept, code]))
 
 
-# Photographs of paint are taken in tests/laws and tests/integration, figures drawn in test_article
-ELSEWHERE = ("photo.jpg", "article ", "install-plugin")
+def test_measurements_are_read():
+    tables = of_kind("csv")
+    files = [whole(code) for code in of_kind("json", "calibration.md")]
+    assert len(tables) == 1 and len(files) == 3
+    assert read_measurements(tables[0].encode(), ".csv").rows
+    for file in files:
+        known = {"format": "brushsvg/measurements", "version": 1, **file}
+        found = read_measurements(json.dumps(known).encode(), ".json")
+        assert found.rows or found.marks
+
+
+def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
+    brush = brushsvg.find_brush("round-6")
+    stroke = brushsvg.stroke_from_path("M20 40C40 80 80 80 100 40V20", 4)
+    plan = brushsvg.compensate([stroke], brush, sheet_mm=(140, 100)).plan
+    marks = brushsvg.simulate(plan, brush)
+    brushsvg.trace_outlines(marks, brush)
+    rows = {
+        kind: [{"depth_mm": d, "value_mm": k * d + 0.1 * (d % 2)} for d in range(1, 9)]
+        for kind, k in LAWS.items()
+    }
+    brushsvg.save_brush(brush, tmp_path / "shipped.json")
+    brushsvg.save_brush(brushsvg.calibrate(rows).brush, tmp_path / "fitted.json")
+    shipped, fitted = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("shipped", "fitted"))
+    of_brush, of_plan, of_marks = map(whole, of_kind("json", "brush.md"))
+    assert set(unlike(of_brush, shipped)) & set(unlike(of_brush, fitted)) == set()
+    assert unlike(of_plan, json.loads(brushsvg.write_plan(plan))) == []
+    assert unlike(of_marks, json.loads(brushsvg.write_marks(marks))) == []
+
+
+def whole(code: str):
+    """JSON of a page, without its dots, and 1 for what is called x, i or cx in it."""
+    if not code.startswith("{"):
+        code = f"{{{code}}}"
+    code = re.sub(r"(,\s*)?\.\.\.(?=\s*[\]}])", "", code)
+    return json.loads(re.sub(r"(?<=[\[ ])(x|y|z|i|j|cx|cy)(?=[,\]])", "1", code))
+
+
+def unlike(shown, real, where: str = "") -> list[str]:
+    """Where what is shown is not as in a real file: keys that there are not, values of another kind. Of lists the
+    first entries are compared, as far as both have them."""
+    if isinstance(shown, dict) and isinstance(real, dict):
+        lost = [f"{where}.{key}" for key in shown if key not in real]
+        return lost + [
+            each for key in shown if key in real for each in unlike(shown[key], real[key], f"{where}.{key}")
+        ]
+    if isinstance(shown, list) and isinstance(real, list):
+        return [
+            each for pair in zip(shown[:1], real[:1], strict=False) for each in unlike(*pair, f"{where}[0]")
+        ]
+    kinds = [
+        (int, float) if isinstance(each, int | float) and not isinstance(each, bool) else type(each)
+        for each in (shown, real)
+    ]
+    return [] if kinds[0] == kinds[1] else [f"{where}: {shown!r} and {real!r}"]
+
+
+def test_warnings_for_programs_have_these_keys(folder, capsys):
+    (code,) = of_kind("json", "diagnostics.md")
+    main(["--messages", "json", "convert", "word.svg", "word.ngc", "--brush", "none"])
+    assert set(json.loads(code)) == set(json.loads(capsys.readouterr().err.splitlines()[0]))
+
+
+VALUES = {"NAME": "Ink", "CSS": "g", "MM": "3"}
+
+
+def test_flags_that_a_page_lists_are_understood():
+    (code,) = of_kind("flags")
+    listed = re.findall(r"^--(\S+)(?: (\S+))?  ", code, re.M)
+    assert len(listed) >= 11
+    for flag, value in listed:
+        for each in VALUES.get(value, value).split("|"):
+            drawing = "a.dxf" if flag == "units" else "a.svg"
+            parse(["convert", drawing, "a.ngc", f"--{flag}", *filter(None, [each])])
+
+
+def test_targets_of_make_are_there():
+    targets = re.search(r"^\.PHONY: (.*)$", (HOUSE / "Makefile").read_text(), re.M)[1].split()
+    typed = [line.split()[1] for code in of_kind("make") for line in code.splitlines()]
+    assert len(typed) >= 5 and set(typed) <= set(targets)
+
+
 README = [
     re.sub(r" +[#>].*", "", line).removeprefix("brushsvg ")
-    for _, code in blocks(PAGES[0])
+    for code in of_kind("commands", "README.md")
     for line in code.splitlines()
-    if line.startswith("brushsvg ")
+    if not why_not_run("README.md", line)
 ]
 
 
 @pytest.mark.slow
 def test_commands_of_the_readme_run_in_their_order(folder, capsys):
-    typed = [line for line in README if not any(word in line for word in ELSEWHERE)]
-    assert len(typed) >= 15
-    for line in typed:
+    assert len(README) >= 15
+    for line in README:
         first, *others = line.split(" | ")
         for command in [first, *(f"{line.split()[0]} {other}" for other in others)]:
             if command not in ("brush show", "brush plot", "brush check"):  # named there, not typed

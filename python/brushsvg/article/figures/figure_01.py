@@ -18,7 +18,7 @@ figure = Figure(figsize=(8, 3.2), layout="constrained")
 left, right = figure.subplots(1, 2, sharey=True)
 
 
-def of_article(z):
+def of_article(z: np.ndarray) -> np.ndarray:
     return np.exp(1 - z)
 
 
@@ -26,7 +26,11 @@ ends = {"third_derivative": "w'''(1) = 0, as printed", "shear_free": "(EI w'')'(
 for end, words in ends.items():
     left.plot(laws.bristle(of_article, of_article, end)(z), z, label=words)
 for k in range(4):
-    right.plot(laws.bristle(lambda z, k=k: np.exp(k * (1 - z)), of_article)(z), z, label=f"k = {k}")
+
+    def softer(z: np.ndarray, k: float = k) -> np.ndarray:
+        return np.exp(k * (1 - z))
+
+    right.plot(laws.bristle(softer, of_article)(z), z, label=f"k = {k}")
 for axes, title in ((left, "EI = q = exp(1 - z)"), (right, "EI = exp(k (1 - z)), q = exp(1 - z)")):
     axes.set(title=title, xlabel="w, in lengths of the bristle")
     axes.legend(frameon=False, fontsize=8)

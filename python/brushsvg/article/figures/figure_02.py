@@ -30,5 +30,5 @@ for s in np.arange(0, 17, 2.0):
     right.fill(*(outline @ turn + tip).T, color="#2b3a67", alpha=0.15)
     right.plot(s, 0, "k.", ms=4)
 for axes in (left, right):
-    axes.set(aspect="equal", xlabel="mm")
+    axes.set(aspect="equal", xlabel="mm", ylabel="mm")
 rows = [("r at depth 5 mm", None, r), ("b", None, b), ("w", None, w)]

@@ -26,7 +26,7 @@ for (name, way), mark in zip(ways.items(), marks.passes, strict=True):
     for ring in mark.outline_mm:
         axes.fill(*ring.T, color="#2b3a67", alpha=0.8)
     axes.plot(*np.array(way)[:, :2].T, color="#d1495b", label="handle" if name == "straight" else None)
-axes.set(aspect="equal", xlabel="mm")
+axes.set(aspect="equal", xlabel="mm", ylabel="mm")
 axes.legend(frameon=False)
 straight, angular = marks.passes
 turning = int(np.argmax(angular.pose >= 2))  # where the handle turns

@@ -41,6 +41,7 @@ right.plot(z, brush.tip_gap(z), "k--", lw=0.8, label="b of the brush")
 right.set(xlabel="z, mm", ylabel="mm")
 for axes in (left, right):
     axes.legend(frameon=False, fontsize=8)
+assert gap.fit  # None of a law that is assumed
 k, half = gap.fit.law.coefficients[1], gap.fit.law.half_interval_95[1]
 rows = [("k_b", 0.52, k), ("its +-", 0.09, half), ("R^2", 0.83, gap.fit.r_squared)]
-rows.append(("RMSE, mm", 0.85, gap.fit.law.rmse_mm))
+rows += [("RMSE, mm", 0.85, gap.fit.law.rmse_mm)]

@@ -36,7 +36,7 @@ found = laws.from_angles(first, s, seen[0], np.clip(seen[1], 0.02, np.pi - 0.02)
 k = [
     laws.fit_law(z, one, 1, through_zero=True, absolute=True).law.coefficients[1] for one in found.tip_gap_mm
 ]
-rmse = [laws.fit_law(z, one, 4, absolute=True).law.rmse_mm for one in found.lag_mm]
+rmse = np.array([laws.fit_law(z, one, 4, absolute=True).law.rmse_mm for one in found.lag_mm], float)
 rows = [
     ("r(10), mm; 12.9 is (25)'s 13.0 by other means", None, laws.Profile(angles)(10.0)),
     ("RMSE of r, angles off by 7 degrees, median, mm", 1.98, np.median(rmse)),

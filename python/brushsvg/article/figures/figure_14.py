@@ -20,11 +20,11 @@ drawn = {
 }
 strokes = [brushsvg.stroke_from_path(d, width, name) for name, (d, width) in drawn.items()]
 brush = brushsvg.find_brush("round-6")
-plan = brushsvg.compensate(strokes, brush, sheet_mm=(170, 80)).plan
+plan = brushsvg.compensate(strokes, brush, sheet_mm=(170, 80), few_poses=False).plan
 marks = brushsvg.simulate(plan, brush)
 brushsvg.trace_outlines(marks, brush)
 figure = Figure(figsize=(8, 5.4), layout="constrained")
-above, below = figure.subplots(2, 1, sharex=True)
+above, below = figure.subplots(2, 1, sharex=True, sharey=True)
 whole = np.vstack([one.poses_mm for one in plan.passes])
 above.plot(*whole[:, :2].T, "k", lw=0.5)
 for one in plan.passes:
@@ -34,6 +34,7 @@ below.add_patch(PathPatch(Path.make_compound_path(*rings), color="k", lw=0))
 for stroke in strokes:
     below.plot(*brushsvg.flatten(stroke, 0.05)[:, :2].T, color="#d1495b", lw=0.8)
 for axes, title in ((above, "(a) the handle"), (below, "(b) the paint, and what was drawn")):
-    axes.set(aspect="equal", title=title)
+    axes.set(aspect="equal", title=title, ylabel="mm", xlim=(0, 175), ylim=(0, 78))
+below.set_xlabel("mm")
 wanted = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
 rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, wanted))]

@@ -1,8 +1,8 @@
 """Figure 15: strokes along Bezier curves
 
 Curves of our own, widths in mm as numbers: the article prints neither its curves nor their coordinates. (a) the
-handle in grey, the middle of the mark in colour. (b) in blue the simulated paint, in orange the outline that was
-wanted. All go from bottom to top, as there.
+handle in grey, with all poses (a program has only those that the mark needs), the middle of the mark in colour. (b)
+in blue the simulated paint, in orange the outline that was wanted. All go from bottom to top, as there.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ shapes = {
 }
 brush = brushsvg.find_brush("round-6")
 strokes = [brushsvg.stroke_from_path(path, width, f"w{width:g}") for width, path in shapes.items()]
-done = brushsvg.compensate(strokes, brush, sheet_mm=(170, 80))
+done = brushsvg.compensate(strokes, brush, sheet_mm=(170, 80), few_poses=False)
 marks = brushsvg.simulate(done.plan, brush)
 brushsvg.trace_outlines(marks, brush)
 figure = Figure(figsize=(8, 3), layout="constrained")
@@ -30,12 +30,13 @@ for stroke, way, mark in zip(strokes, done.plan.passes, marks.passes, strict=Tru
     along = np.column_stack([np.cos(mark.heading_rad), np.sin(mark.heading_rad)])
     left.plot(*way.poses_mm[:, :2].T, color="0.7", lw=1.5)
     left.plot(*(mark.contact_mm + e[:, None] * along)[d > 0.5].T, lw=1.5)
-    left.text(*way.poses_mm[0, :2] - [0, 6], stroke.id[1:], ha="center")
+    left.text(*way.poses_mm[0, :2] - [0, 3], stroke.id[1:], ha="center", va="top")
     for ring in mark.outline_mm:
         right.fill(*ring.T, color="#3f8fd9", alpha=0.6)
     for ring in brushsvg.wanted_outline(stroke, 0.02):
         right.plot(*np.vstack([ring, ring[:1]]).T, color="#e07a2f", lw=0.9)
 for axes, title in ((left, "(a)"), (right, "(b)")):
-    axes.set(aspect="equal", title=title, xlabel="mm")
+    axes.set(aspect="equal", title=title, xlabel="mm", ylim=(-3, 85))
+left.set_ylabel("mm")
 wanted = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
 rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, wanted))]

@@ -23,7 +23,7 @@ right.set(title="(b) r", xlabel="z, mm", ylabel="mm")
 left.legend(frameon=False)
 least, most = liner.depth_range_mm
 at = np.linspace(*round_6.depth_range_mm, 1001)
-same = at[np.argmin(np.abs(round_6.half_width(at) - liner.half_width(most)))]
+same = float(at[np.argmin(np.abs(round_6.half_width(at) - liner.half_width(most)))])
 rows = [
     ("width of the liner at least, mm", 1.0, 2 * liner.half_width(least)),
     ("width of the liner at most, mm", 2.0, 2 * liner.half_width(most)),

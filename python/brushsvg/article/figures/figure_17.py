@@ -32,11 +32,13 @@ figure = Figure(figsize=(8, 5.6), layout="constrained")
 rings = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in marks.outline_mm]
 for axes, shade, title in zip(figure.subplots(2, 1), ("0.75", "k"), ("(a)", "(b)"), strict=True):
     axes.add_patch(PathPatch(Path.make_compound_path(*rings), color=shade, lw=0))
-    axes.set(aspect="equal", title=title, xlim=(8, 158), ylim=(4, 56))
+    axes.set(aspect="equal", title=title, xlabel="mm", ylabel="mm", xlim=(8, 158), ylim=(4, 56))
 for way, mark in zip(plan.passes, marks.passes, strict=True):
     figure.axes[0].plot(*way.poses_mm[:, :2].T, color="#d1495b", lw=0.9)
     figure.axes[0].plot(*mark.contact_mm.T, color="#2f8f4e", lw=1.2)
 wanted = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
 poses = [len(one.poses_mm) for one in plan.passes]
-rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, wanted))]
-rows.append(("poses of a stroke, at most; the article's had 6 to 14", 14, max(poses)))
+rows = [
+    ("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, wanted)),
+    ("poses of a stroke, at most; the article's had 6 to 14", 14, max(poses)),
+]

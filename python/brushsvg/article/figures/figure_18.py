@@ -27,19 +27,19 @@ plan = brushsvg.compensate(strokes, brush, sheet_mm=(215, 70)).plan
 reference = brushsvg.simulate(plan, brush).passes
 figure = Figure(figsize=(8, 6), layout="constrained")
 above, below = figure.subplots(2, 1, height_ratios=(1.2, 1))
-off = []
+distances: list[np.ndarray] = []
 for colour in ("#3f8fd9", "#e07a2f", "#2f8f4e", "#8a4fbf"):
     for way, wanted in zip(plan.passes, reference, strict=True):
         bent = brushsvg.brush_like("bent", brush)
-        bent.lag = brushsvg.laws.Profile(np.multiply(brush.lag.coefficients, rng.normal(1, 0.1)))
+        bent.lag = brushsvg.laws.Profile(np.multiply(brush.lag.coefficients, rng.normal(1, 0.1)).tolist())
         alone = brushsvg.Plan(plan.brush, "", plan.sheet_mm, [way])
         painted = brushsvg.simulate(alone, bent).passes[0].contact_mm
         above.plot(*painted.T, color=colour, lw=0.8)
-        off.append(np.hypot(*(painted[:, None] - wanted.contact_mm).T).min(axis=0))
+        distances.append(np.hypot(*(painted[:, None] - wanted.contact_mm).T).min(axis=0))
 for wanted in reference:
     above.plot(*wanted.contact_mm[::12].T, "k+", ms=3, mew=0.5)
-above.set(aspect="equal", title="(a)")
-off = np.concatenate(off)
+above.set(aspect="equal", title="(a)", xlabel="mm", ylabel="mm")
+off = np.concatenate(distances)
 below.hist(off, bins=np.arange(0, off.max() + 0.1, 0.1), color="#2b3a67", log=True)
 below.set(title="(b)", xlabel="distance, mm", ylabel="points")
 rows = [("greatest distance, mm", 5.0, off.max()), ("median, mm", None, np.median(off))]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 
 from ..._core import remarks, write_brush
-from ...brush.library import find_brush
 from ...files import read_bytes
 from ...pipeline.json_files import read_plan
 from ..console import about, stage, tell, warn
+from ..steps.options import brush_of
 from ..steps.output_places import check_places, suffix_of, write
 from .scan import read_photographs
 
@@ -83,7 +83,7 @@ def _calibrate_dabs(args, read, name: str) -> None:
     from ...calibration.from_dabs import calibrate_dabs
     from ...calibration.photo_report import dabs_picture
 
-    before = find_brush(args.brush)
+    before = brush_of(args.brush)
     joined = tuple(stroke for pair in read.marks.joined for stroke in pair)
     with about(args.input):
         made = calibrate_dabs(dabs_of(read), before, name, edge_mm(read), joined)
@@ -107,7 +107,7 @@ def _calibrate_lag(args, read, name: str) -> None:
     from ...calibration.mark_report import strays_told
     from ...calibration.photo_report import read_picture
 
-    own = find_brush(args.brush)
+    own = brush_of(args.brush)
     with about(args.brush):
         refuse_assumed(own)
     with about(args.input):
@@ -155,10 +155,12 @@ def update_file(args) -> None:
     from ...painted.learning import learn
     from ...painted.repeats import read_displacement_mm
 
-    before, plan = find_brush(args.prior), read_plan(args.plan)
+    before = brush_of(args.prior)
+    with about(args.plan):
+        plan = read_plan(args.plan)
     with about(args.spread or ""):
         spread_mm = read_displacement_mm(args.spread) if args.spread else None
-    photos = [(path, read_bytes(path)) for path in args.photos]
+    photos = [(path, _photo(path)) for path in args.photos]
     of_photos = [hashlib.sha256(data).hexdigest() for _, data in photos]
     with about(args.prior):
         refuse_learned(before, of_photos)
@@ -174,3 +176,8 @@ def update_file(args) -> None:
     warn(args.output, remarks(made.brush))
     write(args, {args.output: write_brush(made.brush)})
     tell(report(made))
+
+
+def _photo(path: str) -> bytes:
+    with about(path):
+        return read_bytes(path)

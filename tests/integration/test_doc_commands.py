@@ -1,0 +1,197 @@
+"""Commands of docs run as they stand, by a shell, each block in a folder of its own. What a block speaks of
+and does not make itself is made for it when it is first named: photographs by the camera of the package, of paint by
+tests/laws."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import cv2
+import ezdxf
+import pytest
+from command import COMMAND
+from shown_code import HOUSE, PAGES, Block, blocks, why_not_run
+
+for place in ("tools", "tests/laws"):
+    sys.path.insert(0, str(HOUSE / place))
+import test_flatbed  # noqa: E402
+from walkthrough_pictures import photo_of  # noqa: E402
+
+from brushsvg.calibration.chart.file import write_chart  # noqa: E402
+from brushsvg.cli.arguments.parser import parse  # noqa: E402
+
+ELSEWHERE = ("README.md", "walkthrough.md")  # tests/python/test_doc_code.py, test_walkthrough.py
+LONGEST_S = 300
+ROBOT = (HOUSE / "examples" / "robot.svg").read_text()
+FOREIGN = "G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG1 X120 Y30\nG0 Z5\nG0 X0 Y0\nM2\n"
+TABLE = [
+    "kind,depth_mm,value_mm",
+    *(f"lag,{d},{3 + 0.9 * d:.1f}\nwidth,{d},{0.8 * d:.1f}" for d in range(1, 9)),
+]
+chart_photo = cache(photo_of)
+
+
+def to_run() -> list[Block]:
+    """Blocks of pages whose commands are held here, in the pages' order."""
+    of_inkscape = ("shell", "plugins.md")
+    found = [block for page in PAGES for block in blocks(page) if page.name not in ELSEWHERE]
+    found = [block for block in found if block.kind == "commands" or (block.kind, block.page) == of_inkscape]
+    return [
+        block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())
+    ]
+
+
+class Desk:
+    """The folder in which a block is typed."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        programs = folder.parent / "programs"
+        programs.mkdir()
+        (programs / "brushsvg").symlink_to(COMMAND)
+        self.env = os.environ | {
+            "HOME": str(folder.parent),
+            "INKSCAPE_PROFILE_DIR": str(folder.parent / "profile"),
+            "PATH": f"{programs}:/usr/bin:/bin",
+        }
+        for name in ("DISPLAY", "VIRTUAL_ENV", "PYTHONPATH"):
+            self.env.pop(name, None)
+
+    def type(self, line: str) -> None:
+        """Run by a shell; it must say that all went well."""
+        done = subprocess.run(
+            ["bash", "-c", line],
+            cwd=self.folder,
+            env=self.env,
+            capture_output=True,
+            text=True,
+            timeout=LONGEST_S,
+        )
+        assert done.returncode == 0, (line, done.stderr)
+        assert "this should not happen" not in done.stderr, done.stderr
+
+    def make(self, name: str) -> None:
+        """What a command speaks of, unless it is there."""
+        path = self.folder / name
+        if any(self.folder.glob(name)) or name not in MADE:
+            return
+        made = MADE[name]
+        if callable(made):
+            made(self)
+        elif made.startswith("brushsvg "):
+            self.make_all(made)
+            self.type(made)
+        else:
+            path.write_text(made)
+        assert any(self.folder.glob(name)), name
+
+    def make_all(self, line: str) -> None:
+        """What the commands of a line read."""
+        for command in re.split(r" \| ", line):
+            words = shlex.split(re.sub(" > .*", "", command), comments=True)
+            if words[0] == "brushsvg":
+                written = _written(words[1:])
+                for word in words:
+                    if word not in written:
+                        self.make(word)
+                for word in words:
+                    if word.endswith(".jpg") and word not in written and not (self.folder / word).exists():
+                        self.type(_photographing(word, words))
+            elif words[0] in ("inkscape", "xvfb-run"):
+                self.make("word.svg")
+
+
+def _written(words: list[str]) -> set[str | None]:
+    """The files that a command writes."""
+    args = parse(words)
+    names = ["output", "preview", "picture", "plot", "page", "report", "mended_cell"]
+    names += {"chart": ["chart"], "brush": ["name"], "cell": ["name"]}.get(words[0], [])
+    return {getattr(args, name, None) for name in names}
+
+
+def _photographing(photo: str, words: list[str]) -> str:
+    """The command that takes a photograph of the job which a command reads from it, painted as that is told."""
+    flags = dict(pair for pair in pairwise(words) if pair[0].startswith("--"))
+    job = flags.get("--plan") or next(word for word in words[2:] if word.endswith((".svg", ".json")))
+    painted = {"--brush": flags.get("--brush") or flags.get("--prior")}
+    painted |= {name: flags.get(name) for name in ("--cell", "--corrections")}
+    told = [word for name, value in painted.items() if value for word in (name, value)]
+    seed = re.sub(r"\D", "", photo) or "0"
+    return shlex.join(["brushsvg", "simulate-photo", job, photo, "--seed", seed, *told])
+
+
+def _letters(desk: Desk, *names: str) -> None:
+    for name in names:
+        (desk.folder / name).parent.mkdir(exist_ok=True)
+        (desk.folder / name).write_text(ROBOT)
+
+
+def _dxf(desk: Desk) -> None:
+    drawing = ezdxf.new(units=4)  # mm
+    drawing.modelspace().add_line((10, 10), (60, 40), dxfattribs={"lineweight": 200})
+    drawing.saveas(desk.folder / "b.dxf")
+
+
+def _chart_photo(name: str, of: str = "chart.json"):
+    def make(desk: Desk) -> None:
+        desk.make(of)
+        (desk.folder / name).write_bytes(chart_photo((desk.folder / of).read_bytes()))
+
+    return make
+
+
+def _scan(desk: Desk) -> None:
+    (desk.folder / "chart.json").write_text(write_chart(test_flatbed.a5()))
+    cv2.imwrite(str(desk.folder / "scan.png"), test_flatbed.scanned(300)[..., ::-1])
+
+
+# Name of a file -> its text, the command that makes it, or a function of the desk.
+MADE = {
+    "word.svg": ROBOT,
+    "a.svg": ROBOT,
+    "letters/": lambda desk: _letters(desk, "letters/one.svg"),
+    "more/*.svg": lambda desk: _letters(desk, "more/two.svg", "more/three.svg"),
+    "list.txt": lambda desk: (
+        _letters(desk, "four.svg"),
+        (desk.folder / "list.txt").write_text("four.svg\n"),
+    ),
+    "names.txt": "Ada\nGrace\n",
+    "b.dxf": _dxf,
+    "foreign.gcode": FOREIGN,
+    "mine.csv": "\n".join(TABLE) + "\n",
+    "Lora.ttf": lambda desk: shutil.copy(
+        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", desk.folder / "Lora.ttf"
+    ),
+    "robot.svg": ROBOT,
+    "mine.json": "brushsvg brush new mine.json --like round-6",
+    "my-brush.json": "brushsvg brush new my-brush.json --like round-6",
+    "mine.toml": "brushsvg cell new mine.toml",
+    "my-machine.toml": "brushsvg cell new my-machine.toml",
+    "plan.json": "brushsvg convert word.svg plan.json --brush my-brush.json",
+    "word.json": "brushsvg convert word.svg word.json --brush mine.json",
+    "chart.json": "brushsvg chart chart.ngc --page page.pdf --chart chart.json",
+    "strokes.jpg": _chart_photo("strokes.jpg"),
+    "IMG_2041.jpg": _chart_photo("IMG_2041.jpg"),
+    "dabs.jpg": _chart_photo("dabs.jpg", "dabs.json"),
+    "scan.png": _scan,
+}
+
+
+@pytest.mark.parametrize("block", to_run(), ids=lambda block: f"{block.page}:{block.line}")
+def test_a_block_of_commands_can_be_typed_as_it_stands(block, tmp_path):
+    (tmp_path / "desk").mkdir()
+    desk = Desk(tmp_path / "desk")
+    if block.kind == "shell":
+        desk.type("brushsvg install-plugin inkscape")
+    for line in block.code.splitlines():
+        if not why_not_run(block.page, line):
+            desk.make_all(line)
+            desk.type(line)
+            for name in re.findall(r"(?:-o|--picture|--plot|--page|--preview|--chart|>) +(\S+\.\w+)", line):
+                assert (desk.folder / name).stat().st_size > 0, line

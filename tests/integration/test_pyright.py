@@ -1,0 +1,151 @@
+"""pyright, strict, over all Python that README, docs, examples, notebooks and the article's figures show, and over
+every public name with its members: no error. Mistakes that a user could make in them are found.
+
+What is not asked, and why: matplotlib's functions take keywords without types, so members of which a part is unknown
+pass in files that draw (those of brushsvg are held whole by every_name.py); svgpathtools has no types at all; a cell of
+a notebook may end in an expression, which is shown.
+"""
+
+import inspect
+import json
+import os
+import shutil
+import subprocess
+import sys
+from operator import attrgetter
+from pathlib import Path
+
+import pytest
+from shown_code import HOUSE, NOTEBOOKS, PAGES, blocks, cells
+
+import brushsvg
+
+PACKAGES = {"pyright": "1.1.414"}
+PACKAGE = HOUSE / "python" / "brushsvg"
+FIGURES = PACKAGE / "article" / "figures"
+OTHERS = "article.md", "machines.md"  # made of FIGURES; a program that imports no brushsvg
+# what a page speaks of without saying where it is from
+GIVEN = {
+    "batch.md": "from pathlib import Path\nsvg_text = Path('word.svg').read_text()\n",
+    "text.md": "from pathlib import Path\nfont_bytes = Path('EMSAllure.svg').read_bytes()\n",
+}
+NOT_ASKED = {
+    "matplotlib": "reportUnknownMemberType=false",
+    "svgpathtools": "reportMissingTypeStubs=false",
+    "notebook": "reportUnusedExpression=false",
+}
+PROGRAM = """import brushsvg
+from brushsvg import laws
+
+drawing = brushsvg.read_drawing("a.svg")
+strokes, notices = brushsvg.strokes(drawing)
+brush = brushsvg.find_brush("round-6")
+done = brushsvg.compensate(strokes, brush, drawing.sheet_mm)
+print(done.plan.passes[0].poses_mm[:, 2].min(), brush.lag(5.0) + 1.0, notices[0].sentence)
+made = brushsvg.convert("a.svg", "a.ngc", brush=brush, width=3.0, figures=True)
+overlap = made.figures.total.overlap if made.figures else None
+measured = brushsvg.calibrate({"lag": [], "width": [], "name": "mine"})
+fits = [law.fit.r_squared for law in measured.laws if law.fit]
+alpha_rad = laws.alpha_after(0.5, [1.0, 2.0], 3.0)
+"""
+# (what stands there, what is written instead, what pyright calls it)
+PLANTED = (
+    ('read_drawing("a.svg")', "read_drawing(3)", "reportArgumentType"),
+    ("drawing.sheet_mm)", "drawing.sheet)", "reportAttributeAccessIssue"),
+    ('find_brush("round-6")', "find_brush(6)", "reportArgumentType"),
+    ("strokes, brush, drawing", "brush, strokes, drawing", "reportArgumentType"),
+    (", brush, drawing.sheet_mm)", ", brush)", "reportCallIssue"),
+    ("brush.lag(5.0) + 1.0", 'brush.lag(5.0) + "1"', "reportOperatorIssue"),
+    (" if made.figures else None", "", "reportOptionalMemberAccess"),
+    ("width=3.0", "widht=3.0", "reportCallIssue"),
+    ("width=3.0", 'width="3"', "reportArgumentType"),
+    (" if law.fit", "", "reportOptionalMemberAccess"),
+    ('"name": "mine"', '"name": 3', "reportAttributeAccessIssue"),
+    ("[1.0, 2.0], 3.0)", "[1.0, 2.0])", "reportCallIssue"),
+    ("0.5, [1.0", "object(), [1.0", "reportArgumentType"),
+    ("strokes, notices =", "strokes, notices, more =", "reportAssignmentType"),
+)
+
+
+def shown() -> dict[str, str]:
+    """Name of a file -> code as it is shown."""
+    found = {f"figure {path.stem}": path.read_text() for path in FIGURES.glob("*.py")}
+    found |= {f"example {path.stem}": path.read_text() for path in (HOUSE / "examples").glob("*.py")}
+    found |= {f"notebook {path.stem}": "\n".join(cells(path)) for path in NOTEBOOKS}
+    for page in PAGES:
+        code = [block.code for block in blocks(page) if block.kind == "python"]
+        if code and page.name not in OTHERS:
+            found[f"page {page.stem}"] = "\n".join([GIVEN.get(page.name, ""), *code])
+    return found
+
+
+def asked(name: str, code: str) -> str:
+    """The code below a line that says what is not asked of it."""
+    spared = [
+        rule for reason, rule in NOT_ASKED.items() if f"import {reason}" in code or reason == name.split()[0]
+    ]
+    spared += [NOT_ASKED["matplotlib"]] if "from matplotlib" in code else []
+    return f"# pyright: {', '.join(spared)}\n{code}" if spared else code
+
+
+def every_name() -> str:
+    """A program that looks at every public name, and at every member of every public class."""
+    names = {name for name in brushsvg.__all__ if name not in ("__version__", "laws")}
+    lines = ["import brushsvg", ""]
+    for number, name in enumerate(sorted(names | {f"laws.{each}" for each in brushsvg.laws.__all__})):
+        thing = attrgetter(name)(brushsvg)
+        lines.append(f"print(brushsvg.{name})")
+        if inspect.isclass(thing):
+            parents = set(dir(Exception if issubclass(thing, Exception) else tuple))
+            members = {each for each in [*dir(thing), *inspect.get_annotations(thing)] if each[0] != "_"}
+            looks = [f"    print(it.{each})" for each in sorted(members - parents)]
+            lines += [f"def look_{number}(it: brushsvg.{name}) -> None:", *(looks or ["    print(it)"])]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory, npm):
+    """What pyright says of each file: name -> [(rule, line and sentence)]. The package is found where an installed one
+    is, beside others, so that it counts as one that ships its types."""
+    pyright = npm("pyright", PACKAGES) / "pyright" / "index.js"
+    folder = tmp_path_factory.mktemp("pyright")
+    shutil.copytree(
+        PACKAGE, folder / "site" / "brushsvg", ignore=shutil.ignore_patterns("data", "__pycache__")
+    )
+    programs = folder / "programs"
+    programs.mkdir()
+    files = {name: asked(name, code) for name, code in shown().items()} | {"every_name": every_name()}
+    files |= {f"planted {number}": PROGRAM.replace(*pair) for number, (*pair, _) in enumerate(PLANTED)}
+    for name, code in (files | {"sound": PROGRAM}).items():
+        (programs / f"{name}.py").write_text(code, encoding="utf-8")
+    (programs / "pyrightconfig.json").write_text('{"typeCheckingMode": "strict"}')
+    done = subprocess.run(
+        ["node", pyright, "-p", programs, "--pythonpath", sys.executable, "--outputjson"],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PYTHONPATH": str(folder / "site")},
+    )
+    said = json.loads(done.stdout)
+    assert said["summary"]["filesAnalyzed"] == len(files) + 1
+    found: dict[str, list[tuple[str, str]]] = {name: [] for name in [*files, "sound"]}
+    for each in said["generalDiagnostics"]:
+        line = f"{each['range']['start']['line'] + 1}: {each['message']}"
+        found[Path(each["file"]).stem].append((each.get("rule", ""), line))
+    return found
+
+
+def test_all_that_is_shown_is_asked():
+    kinds = [name.split()[0] for name in shown()]
+    assert {"README", "python", "batch", "text"} <= {name.split()[-1] for name in shown()}
+    assert [kinds.count(kind) for kind in ("figure", "example", "notebook")] == [18, 2, 3]
+
+
+def test_what_is_shown_has_no_error_of_types(told):
+    assert {name: said for name, said in told.items() if said and not name.startswith("planted")} == {}
+
+
+@pytest.mark.parametrize("number", range(len(PLANTED)), ids=lambda number: PLANTED[number][1])
+def test_planted_errors_are_found(told, number):
+    right, wrong, rule = PLANTED[number]
+    assert PROGRAM.count(right) == 1
+    assert rule in [said for said, _ in told[f"planted {number}"]], (wrong, told[f"planted {number}"])
