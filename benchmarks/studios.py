@@ -7,8 +7,9 @@ sheet, up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (
 100 to 300 mm; every sheet is laid anew, each stroke once more 0.1 mm elsewhere, the camera held another way. The paint
 is that of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the
 first the brush learns from it (`calibrate --plan --prior --machine axes,tilt,backlash`), `compare` with this brush
-writes the cell (`--mended-cell`), and the brush is dipped before each stroke, not before every other one, where paint
-is missing; after the second strokes are led elsewhere (`convert --corrections`). Machines run the programs' text.
+writes the cell (`--mended-cell`) and what is left of each stroke beside it (`convert --corrections`), and the brush is
+dipped before each stroke, not before every other one, where paint is missing; after the second strokes are led once
+more by what `compare --corrections` says. Machines run the programs' text.
 
 Printed: overlap of real paint with the drawing; of the gap that repeats (to what a studio paints that knows its brush,
 and where all else is as it should be) how much is closed; strokes that became worse; whether `compare` names the
@@ -202,9 +203,11 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
     words = (
         f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
     )
-    told = run(f"{words} --quiet --mended-cell cell-{sheet + 1}.toml", folder)
+    told = run(f"{words} --quiet --mended-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
     (folder / f"mended-{sheet}.txt").write_text(told)
-    return strokes_a_load, ""
+    left = json.loads((folder / f"left-{sheet}.json").read_text())
+    rows = left.get("beside_machine", left)["strokes"]
+    return strokes_a_load, f"left-{sheet}.json" if any(row["correction"] for row in rows) else ""
 
 
 def truth_of(amiss) -> dict[str, float]:
