@@ -7,8 +7,9 @@ sheet, up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (
 100 to 300 mm; every sheet is laid anew, each stroke once more 0.1 mm elsewhere, the camera held another way. The paint
 is that of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the
 first the brush learns from it (`calibrate --plan --prior --machine axes,tilt,backlash`), `compare` with this brush
-writes the cell (`--mended-cell`), and the brush is dipped before each stroke, not before every other one, where paint
-is missing; after the second strokes are led elsewhere (`convert --corrections`).
+writes the cell (`--mended-cell`) and what is left of each stroke beside it (`convert --corrections`), and the brush is
+dipped before each stroke, not before every other one, where paint is missing; after the second strokes are led once
+more by what `compare --corrections` says. Machines run the programs' text.
 
 Printed: overlap of real paint with the drawing; of the gap that repeats (to what a studio paints that knows its brush,
 and where all else is as it should be) how much is closed; strokes that became worse; whether `compare` names the
@@ -36,13 +37,11 @@ import studio
 from numpy.polynomial.polynomial import polyval
 from photograph import Camera
 
-from brushsvg import _core, find_brush
+from brushsvg import find_brush
 from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
 from brushsvg.evaluation.report import wanted_rings
-from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell, write_cell
-from brushsvg.machine.distortion import told_pass
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
 from brushsvg.pipeline.preparation import Options, prepare
@@ -125,7 +124,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
         flags = f"--brush {brush} --quiet"
         led = f"--corrections {corrections}" if corrections else ""
-        run(f"convert word.svg plan-{sheet}.json {flags} {led}", folder)
+        run(f"convert word.svg plan-{sheet}.json --cell {cell} {flags} {led}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         if sheet == 0:
             amiss, rng = random_studio(number, plan)
@@ -137,9 +136,8 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
             result["truth"] = truth_of(amiss)
             result["lasts_mm"] = amiss.lasts_mm
-        machine = find_cell(folder / cell)
-        passes = [told_pass(with_chords(one) if machine.machine else one, machine) for one in plan.passes]
-        told = _core.Plan("", "", plan.sheet_mm, passes)
+        run(f"convert word.svg told-{sheet}.ngc --cell {cell} {flags} {led}", folder)
+        told = studio.told_by((folder / f"told-{sheet}.ngc").read_text(), plan.sheet_mm)
         swept = studio.swept(told, amiss, strokes_a_load)
         always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)
         seed = 100 * number + sheet
@@ -205,9 +203,11 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
     words = (
         f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
     )
-    told = run(f"{words} --quiet --mended-cell cell-{sheet + 1}.toml", folder)
+    told = run(f"{words} --quiet --mended-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
     (folder / f"mended-{sheet}.txt").write_text(told)
-    return strokes_a_load, ""
+    left = json.loads((folder / f"left-{sheet}.json").read_text())
+    rows = left.get("beside_machine", left)["strokes"]
+    return strokes_a_load, f"left-{sheet}.json" if any(row["correction"] for row in rows) else ""
 
 
 def truth_of(amiss) -> dict[str, float]:

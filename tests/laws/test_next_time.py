@@ -420,3 +420,16 @@ def test_where_strokes_begin_and_end_is_told(tmp_path, capsys):
     assert later("line", "began_mm") == pytest.approx(1.5, abs=0.25), rows
     assert later("bar", "ended_mm") == pytest.approx(-2.0, abs=0.25), rows
     assert abs(later("line", "ended_mm")) < 0.25 and abs(later("bar", "began_mm")) < 0.25
+
+
+def test_a_stroke_that_ran_dry_moves_no_other(tmp_path, capsys):
+    """Where half of a stroke has no paint, the sheet's place is told by the others."""
+    studio = Studio(tmp_path, 17)
+    plan = studio.plan()
+    studio.own = {each.stroke: np.zeros(2) for each in plan.passes}
+    studio.axes = np.eye(2)
+    studio.cut = {"bow": (np.array([-1.0, 0.0]), 12.0)}
+    out = studio.compared(studio.photographed(plan))
+    rows = {row["stroke"]: row for row in json.loads(out.read_text())["strokes"]}
+    assert rows["bow"]["missing"] > 0.15 and rows["bow"]["aside_mm"] > 0.1, rows["bow"]
+    assert max(row["aside_mm"] for name, row in rows.items() if name != "bow") < 0.03, rows

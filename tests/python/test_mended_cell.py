@@ -32,6 +32,7 @@ def found(beyond: Machine, half=1e-6):
         (MACHINE, "lean in x"): beyond.lean_mm_per_mm[0],
         (MACHINE, "lean in y"): beyond.lean_mm_per_mm[1],
         (MACHINE, "backlash in x"): 0.4,
+        (MACHINE, "backlash in y"): 0.0,
         (PAPER, "height"): height,
         (PAPER, "tilt in x"): beyond.tilt_mm_per_mm[0],
         (PAPER, "tilt in y"): beyond.tilt_mm_per_mm[1],
@@ -78,6 +79,12 @@ def test_the_map_of_the_paper_stays():
     assert mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows)).map_mm == rows
 
 
+def test_backlash_goes_into_the_cell_on_top_of_what_it_undid():
+    before = replace(UNDONE, backlash_mm=(0.1, 0.2))
+    assert mended(found(TRUE), MIDDLE, before).backlash_mm == pytest.approx((0.5, 0.2))
+    assert mended(found(TRUE, half=10.0), MIDDLE, before) is None
+
+
 def test_what_is_not_certain_changes_nothing():
     assert mended(found(TRUE, half=10.0), MIDDLE, UNDONE) is None
 
@@ -95,12 +102,23 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
     assert held["tilt in x"] == free["tilt in x"]
 
 
-@pytest.mark.parametrize(("aside_mm", "share"), [(0.15, 0.5), (0.2, 0.5), (0.25, 0.68), (1.0, 0.8)])
-def test_what_is_hardly_more_than_chance_is_taken_back_by_half(aside_mm, share):
+@pytest.mark.parametrize(
+    ("aside_mm", "one_mm", "share", "of_one"),
+    [
+        (0.1, 0.1, 0.3, 0.3),
+        (0.15, 0.15, 1 - 0.02 / (0.15**2 * 8 / 5), 1 - 0.02 / (0.15**2 * 8 / 5)),
+        (0.2, 0.2, 1 - 0.02 / (0.2**2 * 8 / 5), 1 - 0.02 / (0.2**2 * 8 / 5)),
+        (0.1, 0.4, 0.3, 0.75),
+        (1.0, 1.0, 0.8, 0.8),
+    ],
+)
+def test_of_what_may_be_chance_less_is_taken_back(aside_mm, one_mm, share, of_one):
+    """Of all strokes by their spread (8 numbers, of which 3 are the sheet's place), of one by how far it lies."""
+    asides = [one_mm, -aside_mm, aside_mm, -aside_mm]
     rows = [
         SimpleNamespace(
             stroke=f"s{k}",
-            placed=Placed((aside_mm * (-1) ** k, 0.0), 0.0, 0.0, True),
+            placed=Placed((asides[k], 0.0), 0.0, 0.0, True),
             middle_mm=(20.0 * k, 30.0),
             missing=0.0,
             like=1.0,
@@ -114,4 +132,5 @@ def test_what_is_hardly_more_than_chance_is_taken_back_by_half(aside_mm, share):
     made, told = next_corrections(compared, SimpleNamespace(passes=passes), (), None)
     assert not told
     for k, row in enumerate(rows):
-        assert made[row.stroke].shift_mm == pytest.approx((-share * aside_mm * (-1) ** k, 0.0))
+        share_of = of_one if k == 0 else share
+        assert made[row.stroke].shift_mm == pytest.approx((-share_of * asides[k], 0.0))

@@ -29,6 +29,7 @@ COVERED, MOSTLY = (
     0.7,
 )  # share of a mark, where it lies, that is painted at least; without paint, it is missing
 LEVEL = 0.5  # of the usual paint: an edge
+DRIER = 0.1  # share of a mark without paint, beyond that of most: its middle is the painted part's
 THING_MM2 = 100.0  # of one piece beside all marks: a hand, a tool or a large blot
 PALEST = 0.15  # of the usual paint, that of a stroke
 ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
@@ -292,10 +293,14 @@ def _uncovered(row: Compared, seen, stroke: Wanted, near: np.ndarray, canvas: Ca
 
 
 def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
-    """The shift and turn that bring all predicted middles nearest to where the marks lie (Kabsch), and what is left."""
+    """The shift and turn that bring all predicted middles nearest to where the marks lie (Kabsch), and what is left.
+    Marks that are much drier than the best ones lie where their paint was, and are left out where enough others are."""
     known = [row for row in rows if row.placed.found]
     if len(known) < LEAST_MARKS:
         return common, None
+    usual = float(np.quantile([row.missing for row in known], 0.25))
+    whole = [row for row in known if row.missing <= usual + DRIER]
+    known = whole if len(whole) >= LEAST_MARKS else known
     before = np.array([row.middle_mm for row in known]) - middle
     after = before + np.array([row.placed.shift_mm for row in known])
     here, there = before.mean(axis=0), after.mean(axis=0)

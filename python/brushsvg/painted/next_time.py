@@ -9,14 +9,14 @@ import numpy as np
 
 from ..errors import Error, Notice
 from ..geometry.rotation import rotation
-from .comparison import Compared, Comparison
+from .comparison import LEAST_MARKS, Compared, Comparison
 from .corrections import MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction
 from .led_width import refuse_width
 
-# Of what was seen so much is taken back, for part of it does not repeat: a brush set down twice is taken to lie 0.1 mm
-# elsewhere in x and in y (standard deviation). Where strokes lie aside by hardly more, 0.8 of it led as many of them
-# away as nearer; with less than 0.5, what does repeat takes more than three sheets.
-MOST_SHARE, LEAST_SHARE = 0.8, 0.5
+# Of what was seen so much is taken back as repeats: a brush set down twice is taken to lie 0.1 mm elsewhere in x and in
+# y (standard deviation). With half of it at least, strokes of machines that do no better were led away as often as
+# nearer; with less than 0.3, what is left of a machine that does better takes more than three sheets.
+MOST_SHARE, LEAST_SHARE = 0.8, 0.3
 AT_RANDOM_MM = 0.1
 FARTHER_MM = 0.1  # what does not repeat leads every other stroke a little farther aside
 LIKE = 0.6  # overlap of a mark, where it lies, with its paint: less may be any paint that is near
@@ -39,8 +39,6 @@ def next_corrections(
     made, notices = {each.stroke: replace(each, start_mm=starts[each.stroke]) for each in before}, []
     if found.spread_mm is None:
         return made, notices
-    by_chance = 2 * AT_RANDOM_MM**2 / max(found.spread_mm, AT_RANDOM_MM) ** 2
-    share = min(max(1 - by_chance, LEAST_SHARE), MOST_SHARE)
     for row in found.strokes:
         if not row.placed.found or row.missing > UNSEEN:
             continue
@@ -51,7 +49,7 @@ def next_corrections(
             )
             notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
             continue
-        correction = _next(row, found, share, starts[row.stroke], made.get(row.stroke))
+        correction = _next(row, found, starts[row.stroke], made.get(row.stroke))
         try:
             if correction.wider_mm:
                 refuse_width(passes[row.stroke], correction.wider_mm, brush)
@@ -92,8 +90,20 @@ def farther(found: Comparison, before: dict[str, float]) -> list[Notice]:
     return notices
 
 
-def _next(row: Compared, found: Comparison, share: float, start_mm, before: Correction | None) -> Correction:
-    off, sheet = share * aside_mm(row, found), found.common
+def _repeats(aside_mm: np.ndarray, found: Comparison) -> float:
+    """The share of what a stroke lies aside that repeats: that of all strokes by their spread, more of one that lies
+    farther aside than chance leads any."""
+    by_chance = 2 * AT_RANDOM_MM**2
+    known = max(sum(row.placed.found for row in found.strokes), LEAST_MARKS)
+    spread = found.spread_mm**2 * 2 * known / (2 * known - 3)  # shift and turn of the sheet were fitted
+    of_all, its_own = (1 - by_chance / max(square, by_chance) for square in (spread, aside_mm @ aside_mm / 2))
+    return min(max(of_all, its_own, LEAST_SHARE), MOST_SHARE)
+
+
+def _next(row: Compared, found: Comparison, start_mm, before: Correction | None) -> Correction:
+    aside, sheet = aside_mm(row, found), found.common
+    share = _repeats(aside, found)
+    off = share * aside
     turn_deg = share * math.degrees(row.placed.turn_rad - sheet.turn_rad)
     shift = np.array(before.shift_mm) - off if before else -off
     return Correction(
