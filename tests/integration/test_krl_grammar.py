@@ -91,7 +91,8 @@ def errors_of(npm, tmp_path_factory):
         for each in (reads, parses):
             each.removeErrorListeners()
             each.addErrorListener(told)
-        getattr(parses, parser.ruleNames[0])()
+        first = parser.ruleNames[0]
+        getattr(parses, first if hasattr(parses, first) else f"{first}_")()  # where Python has that word
         return told.told
 
     yield errors
@@ -125,7 +126,7 @@ def test_a_program_that_fetches_paint_is_krl(errors_of, tmp_path):
 
 def test_a_page_of_1000_strokes_is_krl(errors_of, tmp_path):
     (tmp_path / "page.json").write_text(json.dumps(page(1000)))
-    brushsvg("convert", "page.json", "page.src", "--cell", "kr6-r900", cwd=tmp_path, status=0)
+    brushsvg("convert", "page.json", "page.src", "--cell", "kr6-r900", cwd=tmp_path, status=0, timeout_s=600)
     assert errors_of((tmp_path / "page.src").read_text()) == []
 
 
