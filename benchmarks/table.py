@@ -157,7 +157,10 @@ def advance(row: str) -> Callable[[Path], Spent]:
     """ns a move of a row of advance_bench."""
 
     def measure(tree: Path) -> Spent:
-        _, told = run([tree / "build" / "release" / "benchmarks" / "advance_bench"])
+        bench = tree / "build" / "release" / "benchmarks" / "advance_bench"
+        if not bench.exists():
+            sys.exit(f"{bench} is not there: make bench builds it")
+        _, told = run([bench])
         ns = float(re.search(rf"{re.escape(row)}.*? ([\d.]+) ns", told)[1])
         return Spent(ns / 1e9, ns / 1e9)
 

@@ -48,7 +48,7 @@ def main(drawing: Path, directory: Path) -> None:
         ".plan.json": writer.encoded(".json", work.plan, walk, work.brush, work.title),
         ".ngc": writer.encoded(".ngc", work.plan, walk, work.brush, work.title, outputs.notes(work)),
         ".marks.svg": outputs.picture(".svg", work, marks["closed"]),
-        ".report.txt": outputs.report_text(".txt", work, marks["closed"], cell) + "\n" + table,
+        ".report.txt": report.as_text(".txt", outputs.reported(work, marks["closed"], cell)) + "\n" + table,
         ".html": outputs.played(work, loads, marks["closed"], cell),
         ".png": three_panels(works, marks, totals),
     }

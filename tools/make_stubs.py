@@ -22,6 +22,7 @@ TOLD = (
     (r"progress: typing\.Any = None", "progress: collections.abc.Callable[[int, int], object] | None = None"),
     (r"def warnings\(self\) -> tuple:", "def warnings(self) -> tuple[Notice, ...]:"),
     (r"def remarks\(brush: Brush\) -> list:", "def remarks(brush: Brush) -> list[Notice]:"),
+    (r"\*\*kwargs\)", "**fields: object)"),
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
     (r'typing\.Annotated\[([^"]*), "[^"]*"\]', r"\1"),

@@ -22,7 +22,7 @@ MOST_PARTS = 20  # of a TOML key, a.b.c; many of them take minutes to read
 LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
 
 
-def read_bytes(path: str | os.PathLike) -> bytes:
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
     """What a file holds. Error, with the path in `file`, when it cannot be read."""
     path = os.fspath(path)  # a number would be taken for an open file, and closed
     try:
@@ -57,7 +57,7 @@ def toml_document(text: str, kind: str) -> dict:
         raise Error(f"the {kind} file is not TOML: its lists nest too deep", code="not-toml") from None
 
 
-def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike) -> Path:
+def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike[str]) -> Path:
     """Where a brush or cell lies: that of a name among the shipped ones, or a user's own file.
 
     Error, naming the kind and the shipped ones, for a name that is neither.
@@ -90,7 +90,7 @@ def names_in(folder: Path, suffix: str) -> list[str]:
     return sorted(path.stem for path in folder.glob(f"*{suffix}"))
 
 
-def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) -> None:
+def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[str]]) -> None:
     """Put data at each path, at all of them or at none: written beside them, then renamed. Text, whole or in
     pieces, becomes UTF-8.
 
@@ -99,9 +99,9 @@ def write_files(files: Mapping[str | os.PathLike, bytes | str | Iterable[str]]) 
     Devices and pipes are written through, once all the rest lies ready. What a killed run left beside a path is
     cleared by the next one that writes there.
     """
-    path: str | os.PathLike = ""
-    targets: dict[str | os.PathLike, str] = {}
-    beside: dict[str | os.PathLike, str] = {}
+    path: str | os.PathLike[str] = ""
+    targets: dict[str | os.PathLike[str], str] = {}
+    beside: dict[str | os.PathLike[str], str] = {}
     through = []
     held = ExitStack()
     try:

@@ -97,7 +97,7 @@ def test_against_monte_carlo(brush, painted):
         pose = np.asarray(trace.pose)
         found = np.array([seen(b, run.passes[k], pose) for b, run in zip(brushes, runs, strict=True)])
         middle = _core.widest_points(trace, brush)[taut]
-        step = np.gradient(middle, axis=0)
+        step = np.gradient(middle, axis=0) if len(taut) > 1 else np.zeros((1, 2))  # of a dab
         length = np.hypot(*step.T)
         heading = np.asarray(trace.heading_rad)[taut]
         u = np.column_stack([np.cos(heading), np.sin(heading)])

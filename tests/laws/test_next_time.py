@@ -1,6 +1,7 @@
 """Corrections from a painted sheet: on a machine that leads each stroke elsewhere, the next sheets come nearer."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import photograph
@@ -10,11 +11,16 @@ from photograph import BLUE, INK, Camera
 from scipy.spatial.transform import Rotation
 from shapely import transform
 from shapely.geometry import Polygon
+from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
 from brushsvg import _core
 from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
+from brushsvg.machine.arc_chords import with_chords
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.distortion import told_pass
+from brushsvg.painted.corrections import Correction, corrected
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
 from brushsvg.pipeline.preparation import find_brush
@@ -38,6 +44,7 @@ class Studio:
         (folder / "five.svg").write_text(DRAWING)
         self.axes = np.eye(2) + self.rng.normal(0, 0.002, (2, 2))
         self.own, self.sheets, self.brush = {}, 0, BRUSH
+        self.grown, self.cut = {}, {}  # by stroke: how much farther out its edges lie; where its paint ends
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
@@ -55,7 +62,16 @@ class Studio:
         found = {}
         for name, rings in self.rings(plan).items():
             own = self.own.setdefault(name, self.rng.normal(0, 0.35, 2))
-            found[name] = [ring @ self.axes.T + own for ring in rings]
+            shape = area(rings).buffer(self.grown.get(name, 0.0))
+            if name in self.cut:  # its paint ends by so many mm before its tip, along a direction
+                way, mm = self.cut[name]
+                far = np.array(shape.exterior.coords) @ way
+                aside = 90 * np.array([-way[1], way[0]])
+                low = way * (far.min() + mm)
+                shape = shape.intersection(
+                    Polygon([low - aside, low + aside, low + aside + 200 * way, low - aside + 200 * way])
+                )
+            found[name] = [np.array(ring) @ self.axes.T + own for ring in outlines(shape)]
         return found
 
     def photographed(self, plan):
@@ -73,6 +89,11 @@ class Studio:
         path.write_bytes(photograph.photograph(sheet, CAMERA))
         return path
 
+    def told(self, plan, cell):
+        """What a machine is told that undoes what this cell says."""
+        passes = [told_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
+        return _core.Plan("", "", plan.sheet_mm, passes)
+
     def compared(self, photo, *flags):
         out = self.folder / f"{photo.stem}.json"
         words = ["compare", photo, self.folder / "five.svg", "-o", out, "--quiet", *flags]
@@ -84,6 +105,12 @@ def area(rings):
     rings = [Polygon(ring) for ring in rings]
     outer, holes = ([ring for ring in rings if ring.exterior.is_ccw == side] for side in (True, False))
     return unary_union(outer).difference(unary_union(holes))
+
+
+def outlines(shape):
+    """Outer rings counter-clockwise, holes clockwise."""
+    parts = [orient(part) for part in getattr(shape, "geoms", [shape])]
+    return [np.array(ring.coords)[:-1] for part in parts for ring in (part.exterior, *part.interiors)]
 
 
 def apart(painted, wanted):
@@ -249,3 +276,147 @@ def test_two_strokes_tell_no_corrections(tmp_path, capsys):
     words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", found)
     status, _, told = in_json(capsys, *words)
     assert status == 1 and is_told(told, "corrections-missing"), told
+
+
+@pytest.fixture(scope="module")
+def stretched(tmp_path_factory):
+    """A machine that goes 2 % too far, compared: the studio, the wanted rings, the file, the mended cell."""
+    studio = Studio(tmp_path_factory.mktemp("stretched"), 12)
+    studio.axes = np.diag([1.02, 0.985])
+    plan = studio.plan()
+    studio.own = {a_pass.stroke: studio.rng.normal(0, 0.12, 2) for a_pass in plan.passes}
+    mended = studio.folder / "mended.toml"
+    found = studio.compared(studio.photographed(plan), "--mended-cell", mended)
+    return studio, studio.rings(plan), found, mended
+
+
+def test_a_mended_cell_and_corrections_in_one_round(stretched):
+    """Beside the mended cell strokes are led by what it leaves alone; either file alone is right for its own cell."""
+    studio, wanted, found, mended = stretched
+    plan = studio.plan()
+    with_both = studio.plan("--cell", mended, "--corrections", found)
+    beside_the_old = studio.plan("--corrections", found)
+    gap, cell_alone, both, old_alone, twice = (
+        float(np.mean([*apart(studio.painted(each), wanted).values()]))
+        for each in (
+            plan,
+            studio.told(plan, mended),
+            studio.told(with_both, mended),
+            beside_the_old,
+            studio.told(beside_the_old, mended),
+        )
+    )
+    assert cell_alone < 0.9 * gap and both < 0.75 * cell_alone and old_alone < 0.4 * gap, (
+        gap,
+        cell_alone,
+        both,
+    )
+    assert both < 0.8 * twice, (both, twice)
+
+
+def test_corrections_beside_another_cell_are_refused(stretched, capsys):
+    studio, _, found, mended = stretched
+    other = studio.folder / "other.toml"
+    cell = parse_cell(mended.read_text())
+    other.write_text(write_cell(replace(cell, machine=replace(cell.machine, skew=0.003))))
+    words = ("convert", studio.folder / "five.svg", studio.folder / "a.ngc", "--corrections", found, "--cell")
+    assert in_json(capsys, *words, mended)[0] == 0
+    status, _, told = in_json(capsys, *words, other)
+    assert status == 1 and is_told(told, "corrections-of-another-cell"), told
+
+
+@pytest.mark.parametrize("by_mm", [-0.4, 0.3])
+def test_a_width_is_corrected_where_it_lies(tmp_path, by_mm):
+    """Each edge lies so much farther out, by shapely: middle line and ends stay."""
+    studio = Studio(tmp_path, 13)
+    plan = studio.plan()
+    before = studio.rings(plan)
+    asked = tuple(
+        Correction(
+            a_pass.stroke, tuple(a_pass.poses_mm[0][:2]), (50.0, 30.0), (0.0, 0.0), 0.0, wider_mm=by_mm
+        )
+        for a_pass in plan.passes
+    )
+    after = studio.rings(corrected(plan, asked, BRUSH))
+    for name, rings in before.items():
+        meant, led = area(rings).buffer(by_mm), area(after[name])
+        apart_mm2 = meant.symmetric_difference(led).area
+        assert apart_mm2 < 0.25 * meant.symmetric_difference(area(rings)).area, (name, apart_mm2)
+
+
+def test_widths_are_corrected_from_a_photograph(tmp_path, capsys):
+    """A brush that paints one stroke wider than another; one that is wider than any depth paints is told."""
+    studio = Studio(tmp_path, 14)
+    plan = studio.plan()
+    rings = studio.rings(plan)
+    studio.own = {name: np.zeros(2) for name in rings}
+    studio.grown = {"bar": 0.4, "bow": -0.3, "line": 0.03}
+    out = studio.compared(studio.photographed(plan))
+    said = {row["stroke"]: row["correction"]["wider_mm"] for row in json.loads(out.read_text())["strokes"]}
+    assert -0.34 < said["bar"] < -0.28 and 0.18 < said["bow"] < 0.26, said
+    assert said["line"] == said["cross"] == said["loop"] == 0, said
+    again = studio.rings(studio.plan("--corrections", out))
+    sizes = {name: area(again[name]).area - area(rings[name]).area for name in rings}
+    assert sizes["bar"] < -10 and sizes["bow"] > 5 and abs(sizes["loop"]) < 1, sizes
+
+
+def test_a_width_that_no_depth_paints_is_refused(tmp_path, capsys):
+    studio = Studio(tmp_path, 15)
+    brush = measured_between(tmp_path, 3.0, 8.0)
+    plan = studio.plan("--brush", brush)
+    row = {"middle_mm": [1.0, 1.0], "shift_mm": [0.0, 0.0], "turn_deg": 0.0, "wider_mm": -0.4}
+    row["start_mm"] = list(plan.passes[1].poses_mm[0][:2])
+    made = {"format": "brushsvg/comparison", "version": 1}
+    made["strokes"] = [{"stroke": plan.passes[1].stroke, "correction": row}]
+    (tmp_path / "c.json").write_text(json.dumps(made))
+    words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
+    assert in_json(capsys, *words)[0] == 0
+    status, _, told = in_json(capsys, *words, "--brush", brush)
+    assert status == 1 and is_told(told, "width-correction-refused", "line"), told
+    studio.own = {each.stroke: np.zeros(2) for each in plan.passes}
+    studio.grown = {"line": 0.5}
+    photo = studio.photographed(studio.plan("--brush", brush))
+    words = ("compare", photo, tmp_path / "five.svg", "--brush", brush, "-o", tmp_path / "seen.json")
+    status, _, told = in_json(capsys, *words)
+    assert status == 0 and is_told(told, "width-correction-refused", "line"), told
+    rows = {row["stroke"]: row for row in json.loads((tmp_path / "seen.json").read_text())["strokes"]}
+    assert rows["line"]["correction"]["wider_mm"] == 0 and rows["line"]["wider_mm"] > 0.4
+
+
+def measured_between(folder, least_mm, deepest_mm):
+    """round-6, known at these depths alone, as a file."""
+    brush = _core.read_brush(_core.write_brush(BRUSH))
+    law = brush.half_width
+    brush.half_width = _core.Profile(
+        law.coefficients, floor=law.floor, calibrated_mm=(least_mm, deepest_mm), source="a test"
+    )
+    save_brush(brush, folder / "measured.json")
+    return folder / "measured.json"
+
+
+def test_where_strokes_begin_and_end_is_told(tmp_path, capsys):
+    """Strokes that begin 1.5 mm late, end 1 mm late, or end 2 mm early, wherever the sheet lies."""
+    studio = Studio(tmp_path, 16)
+    plan = studio.plan()
+    rings = studio.rings(plan)
+    studio.own = {name: np.zeros(2) for name in rings}
+    studio.axes = np.eye(2)
+    along = {"line": (16.0, 58.0, 70.0, 54.0), "bar": (66.0, 34.0, 98.0, 30.0)}  # in the drawing, y down
+    studio.cut = {}
+    for name, mm in (("line", 1.5), ("bar", 2.0)):
+        x0, y0, x1, y1 = along[name]
+        way = np.array([x1 - x0, y0 - y1]) / np.hypot(x1 - x0, y1 - y0)
+        studio.cut[name] = (way, mm) if name == "line" else (-way, mm)
+    out = studio.compared(studio.photographed(plan))
+    rows = {row["stroke"]: row for row in json.loads(out.read_text())["strokes"]}
+    studio.cut = {}
+    as_it_was = studio.compared(studio.photographed(plan))
+    before = {row["stroke"]: row for row in json.loads(as_it_was.read_text())["strokes"]}
+
+    def later(name, key):
+        return rows[name][key] - before[name][key]
+
+    assert all(abs(before[name][key]) < 0.6 for name in along for key in ("began_mm", "ended_mm")), before
+    assert later("line", "began_mm") == pytest.approx(1.5, abs=0.25), rows
+    assert later("bar", "ended_mm") == pytest.approx(-2.0, abs=0.25), rows
+    assert abs(later("line", "ended_mm")) < 0.25 and abs(later("bar", "began_mm")) < 0.25

@@ -254,12 +254,7 @@ def test_half_a_sheet_is_refused(job, capsys, half):
     }[half]
     (folder / "half.jpg").write_bytes(photograph.encoded(part))
     status, ((_, told),), found = seen(job, capsys, "half.jpg")
-    cropped = half in (
-        "left",
-        "right",
-        "two thirds",
-    )  # of the others the markers in one line tell no flat page
-    assert status == 1 and told.code == ("photo-cropped" if cropped else "photo-not-flat") and not found, told
+    assert status == 1 and told.code == "photo-cropped" and not found, told
 
 
 def test_another_plan_on_this_page_is_refused(job, capsys):

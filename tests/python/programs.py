@@ -1,6 +1,9 @@
 """What tests of programs share: shipped cells with their extension, a call of the command, and plans gone through."""
 
+import re
 from dataclasses import replace
+
+from diagnostics import in_json, is_told
 
 from brushsvg.cli import main
 from brushsvg.machine.paint_reload import PlanInLoads
@@ -52,3 +55,15 @@ def forbidden(plan, brush, cell):
 
 def problems(plan, brush, marks, cell, tolerance_mm):
     return look(whole(plan), brush, marks, cell, tolerance_mm).problems
+
+
+def is_refused_when_damaged(capsys, path, old, new, told, *words):
+    """That check allows a program, and no longer where one pattern of it is replaced; told: codes, any of them."""
+    text = path.read_text()
+    check = ("check", path, *words)
+    assert in_json(capsys, *check)[0] == 0
+    damaged, count = re.subn(old, new, text, count=1)
+    assert count == 1
+    path.write_text(damaged)
+    status, _, said = in_json(capsys, *check)
+    return status == 1 and any(is_told(said, code) for code in told.split("|"))

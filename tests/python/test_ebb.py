@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json, is_told, refused
 from judge.ebb import run_ebb
-from programs import RUNNABLE, call, program
+from programs import RUNNABLE, call, is_refused_when_damaged, program
 from test_urscript import BRUSH, STROKES, text_for
 
 from brushsvg import _core
@@ -159,11 +159,7 @@ def test_what_is_written_is_allowed(desk, capsys):
 )
 def test_check_refuses_what_was_damaged(desk, capsys, old, new, told):
     call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")
-    text, count = re.subn(old, new, Path("a.ebb").read_text(), count=1)
-    assert count == 1
-    Path("a.ebb").write_text(text)
-    status, _, said = in_json(capsys, "check", "a.ebb")
-    assert status == 1 and is_told(said, told), said
+    assert is_refused_when_damaged(capsys, Path("a.ebb"), old, new, told)
 
 
 def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk, capsys, monkeypatch):

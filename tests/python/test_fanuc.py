@@ -79,6 +79,44 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
     assert is_told(told, "speed-out-of-range 90.0")
 
 
+@pytest.fixture
+def small(tmp_path, capsys):
+    """How check ends for the program of a small plan with its text changed."""
+    (tmp_path / "small.json").write_text(_core.write_plan(waves(2, 10)))
+    program = tmp_path / "small.ls"
+    cell = ("--cell", "lrmate200id")
+    assert in_json(capsys, "convert", tmp_path / "small.json", program, *cell)[0] == 0
+    text = program.read_bytes().decode("ascii")
+
+    def ends(change=lambda text: text):
+        program.write_text(change(text), newline="")
+        status, _, said = in_json(capsys, "check", program, tmp_path / "small.json", *cell)
+        return status, said
+
+    assert ends()[0] == 0
+    return ends
+
+
+def test_a_frame_is_set_before_it_is_chosen(small):
+    def before(text):
+        chosen, first = " : UFRAME_NUM=1 ;\r\n", " : PR[1]=LPOS ;\r\n"
+        assert chosen in text and first in text
+        return text.replace(chosen, "").replace(first, chosen + first, 1)
+
+    status, said = small(before)
+    assert status == 1 and is_told(said, "line-incomplete")
+
+
+def test_a_speed_in_another_unit_is_read_as_that(small):
+    """20 cm/min are 3.3 mm/s: slower than told, and nothing forbids that; 200 cm/min are 33 mm/s."""
+    for speed, status in (("20cm/min", 0), ("200cm/min", 1)):
+        assert small(lambda text, new=speed: text.replace(" P[5] 20mm/sec", f" P[5] {new}"))[0] == status
+    cell = find_cell("lrmate200id")
+    ran = read_program(text_for(cell).replace(" P[5] 20mm/sec", " P[5] 20cm/min"), ".ls", cell)
+    speeds = {step.speed_mm_s for section in ran.sections for step in section.steps}
+    assert any(abs(speed - 20 / 6) < 1e-6 for speed in speeds)
+
+
 def test_a_stroke_of_too_many_poses_is_refused(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(1, 997)))
     words = "convert", str(tmp_path / "a.json"), str(tmp_path / "a.ls"), "--cell", "lrmate200id"

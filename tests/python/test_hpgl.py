@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json, is_told, refused
 from judge.hpgl import UNIT_MM, run_hpgl
-from programs import RUNNABLE, call, program
+from programs import RUNNABLE, call, is_refused_when_damaged, program
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -210,19 +210,23 @@ def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
         (r"PU;\nPU;\nSP0", "SP0", "line-unread"),
         (r"VS2;\n", "", "line-incomplete"),
         (r"VS2;", "VS0;", "line-unread"),
+        (r"SP1;", "SP;", "line-incomplete"),
     ],
 )
 def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, told):
     text = "".join(writer.encode(".hpgl", TWO, pen(25.0), "two", (), CELL))
     (tmp_path / "pen.json").write_text(_core.write_brush(pen(25.0)))
-    words = ("check", tmp_path / "two.hpgl", "--cell", "hpgl-plotter", "--brush", tmp_path / "pen.json")
     (tmp_path / "two.hpgl").write_text(text)
-    assert in_json(capsys, *words)[0] == 0
-    damaged, count = re.subn(old, new, text, count=1)
-    assert count == 1
-    (tmp_path / "two.hpgl").write_text(damaged)
-    status, _, said = in_json(capsys, *words)
-    assert status == 1 and is_told(said, told), said
+    words = ("--cell", "hpgl-plotter", "--brush", tmp_path / "pen.json")
+    assert is_refused_when_damaged(capsys, tmp_path / "two.hpgl", old, new, told, *words)
+
+
+def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
+    text = "".join(writer.encode(".hpgl", TWO, pen(25.0), "two", (), CELL))
+    (tmp_path / "pen.json").write_text(_core.write_brush(pen(25.0)))
+    (tmp_path / "two.hpgl").write_text(text.replace("SP0;", "SP;"))
+    check = ("check", tmp_path / "two.hpgl", "--cell", "hpgl-plotter", "--brush", tmp_path / "pen.json")
+    assert in_json(capsys, *check)[0] == 0
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """What `compare` finds amiss, besides what the cell undid, goes into the next cell; how sure a brush is beforehand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -72,6 +73,11 @@ def test_without_a_table_what_is_found_is_the_table():
     assert now.height_mm == pytest.approx(TRUE.height_mm) and now.tilt_mm_per_mm == TRUE.tilt_mm_per_mm
 
 
+def test_the_map_of_the_paper_stays():
+    rows = ((0.0, 0.0, 0.1), (50.0, 0.0, 0.2), (0.0, 50.0, 0.0), (50.0, 50.0, -0.1))
+    assert mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows)).map_mm == rows
+
+
 def test_what_is_not_certain_changes_nothing():
     assert mended(found(TRUE, half=10.0), MIDDLE, UNDONE) is None
 
@@ -105,7 +111,7 @@ def test_what_is_hardly_more_than_chance_is_taken_back_by_half(aside_mm, share):
         strokes=rows, common=Placed((0.0, 0.0), 0.0, 0.0, True), middle_mm=MIDDLE, spread_mm=aside_mm
     )
     passes = [SimpleNamespace(stroke=row.stroke, poses_mm=np.array([[0.0, 0.0, 0.0]])) for row in rows]
-    made, told = next_corrections(compared, SimpleNamespace(passes=passes), ())
+    made, told = next_corrections(compared, SimpleNamespace(passes=passes), (), None)
     assert not told
     for k, row in enumerate(rows):
         assert made[row.stroke].shift_mm == pytest.approx((-share * aside_mm * (-1) ** k, 0.0))

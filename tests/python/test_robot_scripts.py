@@ -278,6 +278,25 @@ def test_what_the_reader_refuses(name, old, new, said):
         read_program(text.replace(old, new, 1), LANGUAGES[name], find_cell(name))
 
 
+LOOKS = "tip = get_current_posx(DR_BASE)[0]\n", "flange = get_current_tool_flange_posx(DR_BASE)\n"
+SAME = [  # as the controller runs it
+    ("m0609", "".join(LOOKS), "".join(reversed(LOOKS))),
+    ("m0609", LOOKS[0], LOOKS[0].replace("[0]", "[-0]")),
+]
+
+
+@pytest.mark.parametrize(("name", "old", "new"), SAME)
+def test_what_the_reader_takes_for_the_same(name, old, new):
+    cell = find_cell(name)
+    text = text_for(cell)
+    assert old in text
+
+    def acts(text):
+        return [repr(act._replace(line=0)) for act in read_program(text, LANGUAGES[name], cell).acts]
+
+    assert acts(text.replace(old, new)) == acts(text)
+
+
 @pytest.mark.parametrize("title", ["coding: rot13", "coding=coding:utf-7 +AAo-x = 1"])
 def test_no_title_tells_python_how_letters_are_read(title):
     """Python obeys such remarks in the first two lines of a file."""

@@ -260,6 +260,7 @@ def test_a_contact_that_a_language_has_no_word_for_is_refused(name, contact, tol
         ("ur5e", Contact(10.0), "force() > 10.0", "force() > 90.0"),
         ("ur5e", Contact(10.0), "        halt\n", ""),
         ("ur5e", Contact(10.0), "  watching = run watch()\n", ""),
+        ("ur5e", Contact(10.0), "  watching = run watch()\n", "  watching = run watch()\n" * 2),
         ("ur5e", Contact(10.0), "  zero_ftsensor()\n", ""),
         ("xarm6", Contact(sensitivity=4), "sensitivity(4)", "sensitivity(0)"),
         ("xarm6", Contact(sensitivity=4), "done(arm.set_collision_sensitivity(4))\n", ""),

@@ -32,7 +32,7 @@ class Item:
     read: Callable[[], InMemory]
 
 
-def drawings(operands: Iterable[str | os.PathLike]) -> list[Item]:
+def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
     """Of files, folders (all SVG and DXF below them), patterns with * ? [], and lists (.txt: a path on each line, from
     where the list lies), in that order. Error where one names nothing, or two would have the same name."""
     items = []
@@ -67,7 +67,7 @@ def _listed(path: str) -> list[str]:
     return [os.path.join(os.path.dirname(path), line) for line in lines]
 
 
-def _lines(path: str | os.PathLike) -> list[str]:
+def _lines(path: str | os.PathLike[str]) -> list[str]:
     """Lines of a text that are not blank, without blanks around them."""
     try:
         lines = [line.strip() for line in read_bytes(path).decode("utf-8-sig").splitlines()]
@@ -96,7 +96,10 @@ def _drawing(path: Path, name: Path) -> Item:
 
 
 def words(
-    path: str | os.PathLike, font: bytes, size_mm: float = 20.0, sheet_mm: tuple[float, float] | None = None
+    path: str | os.PathLike[str],
+    font: bytes,
+    size_mm: float = 20.0,
+    sheet_mm: tuple[float, float] | None = None,
 ) -> list[Item]:
     """A drawing of each line of a text file (\\n in it starts a line), as `brushsvg text` makes it, named by its
     letters."""

@@ -21,6 +21,7 @@ from ..machine import cell_file
 from ..machine.cell_file import write_cell
 from ..machine.posts import POSTS
 from ..pictures.contact_sheet import Card, contact_sheets
+from ..pipeline.cancelling import Cancel
 from ..pipeline.choices import Choices, Given, cell_of
 from ..pipeline.conversion import ORDERS, chosen_of
 from ..units import clock
@@ -50,8 +51,8 @@ class Batch:
 
 
 def batch(
-    items: Iterable,
-    out: str | os.PathLike,
+    items: Iterable[str | os.PathLike[str] | tuple[str, str | bytes] | Item],
+    out: str | os.PathLike[str],
     *,
     executor: Executor | None = None,
     jobs: int | None = None,
@@ -61,7 +62,7 @@ def batch(
     lenient: bool = False,
     parquet: bool = False,
     progress: Callable[[str], object] | None = None,
-    cancel=None,
+    cancel: Cancel | None = None,
     **choices: Unpack[Given],
 ) -> Batch:
     """Convert many drawings, each as `convert` does. What an earlier run into the same folder has done with the same

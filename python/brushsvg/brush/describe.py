@@ -6,6 +6,8 @@ import json
 import math
 import textwrap
 
+from .. import _core
+
 LAWS = (
     ("lag", "lever from the centre of friction to the TCP"),
     ("tip_gap", "from the tip of the mark to the centre of friction"),
@@ -14,13 +16,13 @@ LAWS = (
 )
 
 
-def one_line(brush) -> str:
+def one_line(brush: _core.Brush) -> str:
     """For a list of brushes: what the file says about itself, else what follows from its laws."""
     about = json.loads(brush.extra).get("about")
     return about if isinstance(about, str) and about else reach(brush)
 
 
-def reach(brush) -> str:
+def reach(brush: _core.Brush) -> str:
     """Kind, depth, what it paints and how far it trails."""
     least, greatest = brush.depth_range_mm
     trail = "no lag" if brush.is_rigid() else f"lag {brush.lag(least):.1f} to {brush.lag(greatest):.1f} mm"
@@ -34,7 +36,7 @@ def _lines(brush) -> str:
     return f"lines {least:.1f} to {greatest:.1f} mm wide"
 
 
-def page(brush) -> str:
+def page(brush: _core.Brush) -> str:
     """All there is to know of a brush: limits, laws with their source, footprints, a table of values."""
     least, greatest = brush.depth_range_mm
     lines = [

@@ -42,7 +42,7 @@ def brush_names() -> list[str]:
     return names_in(SHIPPED, ".json")
 
 
-def find_brush(name_or_path: str | os.PathLike) -> _core.Brush:
+def find_brush(name_or_path: str | os.PathLike[str]) -> _core.Brush:
     """The shipped brush of a name, or the brush in a .json file; read, checked, with the sha256 of its bytes.
 
     Raises Error for an unknown name, a file that cannot be read and a brush that is refused; the latter two
@@ -145,7 +145,7 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
     return brush
 
 
-def save_brush(brush: _core.Brush, path: str | os.PathLike) -> None:
+def save_brush(brush: _core.Brush, path: str | os.PathLike[str]) -> None:
     """Write a brush as .json, whole or not at all.
 
     path: ends in .json. Raises Error when the brush is refused or the place cannot be written.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Required, TypedDict, overload
 
 import numpy as np
 
@@ -18,9 +20,60 @@ from .mark_input import read_painted
 from .measurements import FORMAT, Measurements, Row, read_measurements
 from .turn_picture import centre_line
 
+Rows = Sequence[Mapping[str, object]]
 
+
+class Measured(TypedDict, total=False):
+    """Numbers, as a file has them; a dict that is written out in the call is held against this by type checkers."""
+
+    name: str
+    about: str
+    depth_range_mm: Sequence[float]
+    max_speed_mm_s: float
+    lag: Rows
+    tip_gap: Rows
+    tip_to_widest: Rows
+    half_width: Rows
+    width: Rows
+    angular: Rows
+    side_view: Rows
+    straight: Rows
+    angles: Rows
+    centre_line: Rows
+    video: Rows
+
+
+class PaintedMarks(TypedDict, total=False):
+    """The same of painted marks."""
+
+    name: str
+    about: str
+    depth_range_mm: Sequence[float]
+    max_speed_mm_s: float
+    plan: Required[_core.Plan | str | Mapping[str, object]]
+    marks: Required[_core.Marks | str | Rows]
+    expected: Mapping[str, float]
+
+
+@overload
 def calibrate(
-    measured: str | os.PathLike | dict,
+    measured: Measured, name: str = "", *, absolute: bool = False, total: bool = False
+) -> Calibration: ...
+@overload
+def calibrate(
+    measured: PaintedMarks, name: str = "", *, machine: tuple[str, ...] = ()
+) -> MarkCalibration: ...
+@overload
+def calibrate(
+    measured: str | os.PathLike[str] | Mapping[str, Any],
+    name: str = "",
+    *,
+    absolute: bool = False,
+    total: bool = False,
+    machine: tuple[str, ...] = (),
+) -> Calibration | MarkCalibration: ...
+def calibrate(
+    measured: str | os.PathLike[str] | Mapping[str, Any],
     name: str = "",
     *,
     absolute: bool = False,

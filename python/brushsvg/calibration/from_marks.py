@@ -41,7 +41,7 @@ class MarkCalibration(ArrayValue):
     """
 
     brush: _core.Brush
-    fit: object
+    fit: _core.MarkFit
     painted: Painted
     expected: _core.MarkOptions
     scale: SheetScale | None = None

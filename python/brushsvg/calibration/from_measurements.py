@@ -63,7 +63,7 @@ class Fitted:
 
     name: str
     points: tuple[Point, ...]
-    fit: object
+    fit: _core.LawFit | None
     remarks: tuple[str, ...] = ()
     outliers: dict[int, plausibility.Outlier] = field(default_factory=dict)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 from xml.etree import ElementTree
 
 from ..errors import Error, need, need_number, need_one_of
@@ -13,6 +13,8 @@ from ..files import read_bytes
 from .damage import refuse_damage
 
 if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+
     from .design import Design
 
 
@@ -59,6 +61,19 @@ class InMemory:
 
     extension: str
     data: bytes
+
+
+class HasTree(Protocol):
+    """What svgpathtools' Document is."""
+
+    @property
+    def tree(self) -> Any: ...
+
+
+if TYPE_CHECKING:
+    Source = (
+        str | os.PathLike[str] | InMemory | ElementTree.ElementTree | ElementTree.Element | HasTree | Drawing
+    )
 
 
 def _svg(data: bytes, options: ReadOptions) -> Design:
@@ -110,7 +125,7 @@ READERS = {  # by extension; each takes (bytes, ReadOptions)
 }
 
 
-def read_drawing(path, options: ReadOptions = AS_DRAWN) -> Design:
+def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     """The drawing in a file, its format chosen by extension; or one that is open already.
 
     path: of the file; or an ezdxf document, or an SVG as an ElementTree, its root element or svgpathtools' Document:

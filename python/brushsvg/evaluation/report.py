@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -82,20 +84,31 @@ class Report:
     advice: str = ""  # on the drawing's size
 
 
-def wanted_rings(strokes) -> list[np.ndarray]:
+class Bare(Protocol):
+    """A piece of an element's shape that no stroke reaches: rings [mm]; is_rim: of a stroke wider than the brush."""
+
+    @property
+    def element(self) -> str: ...
+    @property
+    def rings(self) -> list[np.ndarray]: ...
+    @property
+    def is_rim(self) -> bool: ...
+
+
+def wanted_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
     """Outline of everything that was drawn."""
     return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
 
 
 def measure(
-    plan,
-    marks,
-    brush,
-    strokes=None,
+    plan: _core.Plan,
+    marks: _core.Marks,
+    brush: _core.Brush,
+    strokes: Sequence[_core.Stroke] | None = None,
     tolerance_mm: float = 0.05,
-    drawn=None,
+    drawn: Sequence[_core.Stroke] | None = None,
     compensation: str = "closed",
-    unreached=(),
+    unreached: Iterable[Bare] = (),
 ) -> tuple[tuple[Figures, ...], Figures]:
     """Figures for each pass and for all. strokes: one per pass, None if unknown, or None for a pass that is a part of a
     stroke: then drawn is all that was drawn, the strokes themselves where it is None; unreached: pieces of shapes that
@@ -168,7 +181,9 @@ def _square(place_mm, reach_mm: float) -> np.ndarray:
     return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
 
 
-def groups(marks, brush, strokes) -> tuple[Group, ...]:
+def groups(
+    marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None
+) -> tuple[Group, ...]:
     """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
     known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
     found = []

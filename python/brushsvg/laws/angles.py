@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..array_values import ArrayValue
@@ -15,7 +16,9 @@ from .numbers import FARTHEST_MM, frozen, numbers, together
 TURN = 2 * np.pi
 
 
-def tip_direction(alpha0_rad, alpha1_rad, s_mm, lag_mm, tip_gap_mm) -> np.ndarray:
+def tip_direction(
+    alpha0_rad: ArrayLike, alpha1_rad: ArrayLike, s_mm: ArrayLike, lag_mm: ArrayLike, tip_gap_mm: ArrayLike
+) -> np.ndarray:
     """beta, from the direction of motion to the tip's displacement, (11) and (12), at one depth.
 
         beta = atan2(D (sin(alpha0) - sin(alpha1)), s - D (cos(alpha1) - cos(alpha0))),   D = r + b
@@ -52,7 +55,14 @@ class FromAngles(ArrayValue):
     left_out: np.ndarray
 
 
-def from_angles(alpha0_rad, s_mm, alpha_rad, beta_rad=None, *, total: bool = False) -> FromAngles:
+def from_angles(
+    alpha0_rad: ArrayLike,
+    s_mm: ArrayLike,
+    alpha_rad: ArrayLike,
+    beta_rad: ArrayLike | None = None,
+    *,
+    total: bool = False,
+) -> FromAngles:
     """Lag and tip gap from series of angles, Theorems 3 and 4, (19) to (23).
 
         r = -F^+ s,   F_i = log cot(alpha0 / 2) - log cot(alpha_i / 2)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import Error, need_one_of
@@ -36,20 +37,24 @@ class Bristle:
         """w(z), (...); Error for z outside of [0, 1]."""
         return self._deflection(_along(z))
 
-    def slope(self, z) -> np.ndarray:
+    def slope(self, z: ArrayLike) -> np.ndarray:
         """w'(z), (...); Error for z outside of [0, 1]."""
         return self._deflection.deriv()(_along(z))
 
-    def moment(self, z) -> np.ndarray:
+    def moment(self, z: ArrayLike) -> np.ndarray:
         """EI w''(z), (...); Error for z outside of [0, 1]."""
         return self._moment(_along(z))
 
-    def shear(self, z) -> np.ndarray:
+    def shear(self, z: ArrayLike) -> np.ndarray:
         """(EI w'')'(z), (...); Error for z outside of [0, 1]."""
         return self._moment.deriv()(_along(z))
 
 
-def bristle(rigidity: Callable, load: Callable, sliding_end: str = "shear_free") -> Bristle:
+def bristle(
+    rigidity: Callable[[np.ndarray], ArrayLike],
+    load: Callable[[np.ndarray], ArrayLike],
+    sliding_end: str = "shear_free",
+) -> Bristle:
     """Lemma 1, (1): (EI w'')'' = q on [0, 1] with w(0) = w'(0) = w'(1) = 0 and one more condition at the tip.
 
     rigidity, load: EI and q, functions of an array of z, (n,), to arrays of the same shape; EI > 0, both smooth.
@@ -94,7 +99,7 @@ def bristle(rigidity: Callable, load: Callable, sliding_end: str = "shear_free")
     return Bristle((moment * pliancy).integ(2, lbnd=0.0), moment)
 
 
-def bristle_of_article(z, sliding_end: str = "third_derivative") -> np.ndarray:
+def bristle_of_article(z: ArrayLike, sliding_end: str = "third_derivative") -> np.ndarray:
     """The article's example (2), EI = q = exp(1 - z), solved: w = c1 + c2 z + (c3 + c4 z) e^z + z^2 / 2.
 
     z: (...), in [0, 1]. sliding_end: as in bristle. Returns w, (...), in units of the bristle's length. (3) prints

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 
+from numpy.typing import ArrayLike
+
 from .. import _core
 from ..errors import Error, need
 from .numbers import DEEPEST_MM, FARTHEST_MM, numbers
 
 
 def fit_law(
-    depth_mm,
-    value_mm,
+    depth_mm: ArrayLike,
+    value_mm: ArrayLike,
     degree: int,
     *,
     through_zero: bool = False,

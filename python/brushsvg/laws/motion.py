@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..array_values import ArrayValue
@@ -14,7 +15,7 @@ from .numbers import DEEPEST_MM, FARTHEST_MM, frozen, numbers, together
 TURN = 2 * np.pi
 
 
-def alpha_after(alpha0_rad, s_mm, lag_mm) -> np.ndarray:
+def alpha_after(alpha0_rad: ArrayLike, s_mm: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
     """Angle of a taut brush after a straight move at one depth, (7) with r constant.
 
         tan(alpha / 2) = tan(alpha0 / 2) exp(-s / r)
@@ -31,7 +32,13 @@ def alpha_after(alpha0_rad, s_mm, lag_mm) -> np.ndarray:
     return _core.lag.alpha_after(alpha0, exponent)
 
 
-def alpha_on_ramp(alpha0_rad, s_mm, law, depth0_mm, depth1_mm) -> np.ndarray:
+def alpha_on_ramp(
+    alpha0_rad: ArrayLike,
+    s_mm: ArrayLike,
+    law: _core.Profile | float,
+    depth0_mm: ArrayLike,
+    depth1_mm: ArrayLike,
+) -> np.ndarray:
     """Angle of a taut brush after a straight move along which the depth changes linearly, (7).
 
         tan(alpha / 2) = tan(alpha0 / 2) exp(-integral of ds / r(d(s)) over the way)
@@ -50,7 +57,7 @@ def alpha_on_ramp(alpha0_rad, s_mm, law, depth0_mm, depth1_mm) -> np.ndarray:
     return _core.lag.alpha_after(alpha0, _core.lag.exponent(s, *depths, _profile(law)))
 
 
-def alpha_after_turn(alpha0_rad, s_mm, lag_mm) -> np.ndarray:
+def alpha_after_turn(alpha0_rad: ArrayLike, s_mm: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
     """Angle after a straight move at one depth, whatever the turn: section 2.2 where it is beyond 90 degrees, then (7).
 
     A brush pushed rather than pulled goes loose: the patch rests for s* = -2 r cos(alpha0) while the handle passes it,
@@ -69,7 +76,7 @@ def alpha_after_turn(alpha0_rad, s_mm, lag_mm) -> np.ndarray:
     return np.where((s < rest), resting, alpha_after(from_there, np.maximum(s - rest, 0.0), lag))
 
 
-def contact_offset(alpha_rad, lag_mm) -> np.ndarray:
+def contact_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
     """Where the patch's centre of friction lies as seen from the handle, (5) and (6).
 
         (Delta x, Delta y) = (-r cos(alpha), -r sin(alpha))
@@ -84,7 +91,7 @@ def contact_offset(alpha_rad, lag_mm) -> np.ndarray:
     return np.stack([-lag * np.cos(alpha), -lag * np.sin(alpha)], axis=-1)
 
 
-def tip_offset(alpha_rad, lag_mm, tip_gap_mm) -> np.ndarray:
+def tip_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike, tip_gap_mm: ArrayLike) -> np.ndarray:
     """Where the brush's tip lies as seen from the handle, (15) and (16): contact_offset with r + b in place of r.
 
     alpha_rad, lag_mm, tip_gap_mm: (...). Returns mm, (..., 2).
@@ -111,7 +118,9 @@ class Followed(ArrayValue):
     taut: np.ndarray
 
 
-def follow(tcp_mm, depth_mm, law, contact_mm=None) -> Followed:
+def follow(
+    tcp_mm: ArrayLike, depth_mm: ArrayLike, law: _core.Profile | float, contact_mm: ArrayLike | None = None
+) -> Followed:
     """The patch along straight moves of the handle, taut and loose: Theorem 1 and section 2.2, event by event.
 
     tcp_mm: (n, 2), n >= 1, places of the handle in the frame of the paper. depth_mm: (n,) or one for all, linear

@@ -24,7 +24,7 @@ def cell_names() -> list[str]:
     return names_in(SHIPPED, ".toml")
 
 
-def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
+def find_cell(name_or_path: str | os.PathLike[str] = DEFAULT_CELL) -> Cell:
     """The shipped cell of a name, or the cell in a .toml file.
 
     Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
@@ -33,7 +33,7 @@ def find_cell(name_or_path: str | os.PathLike = DEFAULT_CELL) -> Cell:
     return read_cell(find_file("cell", SHIPPED, ".toml", name_or_path))
 
 
-def read_cell(path: str | os.PathLike) -> Cell:
+def read_cell(path: str | os.PathLike[str]) -> Cell:
     """The cell in a cell.toml. Error, with the path in `file` and the key in `where`, when it is refused."""
     data = read_bytes(path)
     try:

@@ -47,7 +47,7 @@ class PlanInLoads:
         return _core.Plan(sheet_mm=self.sheet_mm, passes=list(self.loads))
 
 
-def in_loads(plan, brush, cell: Cell) -> PlanInLoads:
+def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
@@ -101,7 +101,7 @@ def _from_paper_to_paper(a_pass):
     return on_way(a_pass, np.vstack([before, poses, after]), arcs)
 
 
-def too_long(loads: PlanInLoads, brush, cell: Cell) -> list[Notice]:
+def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:
     """A notice of the stroke for parts that are longer than a load of paint lasts, unless they may not be cut."""
     if not cell.reload or cell.reload.when != "length":
         return []
@@ -212,7 +212,7 @@ def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[
     return [Notice("", sentence, code="colours-as-one", advice="--layer or --select paints one of them")]
 
 
-def painted_mm(a_pass) -> float:
+def painted_mm(a_pass: _core.Pass) -> float:
     """Length of the TCP's path on the paper [mm]."""
     poses = np.asarray(a_pass.poses_mm)
     return length(chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
@@ -231,7 +231,7 @@ def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
     return used_mm > cell.reload.every_mm
 
 
-def is_later_part(a_pass) -> bool:
+def is_later_part(a_pass: _core.Pass) -> bool:
     """Whether a load goes on with the stroke that the load before it paints."""
     return a_pass.load > 1
 

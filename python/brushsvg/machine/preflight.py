@@ -20,7 +20,14 @@ from .workspace_limits import beyond_edges
 DEFAULT_TOLERANCE_MM = 0.05
 
 
-def look(loads: PlanInLoads, brush, marks, cell: Cell, tolerance_mm: float, job: Job = WHOLE_JOB) -> Walked:
+def look(
+    loads: PlanInLoads,
+    brush: _core.Brush,
+    marks: _core.Marks,
+    cell: Cell,
+    tolerance_mm: float,
+    job: Job = WHOLE_JOB,
+) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
     is resumed only what is left is asked."""
     walk = walked(loads, brush, cell, job)
@@ -63,7 +70,7 @@ def check_rounding(cell: Cell, tolerance_mm: float) -> None:
         )
 
 
-def off_sheet(marks, brush, sheet_mm) -> list[Notice]:
+def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm) -> list[Notice]:
     """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses."""
     found = []
     for trace in marks.passes:
@@ -84,7 +91,7 @@ def off_sheet(marks, brush, sheet_mm) -> list[Notice]:
     return found
 
 
-def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
+def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, float, float]:
     """Left, bottom, right, top of all paint. Error when nothing touches the paper."""
     bounds = np.array([_core.painted_bounds(trace, brush) for trace in marks.passes]).reshape(-1, 4)
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
@@ -93,7 +100,9 @@ def bounds_mm(marks, brush) -> tuple[float, float, float, float]:
     return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
 
 
-def shifted_by_blends(loads: PlanInLoads, brush, cell: Cell, tolerance_mm: float) -> list[Notice]:
+def shifted_by_blends(
+    loads: PlanInLoads, brush: _core.Brush, cell: Cell, tolerance_mm: float
+) -> list[Notice]:
     """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance.
 
     The path as it is run is simulated, and where the brush is taut its widest section compared with what was meant.

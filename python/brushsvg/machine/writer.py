@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,7 +49,13 @@ def cells_for(suffix: str) -> list[str]:
 
 
 def encode(
-    suffix: str, plan, brush, title: str, notes=(), cell: Cell | None = None, job: Job = WHOLE_JOB
+    suffix: str,
+    plan: _core.Plan,
+    brush: _core.Brush,
+    title: str,
+    notes: Iterable[str] = (),
+    cell: Cell | None = None,
+    job: Job = WHOLE_JOB,
 ) -> bytes | Iterator[str]:
     """The plan as the bytes of a plan.json or a program in the cell's language, in pieces, by the file's extension.
 
@@ -65,7 +71,9 @@ def encode(
     return encoded(suffix, plan, walk, brush, title, notes)
 
 
-def encoded(suffix: str, plan, walk: Walked, brush, title: str, notes=()) -> bytes | Iterator[str]:
+def encoded(
+    suffix: str, plan: _core.Plan, walk: Walked, brush: _core.Brush, title: str, notes: Iterable[str] = ()
+) -> bytes | Iterator[str]:
     """The same for who has gone through the plan's loads before. Error where something forbids to run them."""
     made = walk.allowed()
     if suffix == ".json":
@@ -74,7 +82,7 @@ def encoded(suffix: str, plan, walk: Walked, brush, title: str, notes=()) -> byt
     return text_of(post_for(suffix, made.cell), replace(made, header=header), suffix)
 
 
-def in_files(path: str | os.PathLike, pieces: bytes | Iterator[str]) -> dict:
+def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
     """The same by the files that it belongs in: what one program of a language cannot hold lies beside it."""
     post = next((post for post in POSTS.values() if Path(path).suffix.lower() in post.extensions), None)
     if post is None or post.parted is None:
@@ -83,7 +91,7 @@ def in_files(path: str | os.PathLike, pieces: bytes | Iterator[str]) -> dict:
     return {path: texts.pop("")} | {beside(path, name): text for name, text in texts.items()}
 
 
-def beside(path: str | os.PathLike, name: str) -> str:
+def beside(path: str | os.PathLike[str], name: str) -> str:
     """Where the file of another program lies that one calls."""
     return str(Path(path).with_name(name + Path(path).suffix))
 
@@ -99,18 +107,24 @@ def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 
-def whole_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
+def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """All that the machine does, paint included, for who only looks: limits are not asked."""
     job = replace(job, visits=visits(loads, cell, job.first_stroke))
     return unchecked_program(loads, brush, cell, job)
 
 
-def time_s(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+def time_s(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
     """Estimated time, paint included; limits are not looked at."""
     return duration_s(whole_program(loads, brush, cell, job))
 
 
-def write_program(path: str | os.PathLike, plan, brush, title: str = "", cell: Cell | None = None) -> None:
+def write_program(
+    path: str | os.PathLike[str],
+    plan: _core.Plan,
+    brush: _core.Brush,
+    title: str = "",
+    cell: Cell | None = None,
+) -> None:
     """Write a plan as plan.json or a program in the cell's language, by the extension of path.
 
     Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.

@@ -260,6 +260,23 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     )
 
 
+def without(found: Comparison, done: dict[str, Placed]) -> Comparison:
+    """The same with marks where they would lie if what is done to each were not. Of a mark of which that is not known,
+    nothing is."""
+    rows = tuple(_undone(row, done.get(row.stroke, NOWHERE)) for row in found.strokes)
+    sheet, spread_mm = _sheet(list(rows), found.common, found.middle_mm)
+    return replace(found, strokes=rows, common=sheet, spread_mm=spread_mm)
+
+
+def _undone(row: Compared, done: Placed) -> Compared:
+    seen = row.placed
+    if not (seen.found and done.found):
+        return replace(row, placed=NOWHERE)
+    x, y = np.subtract(seen.shift_mm, done.shift_mm).tolist()
+    left = Placed((x, y), seen.turn_rad - done.turn_rad, seen.wider_mm - done.wider_mm, True)
+    return replace(row, placed=left)
+
+
 def _things(beside: np.ndarray, canvas: Canvas) -> np.ndarray:
     """Pieces of what lies beside all marks that are too large for paint that strayed."""
     _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(beside), connectivity=8)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import os
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -13,10 +14,14 @@ from .. import _core, json_fields
 from ..errors import Error
 from ..files import read_bytes
 from ..geometry.rotation import rotation
+from ..machine.cell import Machine
 from ..machine.pass_way import on_way
+from .led_width import wider
 
 FORMAT = "brushsvg/comparison"
+BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is mended
 MARK = "corrections"  # of a plan that was corrected: the key, with how many strokes were
+MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
 START_MM = 0.1  # where the same stroke begins
 OTHER_LAG_MM = 5.0  # the same where another brush leads it: a lag of 20 mm is not a quarter off
@@ -25,8 +30,9 @@ OTHER_LAG_MM = 5.0  # the same where another brush leads it: a lag of 20 mm is n
 @dataclass(frozen=True)
 class Correction:
     """A stroke, whose way begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
-    shifted by shift_mm: what is left once the brush of brush_sha256 ("" where that is not known) is known. replanned:
-    the sheet was painted by a plan for another brush, so that strokes began elsewhere."""
+    shifted by shift_mm, its edges led wider_mm farther out: what is left once the brush of brush_sha256 and the machine
+    of machine_sha256 ("" where that is not known) are known. replanned: the sheet was painted by a plan for another
+    brush, so that strokes began elsewhere."""
 
     stroke: str
     start_mm: tuple[float, float]
@@ -35,11 +41,34 @@ class Correction:
     turn_deg: float
     brush_sha256: str = ""
     replanned: bool = False
+    machine_sha256: str = ""
+    wider_mm: float = 0.0
 
     def moved(self, points_mm: np.ndarray) -> np.ndarray:
         """(n, 2) places on the sheet, led elsewhere."""
         turned = (points_mm - self.middle_mm) @ rotation(math.radians(self.turn_deg))
         return turned + self.middle_mm + self.shift_mm
+
+
+def machine_sha256(machine: Machine | None) -> str:
+    """Of what a cell undoes of its machine; None undoes nothing."""
+    return hashlib.sha256(json.dumps(asdict(machine or Machine())).encode()).hexdigest()
+
+
+def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:
+    """Those of them that are left beside this machine. Error where they are of other cells: what a mended cell undoes,
+    corrections made beside the old one would undo again."""
+    sha256 = machine_sha256(machine)
+    found = tuple(each for each in corrections if each.machine_sha256 in ("", sha256))
+    if corrections and not found:
+        raise Error(
+            "the corrections say what is left beside another table [machine] than this cell's, which is neither that "
+            "of the cell that painted nor the mended one: use one of these, or compare the photograph again with the "
+            "cell that painted",
+            "machine_sha256",
+            code="corrections-of-another-cell",
+        )
+    return found
 
 
 def corrected(plan, corrections: tuple[Correction, ...], brush):
@@ -61,7 +90,7 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
     passes = []
     for a_pass in plan.passes:
         correction = left.pop(a_pass.stroke, None)
-        passes.append(_led(a_pass, correction) if correction else a_pass)
+        passes.append(_led(a_pass, correction, brush) if correction else a_pass)
     if left:
         raise _of_another_job(next(iter(left)), "there is no such stroke")
     extra = json.dumps(json.loads(plan.extra or "{}") | {MARK: len(corrections)})
@@ -75,11 +104,14 @@ def refuse_corrected(plan) -> None:
         raise Error(sentence, MARK, code="corrections-twice")
 
 
-def _led(a_pass, correction: Correction):
+def _led(a_pass, correction: Correction, brush):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
     if away_mm > (OTHER_LAG_MM if correction.replanned else START_MM):
         raise _of_another_job(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
+    if correction.wider_mm:
+        a_pass = wider(a_pass, correction.wider_mm, brush)
+        poses = np.array(a_pass.poses_mm, dtype=float)
     poses[:, :2] = correction.moved(poses[:, :2])
     arcs = [
         _core.Arc(arc.first, arc.last, tuple(correction.moved(np.array([arc.centre_mm]))[0]), arc.direction)
@@ -96,25 +128,17 @@ def _of_another_job(stroke: str, why: str) -> Error:
     )
 
 
-def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
+def read_corrections(path: str | os.PathLike[str]) -> tuple[Correction, ...]:
     """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
     damaged, or when it holds no corrections."""
     try:
         content = json_fields.document(read_bytes(path), FORMAT)
-        rows = json_fields.objects(content.get("strokes"), "strokes")
         sha256, planned = (_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
-        found = tuple(
-            replace(
-                _read(row, f"strokes[{k}]"),
-                brush_sha256=sha256,
-                replanned=bool(planned) and planned != sha256,
-            )
-            for k, row in enumerate(rows)
-            if row.get("correction") is not None
-        )
-        names = [each.stroke for each in found]
-        if twice := [name for name in names if names.count(name) > 1]:
-            raise Error(f"stroke {twice[0][:40]!r} stands twice", "strokes", code="stroke-twice")
+        of_brush = {"brush_sha256": sha256, "replanned": bool(planned) and planned != sha256}
+        found = _strokes(content, "", of_brush)
+        if content.get(BESIDE) is not None:
+            (mended,) = json_fields.objects([content[BESIDE]], BESIDE)
+            found += _strokes(mended, f"{BESIDE}.", of_brush)
         if not found:
             sentence = "it says of no stroke where to lead it: the photograph did not show where marks lie"
             raise Error(sentence, "strokes", code="corrections-missing")
@@ -124,14 +148,28 @@ def read_corrections(path: str | os.PathLike) -> tuple[Correction, ...]:
     return found
 
 
-def _sha256(content: dict, key: str) -> str:
+def _strokes(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
+    rows = json_fields.objects(content.get("strokes"), f"{at}strokes")
+    machine = _sha256(content, "machine_sha256", at)
+    found = tuple(
+        replace(_read(row, f"{at}strokes[{k}]"), **of_brush, machine_sha256=machine)
+        for k, row in enumerate(rows)
+        if row.get("correction") is not None
+    )
+    names = [each.stroke for each in found]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise Error(f"stroke {twice[0][:40]!r} stands twice", f"{at}strokes", code="stroke-twice")
+    return found
+
+
+def _sha256(content: dict, key: str, at: str = "") -> str:
     said = content.get(key, "")
     if not isinstance(said, str):
-        raise Error("this must be a text", key, code="wrong-type")
+        raise Error("this must be a text", f"{at}{key}", code="wrong-type")
     return said
 
 
-def aside_before_mm(path: str | os.PathLike) -> dict[str, float]:
+def aside_before_mm(path: str | os.PathLike[str]) -> dict[str, float]:
     """By stroke how far it lay aside on the sheet that these corrections are of; without those of which the file does
     not say it. Error as for read_corrections."""
     rows = json_fields.objects(json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes")
@@ -152,4 +190,5 @@ def _read(row: dict, where: str) -> Correction:
     shift_mm = json_fields.numbers(said.get("shift_mm"), f"{at}.shift_mm", 2)
     json_fields.number(math.hypot(*shift_mm), f"{at}.shift_mm", 0.0, MOST_MM)
     turn_deg = json_fields.number(said.get("turn_deg"), f"{at}.turn_deg", -MOST_DEG, MOST_DEG)
-    return Correction(stroke, *places, shift_mm, turn_deg)
+    wider_mm = json_fields.number(said.get("wider_mm", 0.0), f"{at}.wider_mm", -MOST_WIDER_MM, MOST_WIDER_MM)
+    return Correction(stroke, *places, shift_mm, turn_deg, wider_mm=wider_mm)

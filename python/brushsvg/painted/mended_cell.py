@@ -11,28 +11,34 @@ from .faults import Faults
 SURE = 1.0  # half intervals from 0, from where on a number goes into a cell
 
 
-def mended(faults: Faults, middle_mm, before: Machine | None) -> Machine | None:
-    """before: what the painted job's cell undid; the rest comes on top. None where nothing is certain."""
-    sure = {
+def sure(faults: Faults) -> dict[str, float]:
+    """By the name of each number what of it goes into a cell: 0 where it is not certain."""
+    return {
         one.number.name: one.value if abs(one.value) > SURE * one.half else 0.0
         for one in faults.found
         if one.number.cause in (MACHINE, PAPER) and not one.number.name.startswith("backlash")
     }
-    if not any(sure.values()):
+
+
+def mended(faults: Faults, middle_mm, before: Machine | None) -> Machine | None:
+    """before: what the painted job's cell undid; the rest comes on top. None where nothing is certain."""
+    certain = sure(faults)
+    if not any(certain.values()):
         return None
     before = before or Machine()
     lean, tilt, scale = (
-        np.array([sure[f"{name} in {axis}"] for axis in "xy"]) for name in ("lean", "tilt", "scale")
+        np.array([certain[f"{name} in {axis}"] for axis in "xy"]) for name in ("lean", "tilt", "scale")
     )
-    was, beyond = _axes(before.scale, before.skew), _axes(1 + scale, sure["skew"])
+    was, beyond = _axes(before.scale, before.skew), _axes(1 + scale, certain["skew"])
     now = beyond @ was
-    height_mm = before.height_mm + sure["height"] - tilt @ np.asarray(middle_mm)
+    height_mm = before.height_mm + certain["height"] - tilt @ np.asarray(middle_mm)
     return Machine(
         _rounded(beyond @ before.lean_mm_per_mm + lean),
         _rounded(np.diag(now)),
         round(float(now[0, 1]), 5),
         round(float(height_mm), 3),
         _rounded(np.array(before.tilt_mm_per_mm) + tilt @ was),
+        before.map_mm,
     )
 
 

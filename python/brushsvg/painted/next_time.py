@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Notice
+from ..errors import Error, Notice
 from ..geometry.rotation import rotation
 from .comparison import Compared, Comparison
-from .corrections import MOST_DEG, MOST_MM, Correction
+from .corrections import MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction
+from .led_width import refuse_width
 
 # Of what was seen so much is taken back, for part of it does not repeat: a brush set down twice is taken to lie 0.1 mm
 # elsewhere in x and in y (standard deviation). Where strokes lie aside by hardly more, 0.8 of it led as many of them
@@ -19,16 +20,22 @@ MOST_SHARE, LEAST_SHARE = 0.8, 0.5
 AT_RANDOM_MM = 0.1
 FARTHER_MM = 0.1  # what does not repeat leads every other stroke a little farther aside
 LIKE = 0.6  # overlap of a mark, where it lies, with its paint: less may be any paint that is near
+EDGE_MM = (
+    0.05  # that all edges of a mark may be misread by (standard deviation), with what of it does not repeat
+)
+WIDTH_LIKE = 0.85  # of it: a mark that is less like its paint is dry or ragged, not narrow
 UNSEEN = 0.3  # share of a mark without paint, beyond which its place is doubtful
 
 
 def next_corrections(
-    found: Comparison, plan, before: tuple[Correction, ...]
+    found: Comparison, plan, before: tuple[Correction, ...], brush
 ) -> tuple[dict[str, Correction], list[Notice]]:
     """By stroke. The sheet's own place is left out, which is another one on the next sheet; so nothing is said of fewer
     marks than tell it. plan: without corrections; before: those that were painted with. A stroke of which nothing
-    certain was seen keeps its own, one that would be led too far has none, which is told."""
-    starts = {a_pass.stroke: tuple(map(float, a_pass.poses_mm[0][:2])) for a_pass in plan.passes}
+    certain was seen keeps its own, one that would be led too far has none, which is told; so is a width that the
+    brush cannot paint, which stays as it was predicted."""
+    passes = {a_pass.stroke: a_pass for a_pass in plan.passes}
+    starts = {name: tuple(map(float, a_pass.poses_mm[0][:2])) for name, a_pass in passes.items()}
     made, notices = {each.stroke: replace(each, start_mm=starts[each.stroke]) for each in before}, []
     if found.spread_mm is None:
         return made, notices
@@ -45,6 +52,12 @@ def next_corrections(
             notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
             continue
         correction = _next(row, found, share, starts[row.stroke], made.get(row.stroke))
+        try:
+            if correction.wider_mm:
+                refuse_width(passes[row.stroke], correction.wider_mm, brush)
+        except Error as refused:
+            notices.append(refused.notice())
+            correction = replace(correction, wider_mm=0.0)
         far_mm, far_deg = math.hypot(*correction.shift_mm), abs(correction.turn_deg)
         if far_mm <= MOST_MM and far_deg <= MOST_DEG:
             made[row.stroke] = correction
@@ -89,4 +102,14 @@ def _next(row: Compared, found: Comparison, share: float, start_mm, before: Corr
         row.middle_mm,
         (float(shift[0]), float(shift[1])),
         (before.turn_deg if before else 0.0) - turn_deg,
+        wider_mm=_width(row, before.wider_mm if before else 0.0),
     )
+
+
+def _width(row: Compared, before_mm: float) -> float:
+    """Of what a mark is too wide or too narrow, as much is taken back as is more than edges may be misread by."""
+    off = row.placed.wider_mm
+    if row.like < WIDTH_LIKE or abs(off) <= 2 * EDGE_MM:
+        return before_mm
+    share = min(1 - (2 * EDGE_MM / off) ** 2, MOST_SHARE)
+    return min(max(before_mm - share * off, -MOST_WIDER_MM), MOST_WIDER_MM)

@@ -4,23 +4,41 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..machine.cell import Machine
 from .comparison import BLOT_MM, Compared, Comparison
-from .corrections import FORMAT, Correction
+from .corrections import BESIDE, FORMAT, Correction
+from .ends import UNSEEN, Ends
 from .fault_report import in_json, in_words
 from .faults import Faults
 from .next_time import aside_mm
 
 LEAST_BLOT_MM2 = 1.0
-HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "missing")
+HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
 
 
-def as_text(title: str, found: Comparison, faults: Faults | None, machine: Machine | None = None) -> str:
-    """machine: of the cell, as the next job should be told it."""
-    rows = [HEAD, *(_row(stroke) for stroke in found.strokes)]
+@dataclass(frozen=True)
+class Made:
+    """Fingerprints of what a sheet was made with: the brush that predicted, the one that the plan was made for, where
+    it is known, and the machine that the cell undid."""
+
+    brush: str
+    plan_brush: str
+    machine: str
+
+
+def as_text(
+    title: str,
+    found: Comparison,
+    faults: Faults | None,
+    ends: dict[str, Ends],
+    machine: Machine | None = None,
+) -> str:
+    """ends: by stroke; machine: of the cell, as the next job should be told it."""
+    rows = [HEAD, *(_row(stroke, ends.get(stroke.stroke, UNSEEN)) for stroke in found.strokes)]
     widths = [max(len(row[k]) for row in rows) for k in range(len(HEAD))]
     table = [
         "  ".join(
@@ -50,14 +68,15 @@ def as_text(title: str, found: Comparison, faults: Faults | None, machine: Machi
         ),
         "",
         "Wanted, predicted: overlap of the stroke's paint with them, intersection over union. x, y, off: displacement",
-        "from the prediction in mm; turn in degrees; wider: of each edge, in mm; missing: share of the mark, where it",
-        "lies, without paint; -: not to be told from its neighbours.",
+        "from the prediction in mm; turn in degrees; wider: of each edge, in mm; began, ended: how much later on its",
+        "way than wanted, in mm; missing: share of the mark, where it lies, without paint; -: not to be told from its",
+        "neighbours.",
         *in_words(faults, machine),
     ]
     return "\n".join(lines) + "\n"
 
 
-def _row(one: Compared) -> tuple[str, ...]:
+def _row(one: Compared, ends: Ends) -> tuple[str, ...]:
     x, y = one.placed.shift_mm
     placed = (x, y, math.hypot(x, y), math.degrees(one.placed.turn_rad), one.placed.wider_mm)
     formats = ("+.2f", "+.2f", ".2f", "+.1f", "+.2f")
@@ -69,6 +88,7 @@ def _row(one: Compared) -> tuple[str, ...]:
             f"{round(value, int(how[-2])) + 0.0:{how}}" if one.placed.found else "-"
             for value, how in zip(placed, formats, strict=True)
         ),
+        *("-" if mm is None else f"{round(mm, 2) + 0.0:+.2f}" for mm in (ends.began_mm, ends.ended_mm)),
         f"{100 * one.missing:.0f} %",
     )
 
@@ -78,19 +98,20 @@ def as_json(
     found: Comparison,
     corrections: dict[str, Correction],
     faults: Faults | None,
-    brush_sha256: str,
-    plan_brush_sha256: str,
+    ends: dict[str, Ends],
+    sha256: Made,
+    beside: tuple[str, dict[str, Correction]] | None = None,
 ) -> str:
-    """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is told;
-    brush_sha256: of the brush that predicted; plan_brush_sha256: of the one that the plan was made for, where it is
-    known."""
+    """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is told; beside:
+    the fingerprint of the mended cell's machine, and the corrections that are left with it."""
     _, placed, each = found.overlaps
     made = {
         "format": FORMAT,
         "version": 1,
         "title": title,
-        "brush_sha256": brush_sha256,
-        "plan_brush_sha256": plan_brush_sha256,
+        "brush_sha256": sha256.brush,
+        "plan_brush_sha256": sha256.plan_brush,
+        "machine_sha256": sha256.machine,
         "overlap_wanted": found.overlap_wanted,
         "overlap_predicted": found.overlap_predicted,
         "overlap_sheet_placed": placed,
@@ -114,17 +135,23 @@ def as_json(
                 "aside_mm": float(np.hypot(*aside_mm(one, found))) if one.placed.found else None,
                 "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
                 "wider_mm": one.placed.wider_mm if one.placed.found else None,
+                "began_mm": ends.get(one.stroke, UNSEEN).began_mm,
+                "ended_mm": ends.get(one.stroke, UNSEEN).ended_mm,
                 "missing": one.missing,
                 "correction": _told(corrections.get(one.stroke)),
             }
             for one in found.strokes
         ],
     }
+    if beside:
+        machine, left = beside
+        rows = [{"stroke": name, "correction": _told(each)} for name, each in left.items()]
+        made[BESIDE] = {"machine_sha256": machine, "strokes": rows}
     return json.dumps(_rounded(made), indent=1, ensure_ascii=False) + "\n"
 
 
 def _told(correction: Correction | None) -> dict | None:
-    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg")
+    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm")
     return {key: getattr(correction, key) for key in keys} if correction else None
 
 

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import cv2
 import numpy as np
 
 from .. import _core
 from ..errors import Error, need
-from .marks_svg import BAND, EDGE, check_picture, known_colour
+from .marks_svg import BAND, EDGE, Band, check_picture, known_colour
 from .overlap_svg import MISSING
 from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, canvas, encoded, lay, write
 
 
-def marks_png(marks, brush, sheet_mm: tuple[float, float], colours: list[str], band=None, blank=()) -> bytes:
+def marks_png(
+    marks: _core.Marks,
+    brush: _core.Brush,
+    sheet_mm: tuple[float, float],
+    colours: list[str],
+    band: Band | None = None,
+    blank: Iterable[np.ndarray] = (),
+) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
     with a legend; blank: rings of what of shapes stays blank, outlined."""
     check_picture(marks, sheet_mm, colours)

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Container, Iterable, Sequence
 from html import escape
 from numbers import Real
+from typing import Protocol
+
+import numpy as np
 
 from .. import _core
 from ..errors import Error, need
@@ -15,16 +19,25 @@ BAND = "#e0862b"  # where an edge lies with 95 %
 EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
 
 
+class Band(Protocol):
+    """Where the edge of each mark lies with 95 %: rings [mm], and in words where that is known from."""
+
+    @property
+    def rings(self) -> Iterable[list[np.ndarray]]: ...
+    @property
+    def words(self) -> str: ...
+
+
 def marks_svg(
-    marks,
+    marks: _core.Marks,
     sheet_mm: tuple[float, float],
     colours: list[str],
     title: str = "",
-    tracking_errors=(),
+    tracking_errors: Sequence[_core.Miss | None] = (),
     made: str = "",
-    band=None,
-    blank=(),
-    astray=(),
+    band: Band | None = None,
+    blank: Iterable[np.ndarray] = (),
+    astray: Container[str] = (),
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
@@ -59,7 +72,7 @@ def marks_svg(
     return "\n".join([*lines, "</svg>", ""])
 
 
-def check_picture(marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
+def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
     """Error for a sheet that has no size, or where not every pass has a colour."""
     need(marks, _core.Marks, "marks, as simulate returns them")
     need(sheet_mm, (tuple, list), "a sheet's width and height")

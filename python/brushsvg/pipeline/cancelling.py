@@ -8,11 +8,21 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import CancelledError
+from typing import Protocol
 
 from ..errors import need
 
 LOOKS_S = 0.05
 PATIENCE_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
+
+
+class Asked(Protocol):
+    """What a threading.Event has."""
+
+    def is_set(self) -> bool: ...
+
+
+Cancel = Callable[[], object] | Asked
 
 
 class _GivenUp(BaseException):

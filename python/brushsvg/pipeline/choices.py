@@ -68,7 +68,7 @@ class Choices:
     start: str | None = None
     end: str | None = None
     z_offset: float | None = None
-    corrections: str | os.PathLike | None = None
+    corrections: str | os.PathLike[str] | None = None
 
 
 class Given(TypedDict, total=False):
@@ -158,7 +158,7 @@ def name_of(source) -> str:
 
 
 @contextmanager
-def concerning(file: str | os.PathLike) -> Iterator[None]:
+def concerning(file: str | os.PathLike[str]) -> Iterator[None]:
     """Lets an error inside be one of this file, unless it names another."""
     try:
         yield
@@ -215,7 +215,7 @@ def cell_of(given) -> Cell:
         return find_cell(given)
 
 
-def corrections_of(path: str | os.PathLike | None) -> tuple[Correction, ...]:
+def corrections_of(path: str | os.PathLike[str] | None) -> tuple[Correction, ...]:
     if path is None:
         return ()
     with concerning(path):

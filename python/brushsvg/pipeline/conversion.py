@@ -7,8 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
+from .. import _core
 from ..errors import Error, Notice, lacking, need, need_number, need_one_of
 from ..evaluation import report as reports
 from ..files import write_files
@@ -22,6 +23,7 @@ from ..machine.posts import POSTS
 from ..machine.program import WHOLE_JOB, Job, Walked
 from ..text_summary import summarized
 from . import cancelling, outputs, prediction, preparation
+from .cancelling import Cancel
 from .choices import (
     Choices,
     Given,
@@ -33,6 +35,9 @@ from .choices import (
     suffix_of,
     without_effect,
 )
+
+if TYPE_CHECKING:
+    from .preparation import Source
 
 ORDERS = ("drawn", "nearest")
 FORMATS = {
@@ -53,7 +58,7 @@ class Conversion:
     """
 
     title: str
-    plan: object
+    plan: _core.Plan
     notices: tuple[Notice, ...]
     time_s: float | None
     texts: Mapping[str, str] = field(repr=False)
@@ -67,19 +72,19 @@ class Conversion:
 
 
 def convert(
-    drawing,
-    out: str | os.PathLike | None = None,
+    drawing: Source,
+    out: str | os.PathLike[str] | None = None,
     *,
-    preview: str | os.PathLike | None = None,
-    report: str | os.PathLike | None = None,
-    page: str | os.PathLike | None = None,
+    preview: str | os.PathLike[str] | None = None,
+    report: str | os.PathLike[str] | None = None,
+    page: str | os.PathLike[str] | None = None,
     formats: Sequence[str] = (),
     figures: bool = False,
     from_stroke: int = 1,
     order: str = "drawn",
     lenient: bool = False,
     progress: Callable[[str], object] | None = None,
-    cancel=None,
+    cancel: Cancel | None = None,
     **choices: Unpack[Given],
 ) -> Conversion:
     """A drawing to a plan and a program, as `brushsvg convert` makes them, byte for byte. Nothing is written but to

@@ -24,7 +24,7 @@ class Suit:
     why: str = ""  # the first stroke that is refused, and why
 
 
-def suits(path: str | os.PathLike, options: Options, brushes, stage=lambda text: None) -> list[Suit]:
+def suits(path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None) -> list[Suit]:
     """How well each brush paints a drawing, the best first."""
     found = []
     for brush in brushes:

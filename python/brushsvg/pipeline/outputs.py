@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from .. import _core
-from ..errors import Error
+from ..errors import Error, Notice
 from ..evaluation import report
-from ..evaluation.uncertainty import uncertainty
+from ..evaluation.uncertainty import Band, uncertainty
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads
 from ..machine.writer import time_s, whole_program
@@ -40,7 +41,7 @@ def notes(work: Work) -> tuple[str, ...]:
     return lines
 
 
-def picture(suffix: str, work: Work, marks, band=None) -> bytes:
+def picture(suffix: str, work: Work, marks: _core.Marks, band: Band | None = None) -> bytes:
     """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
     uncertainty.Band to draw around them."""
     if suffix == ".json":
@@ -78,7 +79,7 @@ def page(suffix: str, work: Work) -> bytes:
     return chart_page(made.printed, made.ticks).encode()
 
 
-def overlap_picture(suffix: str, work: Work, marks, long_side_px: int | None = None) -> bytes:
+def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: int | None = None) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
     outlines. long_side_px: of a small .png without legend. Error for a plan, which does not say what was wanted."""
     if work.strokes is None:
@@ -96,7 +97,7 @@ def overlap_picture(suffix: str, work: Work, marks, long_side_px: int | None = N
     return overlap_png(wanted, painted, legend=long_side_px is None)
 
 
-def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0) -> bytes:
+def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
     """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
     loads, with outlines."""
     runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
@@ -105,20 +106,15 @@ def played(work: Work, loads: PlanInLoads, marks, cell: Cell, speed: float = 1.0
     return animation(moves, loads, work.brush, marks, wanted, cell.stations, work.title, speed)
 
 
-def report_text(suffix: str, *measured, **told) -> str:
-    """The report as text (.txt) or JSON (.json); the rest as for `reported`."""
-    return report.as_text(suffix, reported(*measured, **told))
-
-
 def reported(
     work: Work,
-    marks,
+    marks: _core.Marks,
     cell: Cell,
-    warnings=None,
-    forbidden=(),
-    drawn=None,
-    seconds=None,
-    advice="",
+    warnings: Iterable[Notice] | None = None,
+    forbidden: Iterable[Notice] = (),
+    drawn: Sequence[_core.Stroke] | None = None,
+    seconds: float | None = None,
+    advice: str = "",
 ) -> report.Report:
     """The figures of a work. warnings: None for those of the work; forbidden:
     those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where

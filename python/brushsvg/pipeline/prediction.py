@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 
 from .. import _core
 from .preparation import Work
 
 
-def predict(work: Work, outlines: bool = True, stage=lambda text: None, whole: bool = True):
+def predict(
+    work: Work, outlines: bool = True, stage: Callable[[str], object] = lambda text: None, whole: bool = True
+) -> _core.Marks:
     """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
     return marks_of(work.plan, work.brush, outlines, stage, whole)
 
 
-def marks_of(plan, brush, outlines: bool = True, stage=lambda text: None, whole: bool = True):
+def marks_of(
+    plan: _core.Plan,
+    brush: _core.Brush,
+    outlines: bool = True,
+    stage: Callable[[str], object] = lambda text: None,
+    whole: bool = True,
+) -> _core.Marks:
     """The marks of any plan."""
     marks = _core.simulate(plan, brush, progress=_counted(stage, "simulated"))
     if not outlines:
@@ -21,7 +30,9 @@ def marks_of(plan, brush, outlines: bool = True, stage=lambda text: None, whole:
     return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
 
 
-def outlined(marks, brush, stage=lambda text: None):
+def outlined(
+    marks: _core.Marks, brush: _core.Brush, stage: Callable[[str], object] = lambda text: None
+) -> _core.Marks:
     """The marks with their rings traced."""
     _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
     return marks

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from ..machine.cell import LEAST_SPEED_MM_S, Cell
 from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
 from ..machine.program import Job, walked
-from ..painted.corrections import Correction, corrected
+from ..painted.corrections import Correction, beside_machine, corrected
 from ..planning import travel_order
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
@@ -30,6 +32,9 @@ from ..strokes.wide_shapes import within_reach
 from .json_files import read_plan
 from .paint_astray import off_middle_line, outside
 
+if TYPE_CHECKING:
+    Source = drawing.Source | Design | _core.Plan
+
 DEFAULT_BRUSH = "round-6"
 
 
@@ -37,7 +42,7 @@ DEFAULT_BRUSH = "round-6"
 class Options:
     """What may be chosen. brush None: round-6, or the one a plan names; the rest has no effect on a plan."""
 
-    brush: object | None = None
+    brush: _core.Brush | None = None
     reading: drawing.ReadOptions = drawing.AS_DRAWN
     layout: layout.Layout = layout.AS_DRAWN
     compensation: str = "closed"
@@ -58,6 +63,8 @@ class Options:
     def __post_init__(self):
         if self.cell is not None:  # from here on it is as exact as the plan
             object.__setattr__(self, "cell", as_exact_as(self.cell, self.tolerance_mm))
+        left = beside_machine(self.corrections, self.cell.machine if self.cell else None)
+        object.__setattr__(self, "corrections", left)
 
 
 @dataclass(frozen=True)
@@ -83,7 +90,12 @@ class Work:
     astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
 
 
-def prepare(source, options: Options = Options(), stage=lambda text: None, partly: bool = False) -> Work:
+def prepare(
+    source: Source,
+    options: Options = Options(),
+    stage: Callable[[str], object] = lambda text: None,
+    partly: bool = False,
+) -> Work:
     """Read a drawing or plan.json and lay out the TCP's path. source: the path of one, a Plan, a Design, or an open
     drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
     out."""

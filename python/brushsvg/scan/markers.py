@@ -93,10 +93,14 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     for number, rough in found.items():
         corners[number], blur = _exact(light, rough, modules)
         blurs.append(blur)
-    view = _without_a_covered_one(_fitted(corners, printed, pixels.shape), corners, printed, pixels.shape)
-    blur_mm = float(np.median(blurs)) / view.px_per_mm
-    view = replace(view, blur_mm=blur_mm, white=white_share(light))
-    _refuse_unmeasurable(view, printed)
+    try:
+        view = _without_a_covered_one(_fitted(corners, printed, pixels.shape), corners, printed, pixels.shape)
+        blur_mm = float(np.median(blurs)) / view.px_per_mm
+        view = replace(view, blur_mm=blur_mm, white=white_share(light))
+        _refuse_unmeasurable(view, printed)
+    except Error:  # markers along one edge of the page tell its view badly
+        _refuse_cropped(found, printed, light.shape)
+        raise
     return view
 
 
@@ -147,18 +151,40 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
             "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back",
             code="photo-mirrored",
         )
-    _refuse_blind(light, len(found))
     if not found:
+        _refuse_blind(light, 0)
         raise Error(
             f"no marker of chart{name} is in the picture: photograph the whole page, sharp and without deep shadows",
             code="photo-markers-missing",
             advice=UNPRINTED,
         )
+    _refuse_blind(light, len(found))
+    _refuse_cropped(found, printed, light.shape)
     raise Error(
         f"only {len(found)} of the {len(printed.corners_mm)} markers can be seen ({_listed(found)}), it takes {FEWEST} "
         "or more: photograph the whole page, with nothing over its markers",
         code="photo-markers-missing",
     )
+
+
+def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> None:
+    """Where most of the other markers lie beyond the picture, as the corners of these few have it."""
+    others = [c.mean(axis=0) for number, c in printed.corners_mm.items() if number not in found]
+    if not others:
+        return
+    mm = np.vstack([printed.corners_mm[number] for number in found])
+    roughly, _ = cv2.estimateAffinePartial2D(mm * (1, -1), np.vstack([*found.values()]))
+    if roughly is None:
+        return
+    px = np.array(others) * (1, -1) @ roughly[:, :2].T + roughly[:, 2]
+    beyond = (px < 0).any(axis=1) | (px > np.array(shape[1::-1]) - 1).any(axis=1)
+    if beyond.mean() > 0.5:
+        raise Error(
+            f"the page is cropped: only {len(found)} of its {len(printed.corners_mm)} markers ({_listed(found)}) are "
+            "in the picture, others lie beyond its edge: photograph the whole page",
+            value=len(found),
+            code="photo-cropped",
+        )
 
 
 def _refuse_blind(light: np.ndarray, count: int) -> None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .. import _core
 from ..errors import Error, need
 from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import split
@@ -86,7 +87,7 @@ def begun_amid_a_side(cubics: np.ndarray, half_width: list) -> tuple[np.ndarray,
     return begun.cubics, begun.half_width
 
 
-def lifted_at_corners(strokes: list, brush) -> list:
+def lifted_at_corners(strokes: list[_core.Stroke], brush: _core.Brush) -> list[_core.Stroke]:
     """The strokes, those of drawn lines cut at each sharp corner where two marks lie nearer to what is wanted than one
     with a turn in place: paint missing and too much is less by 0.05 squares of the width. The parts of `id` are called
     id, id~2, id~3 ...; a closed line then begins at such a corner."""

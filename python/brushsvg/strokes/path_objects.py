@@ -6,6 +6,7 @@ import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..drawing.svg.path_data import MOST_COMMANDS, parse_path, snippet
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def stroke_from_path(
-    path, width_mm: float, id: str = "stroke1", page_height_mm: float | None = None
+    path: str | svgpathtools.Path | ArrayLike,
+    width_mm: float,
+    id: str = "stroke1",
+    page_height_mm: float | None = None,
 ) -> _core.Stroke:
     """One stroke along a path, as wide as width_mm everywhere.
 

@@ -22,7 +22,9 @@ _WORTH_PASSES = 1 / 0.95
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
 
-def within_reach(strokes: list, brush, wide: str = "auto") -> tuple[list, list, list[Notice]]:
+def within_reach(
+    strokes: list[_core.Stroke], brush: _core.Brush, wide: str = "auto"
+) -> tuple[list[_core.Stroke], list[_core.Stroke], list[Notice]]:
     """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
 
     Only strokes that carry an outline are changed: widths that were drawn as such are refused when the plan is made.

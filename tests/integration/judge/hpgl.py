@@ -33,6 +33,8 @@ def run_hpgl(text: str, start, down_mm: float, up_mm: float, travel_mm_s: float)
                 plotter.says(found[1])
             else:
                 plotter.does(found[2].upper(), [float(n) for n in re.findall(NUMBER, found[3])])
+                if found[3].rstrip().endswith(","):
+                    plotter.run.frame.append(f"line {plotter.line}: a last comma, of which no manual speaks")
             at = found.end()
     except RefusedError as refusal:
         plotter.run.refused = str(refusal)

@@ -83,8 +83,7 @@ class _Machine:
 
     def _command(self, code: str) -> None:
         if code in STOPS[self.firmware]:
-            self.run.legs.append(Leg(self.number, "stop", tuple(self.at), tuple(self.at)))
-            return
+            return self._stop()
         words, at = [], 0
         while at < len(code):
             if not (found := WORD.match(code, at)):
@@ -94,6 +93,8 @@ class _Machine:
             words.append((found[1], float(found[2])))
             at = found.end()
         name, values = f"{words[0][0]}{words[0][1]:g}", dict(words[1:])
+        if name in STOPS[self.firmware] and not values:
+            return self._stop()
         if len(values) + 1 != len(words):
             self._act("a word twice: which one holds?")
         self.is_still = name == "M400" or (self.is_still and name not in ("G0", "G1"))
@@ -128,6 +129,10 @@ class _Machine:
                     self.shift[k] = self.at[k] - values[axis] * self.mm
         elif name not in IDLE:
             self._act(f"{name} is unknown, or does something else")
+        return None
+
+    def _stop(self) -> None:
+        self.run.legs.append(Leg(self.number, "stop", tuple(self.at), tuple(self.at)))
 
     def _servo(self, values: dict[str, float]) -> None:
         if values.get("P") != self.pen.number or values.get("S") not in self.pen.heights:

@@ -94,7 +94,7 @@ class Bar:
 class Chart:
     """id, bar: none of charts as they were before there were any. dictionary: of the markers, as OpenCV names it."""
 
-    plan: object
+    plan: _core.Plan
     strokes: tuple[Stroke, ...]
     markers: tuple[Marker, ...]
     labels: tuple[Label, ...]
@@ -108,7 +108,7 @@ class Chart:
         return f"<Chart {self.id!r} for brush {self.plan.brush!r}: {counts}, sheet {width:g} x {height:g} mm>"
 
 
-def chart_id(plan) -> str:
+def chart_id(plan: _core.Plan) -> str:
     """Short, of all that is painted."""
     return hashlib.sha256(_core.write_plan(plan).encode()).hexdigest()[:8]
 
@@ -142,7 +142,7 @@ class _Unit:
 
 
 def chart(
-    brush,
+    brush: _core.Brush,
     sheet_mm: tuple[float, float],
     strokes: str | None = None,
     deepest_mm: float = math.inf,

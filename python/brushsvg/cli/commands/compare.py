@@ -8,7 +8,13 @@ from ...errors import Error, Notice
 from ...evaluation import report as figures
 from ...files import read_bytes
 from ...machine.cell_file import parse_cell, write_cell
-from ...painted.corrections import aside_before_mm, corrected, refuse_corrected
+from ...painted.corrections import (
+    aside_before_mm,
+    beside_machine,
+    corrected,
+    machine_sha256,
+    refuse_corrected,
+)
 from ...pipeline import prediction
 from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import corrections_of, settled, typed
@@ -20,13 +26,15 @@ def compare_files(args) -> None:
     import hashlib
 
     from ...calibration.from_prior import has_learned
+    from ...painted.beside_machine import beside_machine as left_beside
     from ...painted.comparison import Wanted, compare_photos
+    from ...painted.ends import ends_of
     from ...painted.faults import whose_fault
     from ...painted.job_page import job_page
     from ...painted.mended_cell import mended
     from ...painted.next_time import farther, next_corrections
     from ...painted.picture import comparison_png
-    from ...painted.report import as_json, as_text
+    from ...painted.report import Made, as_json, as_text
 
     check_places(args.output, args.picture, args.mended_cell)
     work = prepare(settled(typed(args, corrections=None), args.input))
@@ -35,6 +43,8 @@ def compare_files(args) -> None:
     with about(args.input):
         refuse_corrected(work.plan)
         marks = prediction.predict(work, True, stage)
+        undone = work.options.cell.machine if work.options.cell else None
+        before = beside_machine(before, undone)
         told = corrected(work.plan, before, work.brush)
         page = job_page(told, work.title)
         wanted = {} if work.strokes is None else {one.id: figures.wanted_rings([one]) for one in work.strokes}
@@ -52,24 +62,23 @@ def compare_files(args) -> None:
     stage("looking for what is amiss")
     learned = has_learned(work.brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = whose_fault(told, work.brush, strokes, found, learned)
-    corrections, too_far = next_corrections(found, work.plan, before)
+    corrections, too_far = next_corrections(found, work.plan, before, work.brush)
     beyond = farther(found, aside_before_mm(args.corrections)) if args.corrections else []
     warn(args.photos[0], [*found.notices, *too_far, *beyond])
     cell = work.options.cell
     machine = mended(faults, found.middle_mm, cell.machine) if faults else None
     title = work.title or "untitled"
     files = {}
-    if args.mended_cell and machine and corrections:
-        corrections = {}
-        sentence = (
-            "what this cell undoes is part of what strokes lie aside: no stroke is corrected from this sheet; paint "
-            "and compare one with the cell first"
-        )
-        warn(args.mended_cell, [Notice("machine", sentence, code="corrections-of-another-cell")])
-    as_figures = as_json(title, found, corrections, faults, work.brush.sha256, work.plan.brush_sha256)
+    beside = None
+    if machine and faults:
+        rest = left_beside(found, faults, told, work.brush, strokes)
+        beside = machine_sha256(machine), next_corrections(rest, work.plan, before, work.brush)[0]
+    ends = ends_of(found, strokes, work.strokes or ())
+    made_with = Made(work.brush.sha256, work.plan.brush_sha256, machine_sha256(undone))
+    as_figures = as_json(title, found, corrections, faults, ends, made_with, beside)
     if args.output:
         files[args.output] = (
-            as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults, machine)
+            as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults, ends, machine)
         )
     if args.picture:
         files[args.picture] = comparison_png(page, strokes, found, title, faults)
@@ -83,7 +92,7 @@ def compare_files(args) -> None:
             warn(args.mended_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files)
-    tell(as_figures if args.json else as_text(title, found, faults, machine))
+    tell(as_figures if args.json else as_text(title, found, faults, ends, machine))
     reached = found.overlap_wanted if found.overlap_wanted is not None else found.overlap_predicted
     if args.at_least is not None and reached < args.at_least:
         raise RefusedError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator, Iterator
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -86,25 +87,32 @@ def _lines(
     servo = cell.servo
     path = np.vstack([here, move.points_mm])
     still = servo_stands(np.diff(path, axis=0), cell)
-    for run in np.split(np.arange(len(still)), np.flatnonzero(np.diff(still)) + 1):
-        if not still[run[0]]:
-            part = path[run[0] : run[-1] + 2]
+    ends = [*(np.flatnonzero(still[1:] != still[:-1]) + 1).tolist(), len(still)]
+    for first, end in pairwise([0, *ends]):
+        if not still[first]:
+            part = path[first : end + 1]
             feeds = feeds_mm_min(np.diff(part, axis=0), move.speed_mm_s, fastest_mm_s)
             value, feed = yield from _ways(part, feeds, feed, cell)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
-        for k in run:
-            lifts = lifted(path[k, 2], path[k + 1, 2], value, move.speed_mm_s, step_mm, servo)
-            for value, wait_ms in lifts:
-                yield f"M3 S{value}\nG4 P{number(wait_ms / 1e3, 3)}\n"
-            if servo.settle_s and lifts:
-                yield f"G4 P{number(servo.settle_s, 3)}\n"
+        for from_mm, to_mm in pairwise(path[first : end + 1, 2].tolist()):
+            lifts = lifted(from_mm, to_mm, value, move.speed_mm_s, step_mm, servo)
+            if lifts:
+                yield _lifts(lifts, servo.settle_s)
+                value = lifts[-1][0]
     return value, feed
 
 
+@lru_cache(maxsize=256)  # most strokes of a drawing are landed and lifted alike
+def _lifts(lifts: tuple[tuple[int, int], ...], settle_s: float) -> str:
+    lines = "".join(f"M3 S{value}\nG4 P{number(wait_ms / 1e3, 3)}\n" for value, wait_ms in lifts)
+    return lines + (f"G4 P{number(settle_s, 3)}\n" if settle_s else "")
+
+
+@lru_cache(maxsize=256)
 def lifted(
     from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
-) -> list[tuple[int, int]]:
+) -> tuple[tuple[int, int], ...]:
     """The lift alone: step by step its value and how long to wait [ms], as long as the way takes at the speed. The way
     is that between the values, which are whole: after a line it begins where its last part was held."""
     feed_mm_s = feed_mm_min(speed_mm_s) / 60
@@ -114,7 +122,7 @@ def lifted(
     told = told[np.concatenate([[True], told[1:] != told[:-1]])]
     at_mm = np.interp(told, *_by_value(servo.table))
     waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
-    return list(zip(told[1:].tolist(), waits_ms.tolist(), strict=True))
+    return tuple(zip(told[1:].tolist(), waits_ms.tolist(), strict=True))
 
 
 def _ways(
@@ -129,7 +137,7 @@ def _ways(
         way = np.diff(part, axis=0)
         counts = servo_parts(way, cell)
         which = np.repeat(np.arange(len(way)), counts)
-        number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+        number = np.arange(1, len(which) + 1) - (np.cumsum(counts) - counts)[which]
         ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
         heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
         values = value_at(cell.servo, heights)
@@ -145,10 +153,12 @@ def _ways(
 def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
     """(n,) the feed [mm/min] of each line (n, 3). It is that of the way beside the lift alone: where both together
     would be faster than the tip may be, it is lower, in hundredths of the fastest, so that few lines change it."""
+    feeds = np.full(len(way), feed_mm_min(speed_mm_s))
+    if math.isinf(fastest_mm_s):
+        return feeds
     part = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)
     is_steep = speed_mm_s > fastest_mm_s * part + 1e-9
     part = np.where(part > 0.1, np.floor(100 * part + 1e-9) / 100, part)
-    feeds = np.full(len(way), feed_mm_min(speed_mm_s))
     for k in np.flatnonzero(is_steep):
         feeds[k] = feed_mm_min(fastest_mm_s * part[k])
     return feeds

@@ -47,6 +47,9 @@ _LINES = tuple(
 )
 
 
+_LOOKS = re.compile(r"(?m)^((?:tip|here) = get_current_posx\(\w+\))\[-0\]")
+
+
 def read_doosan(text: str, cell: Cell) -> Readback:
     """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
     for number, line in enumerate(text.splitlines()[:2], 1):
@@ -67,8 +70,9 @@ def read_doosan(text: str, cell: Cell) -> Readback:
         turned_deg=tuple(zyz_deg(down(cell.tool.spin_deg)).tolist()),
         is_indented=True,
     )
+    text = _LOOKS.sub(r"\1[0]", text)  # the same to Python
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
-    out.acts = _with_function_first(out.acts)
+    out.acts = _with_tip_first(_with_function_first(out.acts))
     steps = [step for section in out.sections for step in section.steps]
     for before, step in itertools.pairwise(steps):
         if 2 * step.blend_mm > math.dist(before[2:5], step[2:5]):
@@ -86,3 +90,11 @@ def _with_function_first(acts: list[Act]) -> list[Act]:
         return acts
     function = acts[name : name + 2]
     return [*function, *acts[:name], *acts[name + 2 :]]
+
+
+def _with_tip_first(acts: list[Act]) -> list[Act]:
+    """Of two lines that only look, each may be the first."""
+    for k, act in enumerate(acts[1:], 1):
+        if act.text.startswith("tip =") and acts[k - 1].text.startswith("flange ="):
+            return [*acts[: k - 1], act, acts[k - 1], *acts[k + 1 :]]
+    return acts

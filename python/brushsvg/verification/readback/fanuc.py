@@ -22,9 +22,10 @@ _POINT = re.compile(
     rf"P\[(\d{{1,5}})\]\{{ GP1: UF : {INDEX}, UT : {INDEX}, CONFIG : '([^']*)', "
     rf"X = ({N}) mm, Y = ({N}) mm, Z = ({N}) mm, W = ({N}) deg, P = ({N}) deg, R = ({N}) deg \}};"
 )
-_LINE = re.compile(r"L P\[(\d{1,5})\] (\d{1,4})mm/sec (?:FINE|CNT(\d{1,3}))")
+_SPEED = r"(\d{1,4}(?:mm/sec|cm/min))"
+_LINE = re.compile(rf"L P\[(\d{{1,5}})\] {_SPEED} (?:FINE|CNT(\d{{1,3}}))")
 _CIRCLE = re.compile(r"C P\[(\d{1,5})\]")
-_ONWARD = re.compile(r"P\[(\d{1,5})\] (\d{1,4})mm/sec FINE")
+_ONWARD = re.compile(rf"P\[(\d{{1,5}})\] {_SPEED} FINE")
 _CALL = re.compile(r"CALL (\w{1,32})")
 _SETS = re.compile(rf"PR\[{INDEX},([1-6])\]=({_C})")
 _FRAME = re.compile(rf"(UFRAME|UTOOL)\[{INDEX}\]=PR\[{INDEX}\]")
@@ -34,9 +35,9 @@ _LINES = tuple(
     for kind, pattern in (
         (
             "move",
-            rf"L {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>\d+) blend (?P<blend>{N})",
+            rf"L {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>{N}) blend (?P<blend>{N})",
         ),
-        ("circle", rf"C {place('uvw')} to {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>\d+)"),
+        ("circle", rf"C {place('uvw')} to {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>{N})"),
         ("wait", rf"WAIT (?P<seconds>{N})\(sec\)"),
         ("rise", r"L PR\[2\] (?P<speed>\d{1,4})mm/sec FINE"),
         ("text", rf"IF \(R\[1\]<(?P<height>{N})\) THEN|PR\[2,3\]={_C}|ENDIF|PAUSE"),
@@ -148,21 +149,25 @@ def _with_places(lines: Numbered, said: Numbered, cell: Cell) -> Iterator[tuple[
             raise Error(f"line {number}: a circle is told in two lines", code="line-unread")
         if move:
             to, turned = at(number, move[1])
-            speed, percent = int(move[2]), int(move[3] or 0)
+            speed, percent = _mm_s(move[2]), int(move[3] or 0)
             if percent > 100:
                 raise Error(f"line {number}: CNT{percent} is outside the range [0, 100]", code="line-unread")
             blend = cnt_mm(percent, speed, cell.blending.ramp_s)
-            yield number, f"L {to} turned {turned} at {speed} blend {blend:.6f}"
+            yield number, f"L {to} turned {turned} at {speed:.6f} blend {blend:.6f}"
         elif circle:
             opened = circle[1]
         elif onward:
             (via, _), (to, turned) = at(number, opened), at(number, onward[1])
-            yield number, f"C {via} to {to} turned {turned} at {int(onward[2])}"
+            yield number, f"C {via} to {to} turned {turned} at {_mm_s(onward[2]):.6f}"
             opened = None
         else:
             yield number, line
     if opened is not None:
         raise Error("a circle has no end", code="line-incomplete")
+
+
+def _mm_s(speed: str) -> float:
+    return float(speed[:-6]) / (6 if speed.endswith("cm/min") else 1)
 
 
 def _points(said: Numbered, cell: Cell) -> dict[int, tuple[str, str]]:
@@ -196,6 +201,7 @@ def _with_setup_as_frames(lines: Numbered) -> Numbered:
     out: Numbered = []
     held: dict[int, str] | None = None
     choices: Numbered = []
+    known: set[str] = set()
     for number, line in lines:
         if line.startswith("!+") and out and out[-1][1].startswith("!"):
             out[-1] = (out[-1][0], out[-1][1] + line[2:])
@@ -206,9 +212,14 @@ def _with_setup_as_frames(lines: Numbered) -> Numbered:
         elif frame := _FRAME.fullmatch(line):
             if held is None or len(held) < 6:
                 raise Error(f"line {number}: {line!r} sets a frame that is not whole", code="line-incomplete")
+            known.add(frame[1])
             values = ", ".join(held[k] for k in range(1, 7))
             choices.append((number, f"{frame[1]}[{INDEX}] {{{values}}}"))
         elif _CHOICE.fullmatch(line):
+            if line.partition("_")[0] not in known:
+                raise Error(
+                    f"line {number}: {line!r} chooses a frame before anything sets it", code="line-incomplete"
+                )
             choices.append((number, line))
         elif line.startswith("!") or not line:
             out.append((number, line))

@@ -80,8 +80,6 @@ class _Reader:
         )
         if not self.dialect.has_blocks:
             self.words = dict(FOR_PRINTERS)
-            if "M0" in self.dialect.stops:
-                self.words["M0"] = ""
             if cell.pen:
                 self.words |= {"G0": "XYF", "G1": "XYF", "G2": "", "G3": "", "M280": "PS"}
         self.pen, self.heights, self.press_mm_s = cell.pen, cell.heights, cell.speeds.press_mm_s
@@ -145,11 +143,12 @@ class _Reader:
 
     def _word_of_command(self, number: int, line: str) -> None:
         """A line of a printer's firmware, which reads its first word of command alone, and forgets it."""
-        if line == self.dialect.stops[-1]:
-            self.out.acts.append(Act(number, "text", line))
-            return
         words = () if line[1:2] == "-" else _words(line)  # G-0 is G0 to others, to these no command
         first = f"{words[0][0]}{words[0][1]:g}" if words else ""
+        stop = self.dialect.stops[-1]
+        if line == stop or (first == stop and len(words) == 1):
+            self.out.acts.append(Act(number, "text", stop))
+            return
         values = dict(words[1:])
         if (
             first not in self.words

@@ -11,7 +11,7 @@ from ...machine.posts.hpgl import CM_S, HELD_UP, comment
 from . import Act, Readback, Step
 
 _CODE = re.compile(
-    r"(IN|PU|PD|PA|PR|SP(-?0|\d{1,2})|VS(0{0,2}[1-9]\d{0,2})|P[AUD](-?\d{1,7}),(-?\d{1,7})) *;?",
+    r"(IN|PU|PD|PA|PR|SP(-?0|\d{1,2}|)|VS(0{0,2}[1-9]\d{0,2})|P[AUD](-?\d{1,7}),(-?\d{1,7})) *;?",
     re.IGNORECASE,
 )
 _COMMENT = re.compile(r'CO "([^"]*)";')
@@ -64,8 +64,8 @@ class _Reader:
         elif pen is not None:
             if self.is_down:
                 raise Error(f"line {number}: {line!r} changes a pen that is down", code="line-unread")
-            if int(pen) != self.pen:
-                self.pen = int(pen)
+            if int(pen or 0) != self.pen:  # none puts it away, as SP0 does
+                self.pen = int(pen or 0)
                 self.is_put_away = not self.pen
                 self.out.acts.append(Act(number, "text", f"SP{self.pen}"))
         elif word in ("PU", "PD"):

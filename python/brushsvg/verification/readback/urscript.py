@@ -64,7 +64,8 @@ def read_urscript(text: str) -> Readback:
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
         elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
             has_paper = has_paper or bool(found)
-            if " = " in line and out.acts and out.acts[-1].text == line:
+            is_set = " = " in line and " = run " not in line  # a thread that is run twice is two
+            if is_set and out.acts and out.acts[-1].text == line:
                 continue  # set twice, it is the same
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
