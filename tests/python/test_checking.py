@@ -1143,9 +1143,7 @@ def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, 
     off = f"{float(depth) + float(digit):.{len(digit) - 2}f}"
     (desk / program).write_text(edited(rf"(?m)^(G[23] X\S+ Y\S+ Z){depth} ", rf"\g<1>{off} ")(text))
     status, _, told = in_json(capsys, "check", program, "two.svg", "--corners", "turn")
-    assert status == 0 and {file for file, _ in told} == {"two.svg"}, (
-        told
-    )  # of the drawing, and nothing of the program
+    assert (status, {file for file, _ in told}) == (0, {"two.svg"}), told  # nothing of the program
 
 
 def test_the_time_told_is_that_of_the_feeds_in_the_program(desk, capsys):
