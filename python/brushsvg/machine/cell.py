@@ -442,8 +442,8 @@ def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
     """(n,) how many parts a servo's straight ways (n, 3) have: one for each step of height, as long as rounding leaves
     each a move."""
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
-    lengths_mm = np.linalg.norm(ways_mm[:, :2], axis=1)
-    return np.clip(lengths_mm // least_part_mm(cell), 1, np.maximum(1, steps)).astype(int)
+    lengths_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1])
+    return np.maximum(1, np.minimum(lengths_mm // least_part_mm(cell), steps)).astype(int)
 
 
 def least_part_mm(cell: Cell) -> float:

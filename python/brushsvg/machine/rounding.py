@@ -80,7 +80,7 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     """(n,) at which of its rounded places (n, 2) a servo stands: its lift alone names none, and stays where the last
     way ended as long as less than a move is gone beside it."""
     stays = np.arange(len(places))
-    near = np.hypot(*np.diff(places, axis=0).T) < least_mm
+    near = np.hypot(*(places[1:] - places[:-1]).T) < least_mm
     on, done = places.tolist(), 0
     for row in (np.flatnonzero(near) + 1).tolist():
         if row <= done:

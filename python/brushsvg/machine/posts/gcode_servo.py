@@ -85,14 +85,14 @@ def _lines(
     """A move's lines, and the servo's value and the feed [mm/min] that hold afterwards; value, feed: those before;
     fastest_mm_s: of the tip."""
     servo = cell.servo
-    path = np.vstack([here, move.points_mm])
-    still = servo_stands(np.diff(path, axis=0), cell)
-    ends = [*(np.flatnonzero(still[1:] != still[:-1]) + 1).tolist(), len(still)]
-    for first, end in pairwise([0, *ends]):
+    path = np.concatenate([here[None], move.points_mm])
+    way = path[1:] - path[:-1]
+    still = servo_stands(way, cell)
+    begins = (np.flatnonzero(still[1:] != still[:-1]) + 1).tolist() if len(still) > 1 else []
+    for first, end in pairwise([0, *begins, len(still)]):
         if not still[first]:
-            part = path[first : end + 1]
-            feeds = feeds_mm_min(np.diff(part, axis=0), move.speed_mm_s, fastest_mm_s)
-            value, feed = yield from _ways(part, feeds, feed, cell)
+            feeds = feeds_mm_min(way[first:end], move.speed_mm_s, fastest_mm_s)
+            value, feed = yield from _ways(path[first:end], way[first:end], feeds, feed, cell)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
         for from_mm, to_mm in pairwise(path[first : end + 1, 2].tolist()):
@@ -126,27 +126,30 @@ def lifted(
 
 
 def _ways(
-    path: np.ndarray, feeds: np.ndarray, feed: float, cell: Cell
+    starts: np.ndarray, ways: np.ndarray, feeds: np.ndarray, feed: float, cell: Cell
 ) -> Generator[str, None, tuple[int, float]]:
     """Straight lines at their feeds, each in parts on which the height is the one half way along the part; the last
-    part's value and feed. feed: the one before."""
+    part's value and feed. starts, ways: (n, 3) of each line; feed: the one before."""
     decimals = cell.decimals
     pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
-    for first in range(0, len(path) - 1, ROWS_AT_ONCE):
-        part = path[first : first + ROWS_AT_ONCE + 1]
-        way = np.diff(part, axis=0)
+    for first in range(0, len(ways), ROWS_AT_ONCE):
+        start, way = starts[first : first + ROWS_AT_ONCE], ways[first : first + ROWS_AT_ONCE]
         counts = servo_parts(way, cell)
         which = np.repeat(np.arange(len(way)), counts)
         number = np.arange(1, len(which) + 1) - (np.cumsum(counts) - counts)[which]
-        ends = part[which, :2] + way[which, :2] * (number / counts[which])[:, None]
-        heights = part[which, 2] + way[which, 2] * (number - 0.5) / counts[which]
-        values = value_at(cell.servo, heights)
+        start, way, counts = start[which], way[which], counts[which]
+        told = start + way * (number / counts)[:, None]
+        told[:, 2] = values = value_at(cell.servo, start[:, 2] + way[:, 2] * (number - 0.5) / counts)
+        text = "".join(rows(pattern, told, decimals))
         at = feeds[first + which]
-        lines = "".join(rows(pattern, np.column_stack([ends, values]), decimals)).split("\n")
-        for k in np.flatnonzero(np.diff(at, prepend=feed)).tolist():
-            lines[k] = f"F{at[k]:.1f}\n{lines[k]}"
+        changes = [0] * bool(at[0] != feed) + (np.flatnonzero(at[1:] != at[:-1]) + 1).tolist()
+        if changes:
+            lines = text.split("\n")
+            for k in changes:
+                lines[k] = f"F{at[k]:.1f}\n{lines[k]}"
+            text = "\n".join(lines)
         feed = at[-1]
-        yield "\n".join(lines)
+        yield text
     return int(values[-1]), feed
 
 
