@@ -81,7 +81,7 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
             np.hypot(*np.transpose([row["correction"]["shift_mm"] for row in rows]))
             for rows in (seen["strokes"], seen["beside_machine"]["strokes"])
         )
-        assert beside_mended.mean() < 0.4 * beside_old.mean(), "the cell undoes what they lie aside"
+        assert beside_mended.mean() < 0.6 * beside_old.mean(), "the cell undoes what they lie aside"
         assert read_cell(folder / "mended.toml").machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job

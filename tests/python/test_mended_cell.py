@@ -32,7 +32,6 @@ def found(beyond: Machine, half=1e-6):
         (MACHINE, "lean in x"): beyond.lean_mm_per_mm[0],
         (MACHINE, "lean in y"): beyond.lean_mm_per_mm[1],
         (MACHINE, "backlash in x"): 0.4,
-        (MACHINE, "backlash in y"): 0.0,
         (PAPER, "height"): height,
         (PAPER, "tilt in x"): beyond.tilt_mm_per_mm[0],
         (PAPER, "tilt in y"): beyond.tilt_mm_per_mm[1],
@@ -77,12 +76,6 @@ def test_without_a_table_what_is_found_is_the_table():
 def test_the_map_of_the_paper_stays():
     rows = ((0.0, 0.0, 0.1), (50.0, 0.0, 0.2), (0.0, 50.0, 0.0), (50.0, 50.0, -0.1))
     assert mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows)).map_mm == rows
-
-
-def test_backlash_goes_into_the_cell_on_top_of_what_it_undid():
-    before = replace(UNDONE, backlash_mm=(0.1, 0.2))
-    assert mended(found(TRUE), MIDDLE, before).backlash_mm == pytest.approx((0.5, 0.2))
-    assert mended(found(TRUE, half=10.0), MIDDLE, before) is None
 
 
 def test_what_is_not_certain_changes_nothing():

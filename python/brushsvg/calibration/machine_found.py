@@ -80,7 +80,7 @@ def told(found: list[Number]) -> list[str]:
 def cell_table(fit, options: _core.MarkOptions) -> list[str]:
     """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo."""
     parts, machine = asked(options), fit.machine
-    lines = ["[machine]"] if parts else []
+    lines = ["[machine]"] if set(parts) - {"backlash"} else []
     if "lean" in parts:
         lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
     if "axes" in parts:
@@ -88,8 +88,6 @@ def cell_table(fit, options: _core.MarkOptions) -> list[str]:
     if "tilt" in parts:
         height = fit.height_mm - float(np.dot(machine.tilt_mm_per_mm, fit.centre_mm))
         lines += [f"height_mm = {height:.3f}", f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}"]
-    if "backlash" in parts:
-        lines.append(f"backlash_mm = {_pair(np.maximum(machine.backlash_mm, 0.0))}")
     return lines
 
 

@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 
 from .arc_chords import with_chords
-from .backlash import walked
 from .cell import Machine
 from .distortion import true_mm
 from .pass_way import on_way
@@ -40,11 +39,20 @@ def with_play(passes, backlash_mm) -> list:
         poses = in_steps(np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3))
         moves = np.diff(poses[:, :2], axis=0, prepend=poses[:1, :2] if last is None else last[None])
         last = poses[-1, :2]
-        stays = np.column_stack([walked(moves[:, k], half[k], behind[k]) for k in (0, 1)])
+        stays = np.column_stack([_behind(moves[:, k], half[k], behind[k]) for k in (0, 1)])
         run = poses - np.column_stack([stays, np.zeros(len(poses))])
         behind = stays[-1]
         out.append(on_way(a_pass, run[_turns(poses, stays)], []))
     return out
+
+
+def _behind(moves: np.ndarray, half: float, at: float) -> list[float]:
+    """By how much one axis stays behind after each move, mm."""
+    found = []
+    for move in moves.tolist():
+        at = min(max(at + move, -half), half)
+        found.append(at)
+    return found
 
 
 def _turns(poses: np.ndarray, stays: np.ndarray) -> np.ndarray:

@@ -201,9 +201,6 @@ class Machine:
         "how much higher the paper lies at its corner than it was taught", -5, 5, default=0.0
     )
     tilt_mm_per_mm: tuple = _key("by how much it rises along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
-    backlash_mm: tuple = _key(
-        "how far x and y are told to go before they follow, where they turn back", (2,), 0, 3, (0.0, 0.0)
-    )
     map_mm: tuple = _key(
         "x, y and how much higher still it lies there, at all places of a grid: straight in between, and beyond the "
         "grid as at its edge",

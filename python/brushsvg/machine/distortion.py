@@ -8,11 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from .. import _core
-from .backlash import ahead_mm, behind_mm, settled_mm, turning_rows
 from .cell import Cell, Machine
 from .pass_way import on_way
 
-AIR_MM = 5.0
 MAP_OFF_MM = 0.003  # how far a line that is told may lie from the paper's map between its ends
 
 
@@ -23,7 +21,6 @@ def is_similar(machine: Machine | None) -> bool:
         and machine.scale[0] == machine.scale[1]
         and not any(machine.tilt_mm_per_mm)
         and not machine.map_mm
-        and not any(machine.backlash_mm)
     )
 
 
@@ -49,48 +46,6 @@ def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     depth = np.maximum(-wanted[:, 2], 0.0)
     place = (wanted[:, :2] - np.outer(depth, machine.lean_mm_per_mm)) @ np.linalg.inv(_axes(machine)).T
     return np.column_stack([place, wanted[:, 2] + _paper_mm(place, machine)])
-
-
-def true_way_mm(told: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(n, 3): where the tool goes that is told to go from place to place (n, 3) in turn, its play included."""
-    if machine is None or not any(machine.backlash_mm):
-        return true_mm(told, machine)
-    slides = np.array(told, dtype=float)
-    slides[:, :2] -= behind_mm(slides[:, :2], machine.backlash_mm)
-    return true_mm(slides, machine)
-
-
-def told_way_mm(wanted: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(n, 3): what to tell the machine so that the tool goes from place to place (n, 3) in turn. Where an axis turns
-    back, the place should stand twice: with_turns_mm."""
-    told = told_mm(wanted, machine)
-    return told if machine is None else told + _ahead_mm(told, machine)
-
-
-def with_turns_mm(wanted: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(m, 3): places (n, 3), twice where an axis with backlash turns back."""
-    if machine is None or not any(machine.backlash_mm):
-        return wanted
-    rows = turning_rows(told_mm(wanted, machine)[:, :2], machine.backlash_mm)
-    return np.insert(wanted, rows, wanted[rows], axis=0)
-
-
-def told_from_air_mm(wanted: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(m, 3): what a machine is told of a pass along places (n, 3), from the air on: with backlash from the side from
-    which its axes go on."""
-    places = with_turns_mm(wanted, machine)
-    told = told_way_mm(places, machine)
-    if machine is None or not any(machine.backlash_mm):
-        return told
-    ahead = _ahead_mm(told_mm(places, machine), machine)[0, :2]
-    over = [(*settled_mm(told[0, :2], ahead), AIR_MM), (*told[0, :2], AIR_MM)]
-    return np.vstack([over, told])
-
-
-def _ahead_mm(slides: np.ndarray, machine: Machine) -> np.ndarray:
-    if not any(machine.backlash_mm):
-        return np.zeros_like(slides)
-    return np.column_stack([ahead_mm(slides[:, :2], machine.backlash_mm), np.zeros(len(slides))])
 
 
 def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
@@ -179,15 +134,15 @@ def _axes(machine: Machine) -> np.ndarray:
 
 def true_pass(a_pass, cell: Cell):
     """A pass that the machine was told, as it runs it; circles that do not stay any as the poses on them."""
-    return _mapped(a_pass, cell.machine, true_mm, true_way_mm)
+    return _mapped(a_pass, cell.machine, true_mm)
 
 
 def told_pass(a_pass, cell: Cell):
     """What to tell the machine so that it runs this pass."""
-    return _mapped(a_pass, cell.machine, told_mm, told_way_mm)
+    return _mapped(a_pass, cell.machine, told_mm)
 
 
-def _mapped(a_pass, machine: Machine | None, to, way_to):
+def _mapped(a_pass, machine: Machine | None, to):
     if machine is None:
         return a_pass
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
@@ -195,4 +150,4 @@ def _mapped(a_pass, machine: Machine | None, to, way_to):
     for arc in a_pass.arcs if is_similar(machine) else ():
         centre = to(np.array([[*arc.centre_mm, poses[arc.first, 2]]]), machine)[0, :2]
         arcs.append(_core.Arc(arc.first, arc.last, tuple(centre.tolist()), arc.direction))
-    return on_way(a_pass, way_to(poses, machine), arcs)
+    return on_way(a_pass, to(poses, machine), arcs)

@@ -13,7 +13,7 @@ from ..errors import Error, Notice
 from ..geometry.polylines import length
 from .arc_chords import chords, with_chords
 from .cell import Cell, Station, robot_from_paper, why_no_waiting
-from .distortion import is_similar, on_map_mm, with_turns_mm
+from .distortion import is_similar, on_map_mm
 from .frames import is_upright
 from .pass_way import on_way
 from .posts import POSTS, circles_by
@@ -52,8 +52,7 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
 
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
     already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
-    no circles, arcs have poses enough for lines; where the cell has a map of the paper, lines have enough for that;
-    where its axes have backlash, places at which one turns back stand twice.
+    no circles, arcs have poses enough for lines; where the cell has a map of the paper, lines have enough for that.
     Error for a part that does not follow the one before it.
     """
     loads, last = list(plan.passes), None
@@ -73,8 +72,6 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         loads = map(with_chords, loads)
     if cell.machine and cell.machine.map_mm:
         loads = (on_way(each, on_map_mm(np.asarray(each.poses_mm), cell.machine), ()) for each in loads)
-    if cell.machine and any(cell.machine.backlash_mm):
-        loads = (on_way(each, with_turns_mm(np.asarray(each.poses_mm), cell.machine), ()) for each in loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)))
 
 

@@ -12,10 +12,9 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.joints import is_installed
 from .arm.place import unreachable
-from .backlash import settled_mm
 from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blends, on_the_spot
-from .distortion import told_high_mm, told_mm, true_way_mm
+from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, at_told_speeds, rise_over
 from .paint_reload import PlanInLoads, visits
@@ -113,7 +112,7 @@ def _as_run(a_pass, made: Program):
     if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
         return a_pass
     written = as_written(a_pass, made.cell, made.robot_from_frame)
-    poses = true_way_mm(written.told_mm, made.cell.machine)
+    poses = true_mm(written.told_mm, made.cell.machine)
     return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)
 
 
@@ -232,38 +231,28 @@ def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
     if len(poses) == 0:
         return ()
     heights, speeds = cell.heights, cell.speeds
-    true = true_way_mm(poses, cell.machine)
-    ahead = poses - told_mm(true, cell.machine)  # of backlash alone
+    start, end = true_mm(poses[[0, -1]], cell.machine)
 
-    def above(row: int, height_mm: float) -> np.ndarray:
-        return told_mm(over(true[row], height_mm), cell.machine) + ahead[row] * (1, 1, 0)
+    def above(place, height_mm: float) -> np.ndarray:
+        return told_mm(over(place, height_mm), cell.machine)
 
     # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
     press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
     return (
-        Move("travel", _to_first(above(0, 0.0)[0], ahead[0, :2], cell), speeds.travel_mm_s),
-        Move("approach", above(0, heights.clearance_mm), approach_mm_s(brush, cell)),
+        Move("travel", safely_over(above(start, 0.0)[0], cell), speeds.travel_mm_s),
+        Move("approach", above(start, heights.clearance_mm), approach_mm_s(brush, cell)),
         Move("land", poses[:1], press_mm_s),
         *_painting(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
-        Move("lift", above(-1, heights.clearance_mm), press_mm_s),
-        Move("retract", safely_over(above(-1, 0.0)[0], cell), speeds.travel_mm_s),
+        Move("lift", above(end, heights.clearance_mm), press_mm_s),
+        Move("retract", safely_over(above(end, 0.0)[0], cell), speeds.travel_mm_s),
     )
-
-
-def _to_first(told_mm, ahead: np.ndarray, cell: Cell) -> np.ndarray:
-    """(n, 3) the way at safe height to over the first place of a stroke: with backlash from the side from which the
-    axes go on."""
-    there = safely_over(told_mm, cell)
-    if cell.machine is None or not any(cell.machine.backlash_mm):
-        return there
-    return np.vstack([safely_over([*settled_mm(there[0, :2], ahead), 0.0], cell), there])
 
 
 def _painting(
     poses: np.ndarray, written: Written, paint_mm_s: float, press_mm_s: float, cell: Cell
 ) -> Iterator[Move]:
     """From the first pose on, straight up and down as slowly as a landing, along arcs where the plan has them."""
-    arcs, steps = written.arcs, np.diff(true_way_mm(written.poses_mm, cell.machine), axis=0)
+    arcs, steps = written.arcs, np.diff(true_mm(written.poses_mm, cell.machine), axis=0)
     kinds = np.full(len(steps), PLAIN)
     kinds[on_the_spot(steps, written.sideways_mm)] = ON_THE_SPOT
     for number, arc in enumerate(arcs):

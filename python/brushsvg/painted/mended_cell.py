@@ -16,7 +16,7 @@ def sure(faults: Faults) -> dict[str, float]:
     return {
         one.number.name: one.value if abs(one.value) > SURE * one.half else 0.0
         for one in faults.found
-        if one.number.cause in (MACHINE, PAPER)
+        if one.number.cause in (MACHINE, PAPER) and not one.number.name.startswith("backlash")
     }
 
 
@@ -26,9 +26,8 @@ def mended(faults: Faults, middle_mm, before: Machine | None) -> Machine | None:
     if not any(certain.values()):
         return None
     before = before or Machine()
-    lean, tilt, scale, backlash = (
-        np.array([certain[f"{name} in {axis}"] for axis in "xy"])
-        for name in ("lean", "tilt", "scale", "backlash")
+    lean, tilt, scale = (
+        np.array([certain[f"{name} in {axis}"] for axis in "xy"]) for name in ("lean", "tilt", "scale")
     )
     was, beyond = _axes(before.scale, before.skew), _axes(1 + scale, certain["skew"])
     now = beyond @ was
@@ -39,7 +38,6 @@ def mended(faults: Faults, middle_mm, before: Machine | None) -> Machine | None:
         round(float(now[0, 1]), 5),
         round(float(height_mm), 3),
         _rounded(np.array(before.tilt_mm_per_mm) + tilt @ was),
-        _rounded(np.maximum(before.backlash_mm + backlash, 0.0)),
         before.map_mm,
     )
 
@@ -64,8 +62,6 @@ def as_table(machine: Machine) -> list[str]:
             f"height_mm = {machine.height_mm:.3f}",
             f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}",
         ]
-    if any(machine.backlash_mm):
-        lines.append(f"backlash_mm = {_pair(machine.backlash_mm)}")
     return lines
 
 

@@ -12,7 +12,7 @@ from ..geometry.rotation import rotation
 from ..machine.arc_chords import with_chords
 from ..machine.as_run import as_run
 from ..machine.cell import Machine
-from ..machine.distortion import told_from_air_mm
+from ..machine.distortion import told_mm
 from ..machine.pass_way import on_way
 from .studio import Studio
 
@@ -57,5 +57,5 @@ def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int) -> l
 
 
 def _told(a_pass, undone: Machine | None):
-    poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3)
-    return on_way(a_pass, told_from_air_mm(poses, undone), [])
+    a_pass = with_chords(a_pass)
+    return on_way(a_pass, told_mm(np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3), undone), [])

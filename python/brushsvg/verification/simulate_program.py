@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cell import Blending, Cell, robot_from_paper, unit_mm, value_mm
 from ..machine.corner_blending import blend_radii
-from ..machine.distortion import is_similar, told_pass, true_mm, true_pass, true_way_mm
+from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
 from ..machine.frames import is_upright, moved
 from ..machine.move_extents import ways
 from ..machine.paint_reload import may_pause, pen
@@ -221,7 +221,7 @@ def _as_true(track: Track, cell: Cell) -> Track:
             height_mm = track.points[np.flatnonzero(track.step == number)[-1], 2]
             x, y, _ = true_mm(np.array([[*centre[:2], height_mm]]), cell.machine)[0].tolist()
             centres[number] = (x, y, centre[2])
-    return Track(true_way_mm(track.points, cell.machine), track.step, centres)
+    return Track(true_mm(track.points, cell.machine), track.step, centres)
 
 
 def _stroke(section: ReadSection) -> re.Match | None:
