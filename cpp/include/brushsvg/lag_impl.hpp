@@ -293,6 +293,8 @@ T polished(const std::vector<T>& f, double x) {
     return value_of(root) < 0.0 ? T(0.0) : value_of(root) > 1.0 ? T(1.0) : root;
 }
 
+constexpr double kNoLeverMm = 1e-9;
+
 template <class T, class PhaseSink>
 void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& state, T begin, const T& end,
                       PhaseSink&& phase) {
@@ -327,7 +329,13 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
         begin = until;
         if (x > 1.0) return;
         state.taut = true;
-        state.contact = move.tcp(until) - law.at(move.depth(until)) * state.heading;
+        const T lever = law.at(move.depth(until));
+        // from under the TCP a brush without a lag is dragged at once: its way so far, and its heading, are rounding
+        if (value_of(lever) < kNoLeverMm) {
+            state.heading = move.along;
+            state.heading_known = true;
+        }
+        state.contact = move.tcp(until) - lever * state.heading;
     }
     if (value_of(begin) < value_of(end)) {
         phase(law, move, state, begin, end);
