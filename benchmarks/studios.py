@@ -37,13 +37,11 @@ import studio
 from numpy.polynomial.polynomial import polyval
 from photograph import Camera
 
-from brushsvg import _core, find_brush
+from brushsvg import find_brush
 from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
 from brushsvg.evaluation.report import wanted_rings
-from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell, write_cell
-from brushsvg.machine.distortion import told_pass
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
 from brushsvg.pipeline.preparation import Options, prepare
@@ -126,7 +124,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
         flags = f"--brush {brush} --quiet"
         led = f"--corrections {corrections}" if corrections else ""
-        run(f"convert word.svg plan-{sheet}.json {flags} {led}", folder)
+        run(f"convert word.svg plan-{sheet}.json --cell {cell} {flags} {led}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         if sheet == 0:
             amiss, rng = random_studio(number, plan)
@@ -138,9 +136,8 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
             result["truth"] = truth_of(amiss)
             result["lasts_mm"] = amiss.lasts_mm
-        machine = find_cell(folder / cell)
-        passes = [told_pass(with_chords(one) if machine.machine else one, machine) for one in plan.passes]
-        told = _core.Plan("", "", plan.sheet_mm, passes)
+        run(f"convert word.svg told-{sheet}.ngc --cell {cell} {flags} {led}", folder)
+        told = studio.told_by((folder / f"told-{sheet}.ngc").read_text(), plan.sheet_mm)
         swept = studio.swept(told, amiss, strokes_a_load)
         always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)
         seed = 100 * number + sheet

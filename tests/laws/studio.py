@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 
 import numpy as np
 import painter
@@ -28,6 +30,7 @@ WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" vi
 <path id="stem" d="M124 20 L126 52" stroke-width="4"/>
 <path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/></g></svg>"""
 LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005])
+AIR_MM = 0.9  # higher, no paper is
 WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
 
 
@@ -109,6 +112,30 @@ def dense(poses, arcs):
     return np.vstack(out)
 
 
+def told_by(program, sheet_mm):
+    """What a program for LinuxCNC tells the machine of each stroke, from the air on: every place that it names, those
+    of circles close together."""
+    at, found = np.array([0.0, 0.0, 50.0]), []
+    for line in program.splitlines():
+        if title := re.match(r"\(stroke \d+ of \d+: (.*)\)", line):
+            found.append(SimpleNamespace(stroke=title[1], poses_mm=[], arcs=()))
+        words = {key: float(value) for key, value in re.findall(r"([GXYZIJ])(-?[\d.]+)", line.split("(")[0])}
+        if not {"X", "Y", "Z"} & set(words):
+            continue
+        end, places = np.array([words.get(key, old) for key, old in zip("XYZ", at, strict=True)]), []
+        if "I" in words:
+            centre = at[:2] + np.array([words["I"], words["J"]])
+            a, b = ((each[:2] - centre) @ [1, 1j] for each in (at, end))
+            turn = np.angle(b / a) % (2 * np.pi) - (0 if words["G"] == 3 else 2 * np.pi)
+            share = np.linspace(0, 1, 2 + int(abs(turn * a) / 0.3))[1:-1]
+            on = a * np.exp(1j * turn * share)
+            places = [(centre[0] + each.real, centre[1] + each.imag, end[2]) for each in on]
+        if found:
+            found[-1].poses_mm += [*places, end]
+        at = end
+    return SimpleNamespace(passes=found, sheet_mm=tuple(sheet_mm))
+
+
 def ran(plan, amiss):
     """[(stroke, poses)]: where the tool was, z over the true paper."""
     middle = 0.5 * np.array(plan.sheet_mm)
@@ -126,7 +153,12 @@ def ran(plan, amiss):
         z = poses[:, 2] - amiss.height - at @ amiss.tilt
         at = place + place * amiss.scale + np.outer(place[:, 1], [amiss.skew, 0.0])
         at += np.outer(np.maximum(-z, 0), amiss.lean)
-        out.append((one.stroke, np.column_stack([at, z])))
+        low = np.flatnonzero(
+            z < AIR_MM
+        )  # a program's way through the air moves the slides and paints nothing
+        poses = np.column_stack([at, z])[low[0] : low[-1] + 1]
+        poses[[0, -1], 2] = np.minimum(poses[[0, -1], 2], 0.0)
+        out.append((one.stroke, poses if len(low) < len(z) else np.column_stack([at, z])))
     return out
 
 
