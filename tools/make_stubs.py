@@ -38,7 +38,7 @@ TOLD = (
         "__hash__: typing.ClassVar[None]  # type: ignore[assignment]",
     ),
     (
-        r"( +)def __call__\(self, depth_mm: numpy\.typing\.ArrayLike\) -> typing\.Any:\s+\.\.\.",
+        r"( +)def __call__\(self, depth_mm: numpy\.typing\.ArrayLike\) -> typing\.Any:\s+\"\"\"[^\"]*\"\"\"",
         r"\1@typing.overload\n"
         r"\1def __call__(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]\n"
         r"\1@typing.overload\n"

@@ -101,10 +101,12 @@ class Profile:
     assumed: nobody measured it. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values to spare. extra:
     unknown keys of its file, as JSON. A value: it is not changed, but another one made.
     """
-    def __call__(self, depth_mm: numpy.typing.ArrayLike) -> typing.Any:
-        """
-        The law at a depth [mm], or at an array of them.
-        """
+    @typing.overload
+    def __call__(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]
+    @typing.overload
+    def __call__(
+        self, depth_mm: numpy.typing.ArrayLike
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
     def __copy__(self) -> Profile: ...
     def __deepcopy__(self, memo: dict) -> Profile: ...
     def __eq__(self, other: object, /) -> bool: ...
