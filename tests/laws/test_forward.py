@@ -390,6 +390,13 @@ def test_turning_mirroring_and_shifting_the_sheet(steps, name, angle, shift, mir
     assert found[:, 2:] == pytest.approx(here[:, 2:] @ matrix.T, abs=1e-8)
 
 
+def test_lifted_on_the_spot_a_brush_keeps_its_heading():
+    """Its lever falls to nothing there, and no move says where it heads."""
+    poses = np.array([[0, 0, 0], [0, 0, -3.0], [0, 1e-10, -3.0], [0, 1e-10, -1e-9], [0, 1e-10, 0]])
+    heading = rows_of(poses, make_brush(LAGS["small near 0"])).heading_rad
+    assert heading[-1] == pytest.approx(np.pi / 2)
+
+
 @given(moves, names, st.floats(0.4, 1.0))
 def test_scaling_everything_scales_the_mark(steps, name, scale):
     poses = poses_from(steps)

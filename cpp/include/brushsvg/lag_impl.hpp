@@ -331,7 +331,7 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
         state.taut = true;
         const T lever = law.at(move.depth(until));
         // from under the TCP a brush without a lag is dragged at once: its way so far, and its heading, are rounding
-        if (value_of(lever) < kNoLeverMm) {
+        if (value_of(lever) < kNoLeverMm && move.length > T(0.0)) {
             state.heading = move.along;
             state.heading_known = true;
         }
