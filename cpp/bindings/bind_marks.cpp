@@ -33,6 +33,8 @@ void bind_marks(py::module_& m) {
                                    return as_typed<py::array_t<bool>>(frozen(out));
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
+        .def_property_readonly("width_share", column(&PassMarks::width_share),
+                               "By how much narrower the brush paints than freshly dipped; empty: it does not.")
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
                       [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); })
         .def("__repr__", [](const PassMarks& p) {

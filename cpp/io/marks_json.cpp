@@ -24,6 +24,7 @@ void require_parallel(const PassMarks& pass, const std::string& path) {
     require("heading_rad", pass.heading_rad.size());
     require("depth_mm", pass.depth_mm.size());
     require("taut", pass.taut.size());
+    if (!pass.width_share.empty()) require("width_share", pass.width_share.size());
 }
 
 void require_within(const std::vector<double>& values, const std::string& path, double least, double greatest) {
@@ -53,6 +54,7 @@ PassMarks read_pass(Field field, std::size_t index, const PassRows& rows) {
     pass.heading_rad = numbers(fields.take("heading_rad"));
     pass.depth_mm = numbers(fields.take("depth_mm"));
     for (const Field& value : members(fields.take("taut"))) pass.taut.push_back(truth(value) ? 1 : 0);
+    if (const auto share = fields.find("width_share")) pass.width_share = numbers(*share);
     pass.outline_mm = read_rings(fields);
     pass.pull.assign(pass.pose.size(), 1.0);
     require_parallel(pass, path);
@@ -60,6 +62,7 @@ PassMarks read_pass(Field field, std::size_t index, const PassRows& rows) {
     require_within(pass.pose, path + ".pose", 0.0, 1e9);
     require_within(pass.heading_rad, path + ".heading_rad", -kFarthestMm, kFarthestMm);
     require_within(pass.depth_mm, path + ".depth_mm", -kFarthestMm, kFarthestMm);
+    require_within(pass.width_share, path + ".width_share", 0.0, 1.0);
     return pass;
 }
 
@@ -88,6 +91,7 @@ void append_pass(std::string& out, const PassMarks& pass, const std::string& pat
     append_column(out, "depth_mm", pass.depth_mm);
     out += ",\n     \"taut\": ";
     append_array(out, pass.taut.size(), 7, [&](std::size_t i) { out += pass.taut[i] != 0 ? "true" : "false"; });
+    if (!pass.width_share.empty()) append_column(out, "width_share", pass.width_share);
     out += ",\n     \"outline_mm\": ";
     append_rings(out, pass.outline_mm, 7);
     out += '}';

@@ -17,7 +17,9 @@ struct PassMarks {
     std::vector<double> depth_mm;
     std::vector<unsigned char> taut;
     std::vector<double> pull;  ///< r'/r, 1 when taut
-    Rings outline_mm;          ///< filled from outline() in coverage.hpp
+    /// How wide the footprint is by that of a freshly dipped brush, filled from narrow() in narrow.hpp; empty: 1.
+    std::vector<double> width_share;
+    Rings outline_mm;  ///< filled from outline() in coverage.hpp
 };
 
 struct Marks {
