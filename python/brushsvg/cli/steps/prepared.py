@@ -52,7 +52,7 @@ def look(
     with about(chosen.input):
         loads = in_loads(work.plan, brush, cell)
         plan = loads.as_plan() if at_loads else work.plan
-        marks = prediction.marks_of(plan, brush, outlines, stage, whole)
+        marks = prediction.marks_of(plan, brush, outlines, stage, whole, cell)
         walk = None
         if work.plan.passes or not work.refused:
             walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
