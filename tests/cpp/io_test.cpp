@@ -44,9 +44,10 @@ const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name":
                  "dragged": [{"depth_mm": 1, "outline_mm": [[0, 0], [1, -0.5], [1, 0.5]]},
                              {"depth_mm": 2, "outline_mm": [[0, 0], [2, -1], [2, 1]], "photo": "b.jpg"}],
                  "pressed": [{"depth_mm": 2, "outline_mm": [[0, 0], [1.5, -1], [1.5, 1]], "photo": "c.jpg"}]},
+  "max_speed_mm_s": 30,
   "paint": {"narrows_per_m": 0.4, "lasts_mm": 600, "calibrated_mm": [0, 700], "source": "by eye", "assumed": true,
             "covariance": [[0.01, 0], [0, 400]], "degrees_of_freedom": 9, "medium": "ink"},
-  "max_speed_mm_s": 30, "paint_depth_mm": 2})";
+  "paint_depth_mm": 2})";
 
 const std::string kPlan = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50.5],
   "author": "me", "passes": [

@@ -63,6 +63,7 @@ TEST_CASE("a mark narrows by the way since the dip, from pass to pass until pain
     is_wide(150.0, 0.0, 150.0 + behind);
     is_wide(60.0, 20.0, 260.0 + behind);
     is_wide(60.0, 40.0, 60.0 + behind);
+    is_wide(85.0, 40.0, 85.0 + behind);
     is_wide(150.0, 40.0, 50.0 + behind);
     for (PassMarks& pass : marks.passes) pass.width_share.clear();
     CHECK(height_at(marks, brush, 150.0, 0.0) == doctest::Approx(wide).epsilon(0.004));
