@@ -41,6 +41,10 @@ save_brush, simulate, compensate and convert refuse what no brush can be.)");
             "covariance", frozen_copy(&Brush::covariance),
             [](Brush& b, std::vector<std::vector<double>> value) { b.covariance = std::move(value); },
             "Of all coefficients, in the order of the four laws, or empty.")
+        .def_property(
+            "paint", [](const Brush& b) { return b.paint; },
+            [](Brush& b, std::optional<brushsvg::Paint> value) { b.paint = std::move(value); },
+            "How its mark narrows from dip to dip: a Paint, or None.")
         .def_readwrite("max_speed_mm_s", &Brush::max_speed_mm_s,
                        "The greatest speed [mm/s] at which the model holds; it has no inertia.")
         .def_readwrite("paint_depth_mm", &Brush::paint_depth_mm,

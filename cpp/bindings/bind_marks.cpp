@@ -36,6 +36,8 @@ lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_property_readonly("lean_mm_per_mm", [](const PassMarks& p) -> const Ring& { return p.lean_mm_per_mm; })
+        .def_property_readonly("width_share", column(&PassMarks::width_share),
+                               "By how much narrower the brush paints than freshly dipped; empty: it does not.")
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
                       [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); })
         .def("__repr__", [](const PassMarks& p) {

@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "brushsvg/narrow.hpp"
 #include "brushsvg/simulate.hpp"
 
 void bind_simulate(py::module_& m) {
@@ -23,6 +24,11 @@ widest_points. progress: called with (passes done, passes).
 
 z = -depth: on the way above the paper, z > 0, the brush hangs free. Error for a pass all of which is above the paper, and
 for a pose deeper than the brush may be pressed.)");
+    m.def("narrow", &narrow, py::arg("marks"), py::arg("paint"), py::arg("dips_mm"), py::call_guard<Unlocked>(),
+          R"(Fills width_share of every pass, as paint runs out along them: before trace_outlines and coverage.
+
+dips_mm: for each pass the ways [mm] of the TCP along it at which paint was just fetched, ascending: [0] before it, [] goes
+on with the paint of the pass before.)");
     m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"), py::call_guard<Unlocked>(),
           "Centre of the widest section at every row (n, 2) [mm].");
 }

@@ -15,6 +15,7 @@
 #include "value_type.hpp"
 
 void bind_profile(py::module_& m);
+void bind_paint(py::module_& m);
 void bind_student_t(py::module_& m);
 void bind_footprint(py::module_& m);
 void bind_brush(py::module_& m);

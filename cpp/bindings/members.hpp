@@ -31,6 +31,12 @@ inline constexpr auto members<brushsvg::Profile> =
                &brushsvg::Profile::degrees_of_freedom, &brushsvg::Profile::extra);
 
 template <>
+inline constexpr auto members<brushsvg::Paint> =
+    std::tuple(&brushsvg::Paint::narrows_per_m, &brushsvg::Paint::lasts_mm, &brushsvg::Paint::calibrated_mm,
+               &brushsvg::Paint::source, &brushsvg::Paint::assumed, &brushsvg::Paint::covariance,
+               &brushsvg::Paint::degrees_of_freedom, &brushsvg::Paint::extra);
+
+template <>
 inline constexpr auto members<brushsvg::Footprint> =
     std::tuple(&brushsvg::Footprint::depth_mm, &brushsvg::Footprint::outline_mm);
 
@@ -42,8 +48,9 @@ template <>
 inline constexpr auto members<brushsvg::Brush> =
     std::tuple(&brushsvg::Brush::name, &brushsvg::Brush::kind, &brushsvg::Brush::depth_range_mm, &brushsvg::Brush::lag,
                &brushsvg::Brush::tip_gap, &brushsvg::Brush::tip_to_widest, &brushsvg::Brush::half_width,
-               &brushsvg::Brush::footprints, &brushsvg::Brush::covariance, &brushsvg::Brush::max_speed_mm_s,
-               &brushsvg::Brush::paint_depth_mm, &brushsvg::Brush::sha256, &brushsvg::Brush::extra);
+               &brushsvg::Brush::footprints, &brushsvg::Brush::covariance, &brushsvg::Brush::paint,
+               &brushsvg::Brush::max_speed_mm_s, &brushsvg::Brush::paint_depth_mm, &brushsvg::Brush::sha256,
+               &brushsvg::Brush::extra);
 
 template <>
 inline constexpr auto members<brushsvg::Settings> =
@@ -86,6 +93,7 @@ inline constexpr auto members<brushsvg::PassMarks> =
     std::tuple(&brushsvg::PassMarks::stroke, &brushsvg::PassMarks::pose, &brushsvg::PassMarks::tcp_mm,
                &brushsvg::PassMarks::contact_mm, &brushsvg::PassMarks::heading_rad, &brushsvg::PassMarks::depth_mm,
                &brushsvg::PassMarks::taut, &brushsvg::PassMarks::pull, &brushsvg::PassMarks::lean_mm_per_mm,
+               &brushsvg::PassMarks::width_share,
                &brushsvg::PassMarks::outline_mm);
 
 template <>

@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
     });
 
     bind_profile(m);
+    bind_paint(m);
     bind_student_t(m);
     bind_footprint(m);
     bind_brush(m);

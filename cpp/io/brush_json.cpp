@@ -13,12 +13,15 @@ namespace {
 
 constexpr const char* kFormat = "brushsvg/brush";
 constexpr double kMostFreedom = 1e9;  // normal long before
-const std::set<std::string> kBrushKeys{"format",         "version",    "name",           "kind",
-                                       "depth_range_mm", "lag",        "tip_gap",        "tip_to_widest",
-                                       "half_width",     "covariance", "max_speed_mm_s", "paint_depth_mm"};
+const std::set<std::string> kBrushKeys{
+    "format",        "version",    "name",       "kind",           "depth_range_mm", "lag",  "tip_gap",
+    "tip_to_widest", "half_width", "covariance", "max_speed_mm_s", "paint_depth_mm", "paint"};
 const std::set<std::string> kProfileKeys{"coefficients", "calibrated_mm", "source",
                                          "assumed",      "floor",         "half_interval_95",
                                          "rmse_mm",      "floor_slope",   "degrees_of_freedom"};
+
+const std::set<std::string> kPaintKeys{"narrows_per_m", "lasts_mm",   "calibrated_mm",     "source",
+                                       "assumed",       "covariance", "degrees_of_freedom"};
 
 struct Law {
     const char* key;
@@ -81,6 +84,21 @@ std::vector<std::vector<double>> read_covariance(Field field, std::size_t size) 
                     path);
     }
     return matrix;
+}
+
+Paint read_paint(Field field) {
+    Fields fields(std::move(field));
+    Paint paint;
+    paint.narrows_per_m = number(fields.take("narrows_per_m"));
+    if (const auto lasts = fields.find("lasts_mm")) paint.lasts_mm = number(*lasts);
+    if (const auto calibrated = fields.find("calibrated_mm")) paint.calibrated_mm = interval(*calibrated);
+    if (const auto source = fields.find("source")) paint.source = text(*source);
+    if (const auto assumed = fields.find("assumed")) paint.assumed = truth(*assumed);
+    if (auto covariance = fields.find("covariance"))
+        for (const Field& row : members(std::move(*covariance))) paint.covariance.push_back(numbers(row));
+    if (const auto freedom = fields.find("degrees_of_freedom")) paint.degrees_of_freedom = number(*freedom);
+    paint.extra = fields.extra();
+    return paint;
 }
 
 /// Outlines of one kind; unknown keys of each go to `notes` beside their depth.
@@ -168,6 +186,46 @@ void append_profile(std::string& out, const char* key, const Profile& profile) {
     out += "\n  }";
 }
 
+void append_matrix(std::string& out, const std::vector<std::vector<double>>& matrix, const std::string& indent,
+                   const char* key) {
+    out += '[';
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        out += (i == 0 ? "\n" : ",\n") + indent + "  ";
+        append_numbers(out, matrix[i], 6, key);
+    }
+    out += "\n" + indent + "]";
+}
+
+void append_paint(std::string& out, const Paint& paint) {
+    const auto line = [&out](const char* name) { out += std::string(",\n    \"") + name + "\": "; };
+    out += ",\n  \"paint\": {\n    \"narrows_per_m\": ";
+    append_exact(out, paint.narrows_per_m, "narrows_per_m");
+    if (paint.lasts_mm) {
+        line("lasts_mm");
+        append_exact(out, *paint.lasts_mm, "lasts_mm");
+    }
+    if (paint.calibrated_mm) {
+        line("calibrated_mm");
+        append_numbers(out, {(*paint.calibrated_mm)[0], (*paint.calibrated_mm)[1]}, 6, "paint");
+    }
+    if (!paint.source.empty()) {
+        line("source");
+        append_string(out, paint.source, "paint");
+    }
+    line("assumed");
+    out += paint.assumed ? "true" : "false";
+    if (!paint.covariance.empty()) {
+        line("covariance");
+        append_matrix(out, paint.covariance, "    ", "paint");
+    }
+    if (paint.degrees_of_freedom) {
+        line("degrees_of_freedom");
+        append_exact(out, *paint.degrees_of_freedom, "degrees_of_freedom");
+    }
+    append_extra(out, parse_object(paint.extra, "paint.extra", kPaintKeys), 4);
+    out += "\n  }";
+}
+
 void append_outlines(std::string& out, const char* key, const std::vector<Footprint>& outlines, const Json& notes) {
     out += std::string("    \"") + key + "\": [";
     for (std::size_t i = 0; i < outlines.size(); ++i) {
@@ -218,6 +276,7 @@ Brush read_brush(const std::string& text) {
     if (auto covariance = fields.find("covariance")) {
         brush.covariance = read_covariance(std::move(*covariance), coefficients);
     }
+    if (auto paint = fields.find("paint")) brush.paint = read_paint(std::move(*paint));
     Json notes;
     brush.footprints = read_footprints(fields.take("footprints"), notes);
     if (const auto speed = fields.find("max_speed_mm_s")) brush.max_speed_mm_s = positive(*speed);
@@ -249,13 +308,10 @@ std::string write_brush(const Brush& brush) {
     append_extra(out, extra, 2);
     for (const Law& law : kLaws) append_profile(out, law.key, brush.*law.profile);
     if (!brush.covariance.empty()) {
-        out += ",\n  \"covariance\": [";
-        for (std::size_t i = 0; i < brush.covariance.size(); ++i) {
-            out += i == 0 ? "\n    " : ",\n    ";
-            append_numbers(out, brush.covariance[i], 6, "covariance");
-        }
-        out += "\n  ]";
+        out += ",\n  \"covariance\": ";
+        append_matrix(out, brush.covariance, "  ", "covariance");
     }
+    if (brush.paint) append_paint(out, *brush.paint);
     append_footprints(out, brush.footprints, std::move(notes));
     out += "\n}\n";
     read_brush(out);  // what cannot be read back is not handed out

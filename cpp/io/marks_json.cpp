@@ -29,6 +29,7 @@ void require_parallel(const PassMarks& pass, const std::string& path) {
     require("depth_mm", pass.depth_mm.size());
     require("taut", pass.taut.size());
     if (pass.lean_mm_per_mm.rows() > 0) require("lean_mm_per_mm", static_cast<std::size_t>(pass.lean_mm_per_mm.rows()));
+    if (!pass.width_share.empty()) require("width_share", pass.width_share.size());
 }
 
 void require_within(const std::vector<double>& values, const std::string& path, double least, double greatest) {
@@ -77,6 +78,7 @@ PassMarks read_pass(Field field, std::size_t index, const std::vector<PassRows>&
                                                 kFormat + "; the file says version 1");
         pass.lean_mm_per_mm = tables[1].of_pass<Ring>(index, *lean, "two numbers [x, y]");
     }
+    if (const auto share = fields.find("width_share")) pass.width_share = numbers(*share);
     pass.outline_mm = read_rings(fields);
     pass.pull.assign(pass.pose.size(), 1.0);
     require_parallel(pass, path);
@@ -85,6 +87,7 @@ PassMarks read_pass(Field field, std::size_t index, const std::vector<PassRows>&
     require_within(pass.pose, path + ".pose", 0.0, 1e9);
     require_within(pass.heading_rad, path + ".heading_rad", -kFarthestMm, kFarthestMm);
     require_within(pass.depth_mm, path + ".depth_mm", -kFarthestMm, kFarthestMm);
+    require_within(pass.width_share, path + ".width_share", 0.0, 1.0);
     return pass;
 }
 
@@ -117,6 +120,7 @@ void append_pass(std::string& out, const PassMarks& pass, const std::string& pat
         out += ",\n     \"lean_mm_per_mm\": ";
         append_rows(out, pass.lean_mm_per_mm, 7, "lean_mm_per_mm");
     }
+    if (!pass.width_share.empty()) append_column(out, "width_share", pass.width_share);
     out += ",\n     \"outline_mm\": ";
     append_rings(out, pass.outline_mm, 7);
     out += '}';

@@ -336,6 +336,7 @@ void check(const Brush& brush) {
         check_range(*profile, lo, hi, where);
     }
     check_covariance(brush);
+    if (brush.paint) check(*brush.paint);
     check_lag(brush);
     check_rising(brush);
     if (brush.footprints.dragged.empty()) throw Error("footprint-invalid", "there is no outline", "footprints.dragged");
@@ -369,6 +370,8 @@ std::vector<Warning> remarks(const Brush& brush) {
                                          (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1]) +
                                       format("from %.2f to %.2f mm", lo, hi)});
     }
+    if (brush.paint && brush.paint->assumed)
+        out.push_back(Warning{"law-assumed", "paint", "the law is assumed, not measured"});
     if (!brush.is_rigid()) {
         bool falls = true, gap = true;
         for (int i = 1; i <= 200; ++i) {

@@ -90,9 +90,14 @@ void require_usable(const PassMarks& marks) {
     const auto parallel = [rows](auto count) { return std::size_t(count) == rows; };
     if (!parallel(marks.contact_mm.rows()) || !parallel(marks.heading_rad.size()) || !parallel(marks.depth_mm.size()) ||
         !parallel(marks.taut.size()) || !parallel(marks.pull.size()) ||
-        (marks.lean_mm_per_mm.rows() > 0 && !parallel(marks.lean_mm_per_mm.rows())))
+        (marks.lean_mm_per_mm.rows() > 0 && !parallel(marks.lean_mm_per_mm.rows())) ||
+        !(marks.width_share.empty() || parallel(marks.width_share.size())))
         throw Error("sizes-differ", "the rows of the marks are not parallel: some columns are shorter than others",
                     marks.stroke);
+    for (const double share : marks.width_share)
+        if (!(share >= 0.0 && share <= 1.0))
+            throw Error("out-of-range", "a share of the width is outside the range [0, 1]", marks.stroke, share,
+                        std::array<double, 2>{0.0, 1.0});
     const auto sound = [](double x) { return std::abs(x) <= kFarthestPaintedMm; };
     if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm)) ||
         (marks.lean_mm_per_mm.rows() > 0 && !marks.lean_mm_per_mm.allFinite()) ||

@@ -67,9 +67,10 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
     const auto placed = [&](std::size_t i) {
         const double d = marks.depth_mm[i], c = std::cos(marks.heading_rad[i]), s = std::sin(marks.heading_rad[i]);
         Ring ring = footprint_at(brush.footprints, d, marks.pull[i]);
+        const double share = marks.width_share.empty() ? 1.0 : marks.width_share[i];
         const double b = brush.tip_gap(d), x0 = marks.contact_mm(i, 0) - b * c, y0 = marks.contact_mm(i, 1) - b * s;
         for (Eigen::Index k = 0; k < ring.rows(); ++k) {
-            const double x = ring(k, 0), y = ring(k, 1);
+            const double x = ring(k, 0), y = share * ring(k, 1);
             ring(k, 0) = x0 + c * x - s * y;
             ring(k, 1) = y0 + s * x + c * y;
         }

@@ -44,7 +44,10 @@ const std::string kBrush = R"({"format": "brushsvg/brush", "version": 1, "name":
                  "dragged": [{"depth_mm": 1, "outline_mm": [[0, 0], [1, -0.5], [1, 0.5]]},
                              {"depth_mm": 2, "outline_mm": [[0, 0], [2, -1], [2, 1]], "photo": "b.jpg"}],
                  "pressed": [{"depth_mm": 2, "outline_mm": [[0, 0], [1.5, -1], [1.5, 1]], "photo": "c.jpg"}]},
-  "max_speed_mm_s": 30, "paint_depth_mm": 2})";
+  "max_speed_mm_s": 30,
+  "paint": {"narrows_per_m": 0.4, "lasts_mm": 600, "calibrated_mm": [0, 700], "source": "by eye", "assumed": true,
+            "covariance": [[0.01, 0], [0, 400]], "degrees_of_freedom": 9, "medium": "ink"},
+  "paint_depth_mm": 2})";
 
 const std::string kPlan = R"({"format": "brushsvg/plan", "version": 1, "brush": "flat", "sheet_mm": [100, 50.5],
   "author": "me", "passes": [
@@ -91,6 +94,15 @@ TEST_CASE("brush.json: every key arrives where it belongs") {
     REQUIRE(brush.footprints.pressed.size() == 1);
     CHECK(brush.max_speed_mm_s == 30.0);
     CHECK(brush.paint_depth_mm == 2.0);
+    REQUIRE(brush.paint.has_value());
+    CHECK(brush.paint->narrows_per_m == 0.4);
+    CHECK(*brush.paint->lasts_mm == 600.0);
+    CHECK((*brush.paint->calibrated_mm)[1] == 700.0);
+    CHECK(brush.paint->source == "by eye");
+    CHECK(brush.paint->assumed);
+    CHECK(brush.paint->covariance[1][1] == 400.0);
+    CHECK(*brush.paint->degrees_of_freedom == 9.0);
+    CHECK(brush.paint->extra == R"({"medium":"ink"})");
     CHECK(brush.lag.extra == R"({"note":"wet"})");
     CHECK(brush.extra.find(R"("maker":{"b":1,"a":[2e-05]})") != std::string::npos);
 }
@@ -104,6 +116,7 @@ TEST_CASE("brush.json: optional keys have the header's defaults") {
     CHECK(brush.paint_depth_mm == 0.0);
     CHECK(brush.kind.empty());
     CHECK(brush.covariance.empty());
+    CHECK_FALSE(brush.paint.has_value());
 }
 
 TEST_CASE("brush.json: unknown keys of every level and every double come back, the same bytes each time") {
@@ -116,6 +129,9 @@ TEST_CASE("brush.json: unknown keys of every level and every double come back, t
     CHECK(again.lag.coefficients == brush.lag.coefficients);
     CHECK(again.lag.source == "ruler");
     CHECK(again.lag.assumed);
+    CHECK(again.paint->covariance == brush.paint->covariance);
+    CHECK(*again.paint->lasts_mm == 600.0);
+    CHECK(again.paint->extra == brush.paint->extra);
     CHECK(*again.lag.rmse_mm == 0.3);
     CHECK(*again.lag.degrees_of_freedom == 7.0);
     CHECK_FALSE(again.tip_gap.degrees_of_freedom.has_value());
@@ -161,6 +177,9 @@ TEST_CASE("brush.json: each fault is named with its key") {
         {"[0.5, 0.1]", "[0.5]", "lag.half_interval_95", "must hold 2 numbers"},
         {"[[1,0,0,0,0,0,0,0]", "[[1,0,0,0,0,0,0]", "covariance[0]", "must hold 8 numbers"},
         {"[[1,0,0,0,0,0,0,0],", "[", "covariance", "must have 8 rows, one per coefficient, not 7"},
+        {"\"narrows_per_m\": 0.4, ", "", "paint.narrows_per_m", "missing"},
+        {"\"lasts_mm\": 600", "\"lasts_mm\": \"long\"", "paint.lasts_mm", "must be a number"},
+        {"[0, 700]", "[700, 0]", "paint.calibrated_mm", "smaller number first"},
         {"\"dragged\"", "\"dragger\"", "footprints.dragged", "missing"},
         {"\"depth_mm\": 1", "\"depth_mm\": 0", "footprints.dragged[0].depth_mm", "greater than 0"},
         {"\"depth_mm\": 1", "\"depth_mm\": 2", "footprints.dragged[1].depth_mm", "ascend"},

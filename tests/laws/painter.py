@@ -275,10 +275,11 @@ def paint(rng, brush, strokes, faults, regions=None):
     return sheet
 
 
-def swept(brush, strokes, height, vertices=33, lasts=None):
+def swept(brush, strokes, height, vertices=33, lasts=None, narrows_per_m=0.0):
     """For each stroke the region that the brush paints on paper of this height; None where it does not reach it.
 
-    lasts: of each stroke after how much way its paint begins to run out."""
+    lasts: of each stroke after how much way its paint begins to run out; narrows_per_m: of the width, from the first
+    stroke to the last, which are painted with one load."""
     count = max(POSES, *(len(poses) + 4 for _, poses in strokes))
     plans = np.array([_stepped(poses, height, count) for _, poses in strokes])
     laws = [brush.law("lag")] * len(strokes)
@@ -287,9 +288,13 @@ def swept(brush, strokes, height, vertices=33, lasts=None):
     plans = np.array([_closer(*both, longest) for both in zip(plans, contacts, strict=True)])
     contacts = oracle.step_all(plans, laws, 20, "rope")
     lasts = np.full(len(strokes), np.inf) if lasts is None else lasts
+    ways = [float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum()) for _, poses in strokes]
+    before = np.cumsum([0.0, *ways])
     return [
-        _painted(brush, plan, contact, vertices, left) if _down(plan, contact).any() else None
-        for plan, contact, left in zip(plans, contacts, lasts, strict=True)
+        _painted(brush, plan, contact, vertices, left, narrows_per_m, come)
+        if _down(plan, contact).any()
+        else None
+        for plan, contact, left, come in zip(plans, contacts, lasts, before, strict=False)
     ]
 
 
@@ -323,7 +328,7 @@ def _down(plan, contact):
     return ~np.isnan(contact[:, 0]) & (plan[:, 2] <= 0)
 
 
-def _painted(brush, plan, contact, vertices, lasts=np.inf):
+def _painted(brush, plan, contact, vertices, lasts=np.inf, narrows_per_m=0.0, before=0.0):
     down = _down(plan, contact)
     tcp, contact, depth = plan[down, :2], contact[down], -plan[down, 2]
     lever = tcp - contact
@@ -346,10 +351,14 @@ def _painted(brush, plan, contact, vertices, lasts=np.inf):
         ]
     )
     shapes = brush.shape(depth) if brush.shape else np.maximum(half, 1e-6)[:, None, None] * unit
+    come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(tcp, axis=0).T))])
+    shapes = (
+        shapes
+        * np.stack([np.ones(len(come)), np.exp(-narrows_per_m * (before + come) / 1000)], axis=1)[:, None]
+    )
     outlines = []
     for p, axis, b, shape in zip(contact, u, gap, shapes, strict=True):
         outlines.append(p - b * axis + shape @ np.array([axis, [-axis[1], axis[0]]]))
-    come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(tcp, axis=0).T))])
     if come[-1] <= lasts:
         return oracle.swept(outlines, True)
     wet = max(2, int(np.searchsorted(come, lasts)))

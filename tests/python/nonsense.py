@@ -57,6 +57,7 @@ def brushes():
     yield brush(lag=_core.Profile([1e-9] * 5000))
     yield brush(half_width=_core.Profile([9, -1]))
     yield brush(extra="[", name="\0")
+    yield brush(paint=_core.Paint(NAN, lasts_mm=-1.0))
     for value in (NAN, INF, 1e300, 5.5e9):
         yield brush(footprints=footprints(lambda shapes, value=value: moved(shapes, value)))
         yield brush(lag=_core.Profile([value]), tip_gap=_core.Profile([0, value]))
@@ -248,6 +249,7 @@ ARGUMENTS = {
         [(), [_core.Footprint(3, [[0, 0]])]],
     ],
     "Marks": [],
+    "Paint": [[0.3, *NUMBERS]],
     "Pass": [
         ["a", *TEXTS],
         [np.zeros((2, 3)), np.zeros((0, 3)), np.zeros((2, 2)), [[NAN] * 3]],

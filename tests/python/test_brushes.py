@@ -15,6 +15,7 @@ from diagnostics import in_json, refused
 import brushsvg
 from brushsvg import _core
 from brushsvg.brush.library import SHIPPED, brush_names, find_brush, save_brush, unknown_keys
+from brushsvg.cli import main
 from brushsvg.errors import Error
 
 ROOT = Path(__file__).parents[2]
@@ -213,6 +214,14 @@ def _drop(*keys):
             "footprint-invalid 64 65",
         ),
         (_set("half_width", "coefficients", to=[4.2, -0.42]), "half_width", "width-falls"),
+        (_set("paint", to={}), "paint.narrows_per_m", "key-missing"),
+        (_set("paint", to={"narrows_per_m": 30}), "paint.narrows_per_m", "out-of-range 0 20"),
+        (_set("paint", to={"narrows_per_m": 0.3, "lasts_mm": 0}), "paint.lasts_mm", "out-of-range 1 1e6"),
+        (
+            _set("paint", to={"narrows_per_m": 0.3, "covariance": [[1, 0], [0, 1]]}),
+            "paint.covariance",
+            "covariance-invalid 1 narrows_per_m",
+        ),
         (
             _set("half_width", "coefficients", to=[0, 1.5]),
             "footprints.dragged[0]",
@@ -223,6 +232,46 @@ def _drop(*keys):
 def test_faults_are_named_with_their_key(changed, change, where, said):
     with refused(said, where):
         find_brush(changed(change))
+
+
+PAINT = {
+    "narrows_per_m": 0.4,
+    "lasts_mm": 600,
+    "calibrated_mm": [0, 700],
+    "source": "By eye.",
+    "assumed": True,
+    "covariance": [[0.0004, 0.1], [0.1, 900]],
+    "degrees_of_freedom": 10,
+    "medium": "ink",
+}
+
+
+def test_paint_is_kept_shown_and_asked_for_by_its_keys(changed, capsys, tmp_path):
+    path = changed(_set("paint", to=PAINT))
+    brush = find_brush(path)
+    assert brush.paint.width_share(500) == pytest.approx(math.exp(-0.2))
+    assert json.loads(_core.write_brush(brush))["paint"] == PAINT
+    assert [notice.where for notice in unknown_keys(brush)] == ["paint.medium"]
+    assert "law-assumed" in {each.code for each in _core.remarks(brush) if each.where == "paint"}
+    main(["brush", "show", str(path)])
+    told = capsys.readouterr().out
+    # 2.228 of Student's t with 10 degrees, by a table, times 0.02
+    for part in (
+        "exp(-0.4 s / 1000)",
+        "dry after 600 mm",
+        "0.4 +- 0.045 per metre",
+        "0 to 700 mm",
+        "By eye.",
+    ):
+        assert part in told
+    like = brushsvg.brush_like("mine", brush)
+    assert like.paint.assumed and not like.paint.covariance and like.paint.narrows_per_m == 0.4
+
+
+def test_a_brush_without_paint_says_nothing_of_it():
+    for name in brush_names():
+        assert find_brush(name).paint is None
+        assert "paint" not in shipped_json(name)
 
 
 def test_broken_files(tmp_path):

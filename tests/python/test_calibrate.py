@@ -593,3 +593,11 @@ def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
     status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean")
     assert status == 1 and agrees(told, "options-contradict --machine")
     assert not out.exists()
+
+
+def test_measured_numbers_say_nothing_of_paint(tmp_path, capsys):
+    (tmp_path / "m.csv").write_text(TABLE)
+    out = tmp_path / "own.json"
+    status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--paint")
+    assert status == 1 and agrees(told, "options-contradict --paint")
+    assert not out.exists()

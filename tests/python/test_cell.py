@@ -96,7 +96,7 @@ FULL = replace(
         flatness_mm=0.4,
     ),
     servo=Servo(((-30.0, 100.0), (0.0, 500.0), (30.0, 900.0)), 0.2, 0.1),
-    reload=Reload("length", 120.0, 4.0, "water"),
+    reload=Reload("length", 120.0, 4.0, "water", 8.0),
     stations=(
         Station(
             "ink",

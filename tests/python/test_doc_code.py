@@ -155,8 +155,11 @@ def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
     brushsvg.save_brush(brush, tmp_path / "shipped.json")
     brushsvg.save_brush(brushsvg.calibrate(rows).brush, tmp_path / "fitted.json")
     shipped, fitted = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("shipped", "fitted"))
-    of_brush, of_plan, of_tilted, of_marks = map(whole, of_kind("json", "brush.md"))
+    of_brush, of_paint, of_plan, of_tilted, of_marks = map(whole, of_kind("json", "brush.md"))
     assert set(unlike(of_brush, shipped)) & set(unlike(of_brush, fitted)) == set()
+    (tmp_path / "painted.json").write_text(json.dumps(shipped | of_paint))
+    brushsvg.save_brush(brushsvg.find_brush(tmp_path / "painted.json"), tmp_path / "painted.json")
+    assert unlike(of_paint, json.loads((tmp_path / "painted.json").read_text())) == []
     assert unlike(of_plan, json.loads(brushsvg.write_plan(plan))) == []
     for a_pass in plan.passes:
         a_pass.arcs, a_pass.tool_axes = [], [(0.28, 0.0, 0.96)] * len(a_pass.poses_mm)

@@ -16,9 +16,18 @@ from brushsvg.machine import writer
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.motion import Wait
-from brushsvg.machine.paint_reload import in_loads, painted_mm, too_long, visits
+from brushsvg.machine.paint_reload import (
+    dips_mm,
+    in_loads,
+    load_lasts_mm,
+    painted_mm,
+    too_long,
+    visits,
+    without_paint,
+)
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import visit, walked
+from brushsvg.pipeline.prediction import marks_of
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
@@ -234,6 +243,92 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     assert len(rings[0]) == len(rings[1]), "no gap, no island"
     assert _core.overlap(*rings) > 0.99
     assert in_loads(plan, brush, cell_with(Reload("length", 1000.0))) == whole(plan)
+
+
+def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
+    """By hand: at 0.4 per metre marks are 5 % narrower after 128.2 mm."""
+    brush, plan = find_brush("round-6"), plan_of(*[(40, "#000000", "")] * 6)
+    reload = Reload("length", 200.0, narrower_percent=5.0)
+
+    def fetched(brush, reload):
+        cell = cell_with(reload)
+        return [bool(each) for each in visits(in_loads(plan, brush, cell), cell)]
+
+    assert fetched(brush, reload) == [True, False, False, False, True, False], "nobody knows how it narrows"
+    brush.paint = _core.Paint(0.4)
+    assert load_lasts_mm(brush, cell_with(reload)) == pytest.approx(-1000 * np.log(0.95) / 0.4)
+    assert fetched(brush, reload) == [True, False, False, True, False, False]
+    assert fetched(brush, replace(reload, every_mm=90.0)) == [True, False, True, False, True, False]
+    assert fetched(brush, replace(reload, narrower_percent=0.0)) == [True, False, False, False, True, False]
+    brush.paint = _core.Paint(0.4, lasts_mm=50.0)
+    assert fetched(brush, reload) == [True] * 6, "hairs would run dry"
+    assert fetched(brush, Reload("layer", narrower_percent=5.0)) == [True] + [False] * 5, "no way is counted"
+
+
+def test_a_long_stroke_is_painted_in_parts_as_short_as_the_brush_asks_for():
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 1000.0, 6.0, narrower_percent=6.0))
+    plan = long_plan(brush)
+    assert in_loads(plan, brush, cell).strokes() == ["short", "long", "last"]
+    brush.paint = _core.Paint(0.5)
+    loads = in_loads(plan, brush, cell)
+    lasts = -1000 * np.log(0.94) / 0.5
+    assert loads.strokes().count("long") == 3
+    assert max(map(painted_mm, loads.loads)) < lasts + 8
+    shortest = min(brush.paint.width_share(painted_mm(each) - 8) for each in loads.loads)
+    assert shortest >= 0.94
+
+
+def test_prediction_narrows_whole_strokes_as_their_loads():
+    """Of a stroke in three loads, and of one that goes on with the paint of the one before: outlines of the whole
+    strokes and of the loads, each by the dips of its own, are alike; without dips in between they are not."""
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 150.0, 6.0))
+    brush.paint = _core.Paint(3.0)
+    plan = long_plan(brush)
+    loads = in_loads(plan, brush, cell)
+    fetched = [bool(each) for each in visits(loads, cell)]
+    assert loads.strokes() == ["short", "long", "long", "long", "last"] and fetched[-1] is False
+    parts = _core.simulate(loads.as_plan(), brush)
+    _core.narrow(parts, brush.paint, [[0.0] if each else [] for each in fetched])
+    _core.trace_outlines(parts, brush)
+    whole = marks_of(plan, brush, cell=cell)
+    assert _core.overlap(whole.outline_mm, parts.outline_mm) > 0.98
+    assert np.allclose(
+        marks_of(loads.as_plan(), brush, cell=cell).passes[2].width_share, parts.passes[2].width_share
+    )
+    alone = marks_of(plan, brush)
+    assert [each.width_share[0] for each in alone.passes] == [1.0, 1.0, 1.0], "each freshly dipped"
+    assert _core.overlap(alone.outline_mm, parts.outline_mm) < 0.9
+    brush.paint = None
+    assert all(each.width_share.size == 0 for each in marks_of(plan, brush, cell=cell).passes)
+
+
+def test_parts_begin_where_they_were_cut():
+    """The dips of whole strokes against the loads' own ways: from one to the next the stroke advances by what the load
+    painted less its landing, its lift and what it came back."""
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 150.0, 6.0))
+    plan = long_plan(brush)
+    loads = in_loads(plan, brush, cell)
+    _, dips, _ = dips_mm(plan.passes, loads, cell)
+    line = np.asarray(plan.passes[1].poses_mm)[:, :2]
+    along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    last = np.asarray(loads.loads[3].poses_mm)[:, :2]
+    assert dips[2] == pytest.approx(along[-1] - np.hypot(*np.diff(last, axis=0).T).sum(), abs=0.05)
+    assert dips[0] == 0.0 and 120 < dips[1] < 150
+
+
+def test_paint_that_lasts_too_short_to_come_back_is_refused():
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 1000.0, 6.0, narrower_percent=1.0))
+    brush.paint = _core.Paint(1.0)
+    with refused("load-too-short round-6 10.1 6"):
+        in_loads(plan_of((40, "#000000", "")), brush, cell)
+
+
+def test_a_brush_that_says_nothing_of_its_paint_is_told():
+    brush, cell = find_brush("round-6"), cell_with(Reload("length", 200.0, narrower_percent=5.0))
+    assert are_told(without_paint(brush, cell), "paint-unknown round-6 narrower_percent")
+    assert not without_paint(brush, cell_with(Reload("length", 200.0)))
+    brush.paint = _core.Paint(0.4)
+    assert not without_paint(brush, cell)
 
 
 def test_loads_are_no_plan():

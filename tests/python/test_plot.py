@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json
 
-from brushsvg import find_brush
+from brushsvg import _core, find_brush
 from brushsvg.brush.plot import brush_picture, brush_picture_on, law_band, new_figure
 
 
@@ -33,6 +33,20 @@ def test_bands():
     np.testing.assert_allclose(half, 1.959963985 * np.sqrt(0.04 - 0.02 * depths + 0.01 * depths**2))
     assert "95 %" in what
     assert "RMSE" in law_band(brush, "lag", depths)[1]
+
+
+def test_paint_is_drawn_where_the_brush_has_it():
+    """Its middle line falls to what the law says, the band about it is wider the longer the way."""
+    brush = find_brush("round-6")
+    brush.paint = _core.Paint(0.5, calibrated_mm=(0, 800), lasts_mm=600, covariance=[[0.01, 0], [0, 400]])
+    figure = new_figure((11, 7.2))
+    brush_picture_on(figure, brush)
+    (axes,) = (each for each in figure.axes if each.get_title().startswith("paint"))
+    x, y = axes.lines[0].get_data()
+    assert x[-1] == 800 and y[0] == 100 and y[-1] == pytest.approx(100 * np.exp(-0.4))
+    low = axes.collections[0].get_paths()[0].vertices[:, 1].min()
+    assert low == pytest.approx(100 * np.exp(-0.8 * (0.5 + 1.959963985 * 0.1)))
+    assert brush_picture(brush, ".svg").count(b"hairs run dry") == 1
 
 
 def test_every_curve_is_named_once_and_no_name_lies_on_a_law():

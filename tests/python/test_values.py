@@ -112,6 +112,21 @@ OTHER_TABLE = _core.FootprintTable(TABLE.dragged[:2], TABLE.dragged[:1])
 SHAPE = dict(range_mm=(0, 10), degree=1)
 VALUES_OF = {
     _core.Profile: lambda _: PROFILES,
+    _core.Paint: lambda _: [
+        _core.Paint(0.2),
+        *(
+            _core.Paint(0.2, **{name: value})
+            for name, value in {
+                "lasts_mm": 300.0,
+                "calibrated_mm": (0, 400),
+                "source": "s",
+                "assumed": True,
+                "covariance": [[0.01]],
+                "degrees_of_freedom": 4.0,
+                "extra": '{"k": 1}',
+            }.items()
+        ),
+    ],
     _core.Footprint: lambda _: [_core.Footprint(1, SQUARE), _core.Footprint(2, SQUARE), TABLE.dragged[1]],
     _core.FootprintTable: lambda _: [TABLE, OTHER_TABLE, _core.FootprintTable(TABLE.dragged[:2], [])],
     _core.Brush: lambda _: [
@@ -126,6 +141,7 @@ VALUES_OF = {
                 "depth_range_mm": (0, 9),
                 "footprints": OTHER_TABLE,
                 "covariance": [[1.0, 2.0], [2.0, 1.0]],
+                "paint": _core.Paint(0.3),
                 "max_speed_mm_s": 3.0,
                 "paint_depth_mm": 3.0,
                 "sha256": "ff",

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/footprint.hpp"
+#include "brushsvg/paint.hpp"
 #include "brushsvg/profile.hpp"
 
 namespace [[gnu::visibility("default")]] brushsvg {
@@ -21,6 +23,7 @@ struct Brush {
     Profile half_width;     ///< h(d): half of the greatest width
     FootprintTable footprints;
     std::vector<std::vector<double>> covariance;  ///< over all coefficients in the order of the laws, or empty
+    std::optional<Paint> paint;                   ///< how its mark narrows from dip to dip; none: it does not
     double max_speed_mm_s = 25.0;
     double paint_depth_mm = 0.0;  ///< depth used where half_width does not depend on depth
     std::string sha256;           ///< of the file it was read from, or empty

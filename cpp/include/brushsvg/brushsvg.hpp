@@ -14,6 +14,8 @@
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/marks.hpp"
 #include "brushsvg/medial_axis.hpp"
+#include "brushsvg/narrow.hpp"
+#include "brushsvg/paint.hpp"
 #include "brushsvg/paint_loads.hpp"
 #include "brushsvg/plan.hpp"
 #include "brushsvg/profile.hpp"

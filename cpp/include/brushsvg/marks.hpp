@@ -19,7 +19,9 @@ struct PassMarks {
     std::vector<unsigned char> taut;
     std::vector<double> pull;  ///< r'/r, 1 when taut
     Ring lean_mm_per_mm;       ///< how far a tilted brush's axis goes sideways for each mm up; empty: upright
-    Rings outline_mm;          ///< filled from outline() in coverage.hpp
+    /// How wide the footprint is by that of a freshly dipped brush, filled from narrow() in narrow.hpp; empty: 1.
+    std::vector<double> width_share;
+    Rings outline_mm;  ///< filled from outline() in coverage.hpp
 };
 
 /// The footprint of a brush that leans by s, seen from its contact: a section of the brush by a plane at an angle t to

@@ -32,6 +32,7 @@ __all__: list[str] = [
     "Marks",
     "Miss",
     "Norm",
+    "Paint",
     "PaintedMark",
     "Pass",
     "PassMarks",
@@ -71,6 +72,7 @@ __all__: list[str] = [
     "lag",
     "medial_axis",
     "miss_of",
+    "narrow",
     "overlap",
     "painted_bounds",
     "read_brush",
@@ -147,6 +149,60 @@ class Profile:
     def half_interval_95(self) -> tuple[float, ...]: ...
     @property
     def rmse_mm(self) -> float | None: ...
+    @property
+    def source(self) -> str: ...
+
+class Paint:
+    """
+    What the way [mm] painted since the last dip does: marks are exp(-narrows_per_m way / 1000) times as wide.
+
+    Paint(0.4).width_share(500) is exp(-0.2). The way is the TCP's on the paper. lasts_mm: the way after which hairs run dry,
+    None where nobody knows. calibrated_mm: (least, greatest) way that was measured; source: where it comes from, in words;
+    assumed: nobody measured it. covariance: of narrows_per_m, and lasts_mm where it is known, or empty, by
+    degrees_of_freedom values to spare. extra: unknown keys of its file, as JSON. A value: it is not changed, but another
+    one made.
+    """
+    def __copy__(self) -> Paint: ...
+    def __deepcopy__(self, memo: dict) -> Paint: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        narrows_per_m: float = 0.0,
+        *,
+        lasts_mm: float | None = None,
+        calibrated_mm: collections.abc.Sequence[float] | None = None,
+        source: str = "",
+        assumed: bool = False,
+        covariance: collections.abc.Sequence[collections.abc.Sequence[float]] = [],
+        degrees_of_freedom: float | None = None,
+        extra: str = "{}",
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def way_to_share_mm(self, share: float) -> float:
+        """
+        The way [mm] after which the width is that share of a freshly dipped brush's; infinite where it never is.
+        """
+    def width_share(self, way_mm: float) -> float:
+        """
+        Width over that of a freshly dipped brush, after a way [mm].
+        """
+    @property
+    def assumed(self) -> bool: ...
+    @property
+    def calibrated_mm(self) -> tuple[float, float] | None: ...
+    @property
+    def covariance(self) -> tuple[tuple[float, ...], ...]: ...
+    @property
+    def degrees_of_freedom(self) -> float | None: ...
+    @property
+    def extra(self) -> str: ...
+    @property
+    def lasts_mm(self) -> float | None: ...
+    @property
+    def narrows_per_m(self) -> float: ...
     @property
     def source(self) -> str: ...
 
@@ -297,6 +353,13 @@ class Brush:
         """
     @name.setter
     def name(self, arg0: str) -> None: ...
+    @property
+    def paint(self) -> Paint | None:
+        """
+        How its mark narrows from dip to dip: a Paint, or None.
+        """
+    @paint.setter
+    def paint(self, arg1: Paint | None) -> None: ...
     @property
     def paint_depth_mm(self) -> float:
         """
@@ -649,6 +712,11 @@ class PassMarks:
     def taut(self) -> numpy.typing.NDArray[numpy.bool]: ...
     @property
     def tcp_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    @property
+    def width_share(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        By how much narrower the brush paints than freshly dipped; empty: it does not.
+        """
 
 class Marks:
     """
@@ -1537,6 +1605,18 @@ def miss_of(
 ) -> Miss:
     """
     Miss of one pass against the stroke it should paint, by simulating it.
+    """
+
+def narrow(
+    marks: Marks,
+    paint: Paint,
+    dips_mm: collections.abc.Sequence[collections.abc.Sequence[float]],
+) -> None:
+    """
+    Fills width_share of every pass, as paint runs out along them: before trace_outlines and coverage.
+
+    dips_mm: for each pass the ways [mm] of the TCP along it at which paint was just fetched, ascending: [0] before it, [] goes
+    on with the paint of the pass before.
     """
 
 def overlap(

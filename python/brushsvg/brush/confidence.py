@@ -43,6 +43,11 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
     return None
 
 
+def paint_interval_per_m(paint) -> float:
+    """Half of the 95 % interval of how a mark narrows from dip to dip; of paint that has a covariance."""
+    return _core.deviations_of_95(paint.degrees_of_freedom) * float(np.sqrt(paint.covariance[0][0]))
+
+
 def unseen_mm(brush, depth_mm: float) -> float:
     """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares: a quarter of what
     law_band says of it. 0 where nothing is known."""

@@ -7,6 +7,7 @@ import math
 import textwrap
 
 from .. import _core
+from .confidence import paint_interval_per_m
 
 LAWS = (
     ("lag", "lever from the centre of friction to the TCP"),
@@ -48,6 +49,7 @@ def page(brush: _core.Brush) -> str:
     ]
     for name, meaning in LAWS:
         lines += _law(name, meaning, getattr(brush, name))
+    lines += _paint(brush.paint) if brush.paint else []
     lines += ["", *_footprints(brush), "", *_table(brush, least, greatest)]
     return "\n".join(lines)
 
@@ -61,9 +63,27 @@ def _law(name: str, meaning: str, law) -> list[str]:
         known.append("measured at depths {:g} to {:g} mm".format(*law.calibrated_mm))
     if law.rmse_mm is not None:
         known.append(f"RMSE {law.rmse_mm:g} mm")
-    source = ". ".join(part for part in (", ".join(known), law.source) if part)
-    lines = [f"  {name}: {meaning}", f"      {formula}"]
-    return lines + textwrap.wrap(source, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
+    return [f"  {name}: {meaning}", f"      {formula}", *_known(known, law.source)]
+
+
+def _known(known: list[str], source: str) -> list[str]:
+    told = ". ".join(part for part in (", ".join(known), source) if part)
+    return textwrap.wrap(told, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
+
+
+PAINT = "how much narrower the mark is, by the way s in mm painted since the last dip"
+
+
+def _paint(paint) -> list[str]:
+    known = ["assumed"] if paint.assumed else []
+    if paint.calibrated_mm:
+        known.append("measured at ways of {:g} to {:g} mm".format(*paint.calibrated_mm))
+    if paint.covariance:
+        half = paint_interval_per_m(paint)
+        known.append(f"narrows by {paint.narrows_per_m:g} +- {half:.2g} per metre (95 %)")
+    formula = f"width exp(-{paint.narrows_per_m:g} s / 1000)" if paint.narrows_per_m else "width as dipped"
+    lasts = f"; hairs run dry after {paint.lasts_mm:g} mm" if paint.lasts_mm else ""
+    return [f"  paint: {PAINT}", f"      {formula}{lasts}", *_known(known, paint.source)]
 
 
 def polynomial(coefficients) -> str:

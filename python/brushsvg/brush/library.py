@@ -28,11 +28,15 @@ _KEYS = (
         "max_speed_mm_s",
         "paint_depth_mm",
     ),
-    *(*_LAWS, "covariance", "footprints"),
+    *(*_LAWS, "covariance", "footprints", "paint"),
 )
 _KEYS_OF_LAW = (
     *("coefficients", "floor", "floor_slope", "calibrated_mm", "source", "assumed"),
     *("half_interval_95", "rmse_mm", "degrees_of_freedom"),
+)
+_KEYS_OF_PAINT = (
+    *("narrows_per_m", "lasts_mm", "calibrated_mm", "source", "assumed"),
+    *("covariance", "degrees_of_freedom"),
 )
 _KEYS_OF_FOOTPRINTS = ("dragged", "pressed", "source", "assumed", "standard_error_mm")
 
@@ -72,6 +76,8 @@ def unknown_keys(brush: _core.Brush) -> list[Notice]:
         ("footprints.", _object(json.dumps(said.get("footprints"))), _KEYS_OF_FOOTPRINTS),
     ]
     tables += [(f"{law}.", _object(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
+    if brush.paint:
+        tables.append(("paint.", _object(brush.paint.extra), _KEYS_OF_PAINT))
     return [
         _unknown(where + key, where, key, known)
         for where, said, known in tables
@@ -135,6 +141,15 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
             assumed=True,
         )
         setattr(brush, law, taken)
+    if like.paint:
+        its = like.paint
+        brush.paint = _core.Paint(
+            its.narrows_per_m,
+            lasts_mm=its.lasts_mm,
+            calibrated_mm=its.calibrated_mm,
+            source=f"Taken from brush {like.name}: {its.source}",
+            assumed=True,
+        )
     said = json.loads(like.extra)
     outlines = said.get("footprints") if isinstance(said.get("footprints"), dict) else {}
     outlines = {key: value for key, value in outlines.items() if key != "standard_error_mm"}

@@ -11,7 +11,16 @@ from .confidence import LAWS
 def with_lag(brush, change: np.ndarray):
     """The brush with other coefficients of the lag: fit to be simulated, nothing else."""
     other = _core.Brush()
-    for name in ("name", "kind", "depth_range_mm", *LAWS, "footprints", "max_speed_mm_s", "paint_depth_mm"):
+    for name in (
+        "name",
+        "kind",
+        "depth_range_mm",
+        *LAWS,
+        "footprints",
+        "paint",
+        "max_speed_mm_s",
+        "paint_depth_mm",
+    ):
         setattr(other, name, getattr(brush, name))
     law = brush.lag
     other.lag = _core.Profile(

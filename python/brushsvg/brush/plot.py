@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import lacking
-from .confidence import law_band
+from .confidence import law_band, paint_interval_per_m
 from .describe import LAWS
 
 INK, QUIET, BAND = "#2b3a67", "#767a82", "#3f8fd9"
@@ -36,7 +36,9 @@ def brush_picture_on(figure, brush, data: dict | None = None) -> None:
         if data and name in data:
             axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6, label="measured")
     _legend(figure)
-    _footprints(figure.add_subplot(grid[:, 2]), brush)
+    _footprints(figure.add_subplot(grid[0, 2] if brush.paint else grid[:, 2]), brush)
+    if brush.paint:
+        _paint(figure.add_subplot(grid[1, 2]), brush.paint)
     figure.suptitle(_plain(brush.name))
 
 
@@ -80,6 +82,28 @@ def _law(axes, depths, name, meaning, law, band) -> None:
     axes.set_xlabel("depth, mm", fontsize=8)
     axes.set_ylabel("mm", fontsize=8)
     axes.set_ylim(bottom=min(0.0, values.min()))
+    axes.grid(color="#e4e2dc", linewidth=0.6)
+
+
+def _paint(axes, paint) -> None:
+    """The share of the width that is left, to where it was measured, hairs run dry, or a tenth is gone."""
+    ends = [paint.calibrated_mm[1] if paint.calibrated_mm else 0.0, 1.2 * (paint.lasts_mm or 0.0)]
+    to_mm = max(ends) or min(paint.way_to_share_mm(0.9), 1000.0)
+    ways = np.linspace(0.0, to_mm, 201)
+    share = np.array([100 * paint.width_share(way) for way in ways])
+    if paint.covariance:
+        off = np.exp(1e-3 * paint_interval_per_m(paint) * ways)
+        axes.fill_between(
+            ways, share / off, np.minimum(share * off, 100.0), color=BAND, alpha=0.25, linewidth=0
+        )
+    axes.plot(ways, share, color=INK, linestyle=":" if paint.assumed else "-")
+    if paint.lasts_mm:
+        axes.axvline(paint.lasts_mm, color=QUIET, linewidth=1)
+        axes.text(paint.lasts_mm, 2, "hairs run dry", fontsize=8, rotation=90, ha="right", color=QUIET)
+    axes.set_title(f"paint{' (assumed)' if paint.assumed else ''}\nwidth left since the last dip", fontsize=9)
+    axes.set_xlabel("way painted, mm", fontsize=8)
+    axes.set_ylabel("%", fontsize=8)
+    axes.set_ylim(0.0, 105.0)
     axes.grid(color="#e4e2dc", linewidth=0.6)
 
 

@@ -183,7 +183,7 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
     brush = _core.Brush()
     brush.name, brush.kind, brush.lag = name, before.kind, before.lag
     brush.depth_range_mm = (before.depth_range_mm[0], shapes[-1].depth_mm)
-    brush.max_speed_mm_s = before.max_speed_mm_s
+    brush.max_speed_mm_s, brush.paint = before.max_speed_mm_s, before.paint
     brush.paint_depth_mm = min(before.paint_depth_mm, shapes[-1].depth_mm)
     brush.footprints = _core.FootprintTable(
         [_core.Footprint(shape.depth_mm, shape.outline_mm.round(4) + 0.0) for shape in shapes]

@@ -18,6 +18,7 @@ from .from_measurements import calibrate as calibrate_measured
 from .machine_found import ask_for
 from .mark_input import read_painted
 from .measurements import FORMAT, Measurements, Row, read_measurements
+from .paint_found import calibrate_paint
 from .turn_picture import centre_line
 
 Rows = Sequence[Mapping[str, object]]
@@ -61,7 +62,7 @@ def calibrate(
 ) -> Calibration: ...
 @overload
 def calibrate(
-    measured: PaintedMarks, name: str = "", *, machine: tuple[str, ...] = ()
+    measured: PaintedMarks, name: str = "", *, machine: tuple[str, ...] = (), paint: bool = False
 ) -> MarkCalibration: ...
 @overload
 def calibrate(
@@ -71,6 +72,7 @@ def calibrate(
     absolute: bool = False,
     total: bool = False,
     machine: tuple[str, ...] = (),
+    paint: bool = False,
 ) -> Calibration | MarkCalibration: ...
 def calibrate(
     measured: str | os.PathLike[str] | Mapping[str, Any],
@@ -79,13 +81,15 @@ def calibrate(
     absolute: bool = False,
     total: bool = False,
     machine: tuple[str, ...] = (),
+    paint: bool = False,
 ) -> Calibration | MarkCalibration:
     """A brush of what was measured: numbers (.csv, .json) or painted marks (.json), as docs/calibration.md has them.
 
     measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
     for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
     own. absolute: least absolute residuals instead of squares; total: total least squares for series of angles.
-    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash". Returns what was found: brush, a
+    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash". paint: they were painted in the
+    plan's order with one load of paint: find how they narrow. Returns what was found: brush, a
     Brush [mm] that save_brush writes; of numbers laws and remarks, too, of marks what moved and what is left.
 
     Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
@@ -110,12 +114,18 @@ def calibrate(
                 "--machine needs painted marks: measured numbers say nothing of the machine",
                 code="options-contradict",
             )
+        if paint:
+            raise Error(
+                "--paint needs painted marks: measured numbers say nothing of the order they were painted in",
+                code="options-contradict",
+            )
         _read_pictures(found, read)
         return calibrate_measured(found, name, bool(absolute), bool(total))
     painted = read_painted(found.plan, found.marks, read)
     options = options_for(found.expected)
     ask_for(options, machine)
-    return calibrate_marks(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
+    fit = calibrate_paint if paint else calibrate_marks
+    return fit(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
 
 
 def _json(measured: dict) -> bytes:

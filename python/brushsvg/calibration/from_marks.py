@@ -63,6 +63,7 @@ def calibrate_marks(
     options: _core.MarkOptions | None = None,
     edge_mm: float = 0.0,
     leave_out_strays: bool = False,
+    off: Painted | None = None,
 ) -> MarkCalibration:
     """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
 
@@ -71,7 +72,8 @@ def calibrate_marks(
 
     Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
     displacement and height; depths, numbers per law and the tail are set here. leave_out_strays: fit once more without
-    marks that are not where or what the others say; Error where they are many.
+    marks that are not where or what the others say; Error where they are many. off: the marks as they would be if what
+    was made of them were off by a standard deviation: the intervals hold it.
     """
     need_fits()
     least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
@@ -104,14 +106,14 @@ def calibrate_marks(
     refuse_unlike(fit, painted)
     covariance = np.array(fit.covariance)
     if edge_mm > 0:
-        usual = options.widest_per_half
-        if fit.laws.round_tail:
-            options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
-        moved = moved_by_edges(fit, painted.marks, options, edge_mm)
-        options.round_tail, options.widest_per_half = False, usual
+        moved = _moved(fit, farther_out(painted.marks, edge_mm), options)
         covariance += np.outer(moved, moved)
         wetter = wetter_where_wider(fit, deepest, edge_mm)
         covariance += np.outer(wetter, wetter)
+    if off:
+        kept = {mark.stroke for mark in painted.marks}
+        moved = _moved(fit, [mark for mark in off.marks if mark.stroke in kept], options)
+        covariance += np.outer(moved, moved)
     brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
     count = f"{len(painted.marks)} painted marks"
@@ -146,9 +148,29 @@ def refuse_many(astray: tuple[Stray, ...], painted: Painted) -> None:
         )
 
 
+def _moved(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
+    """By how much all that is fitted changes with other marks, with the tail that was found."""
+    usual = options.widest_per_half
+    if fit.laws.round_tail:
+        options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
+    moved = moved_by(fit, marks, options)
+    options.round_tail, options.widest_per_half = False, usual
+    return moved
+
+
+def moved_by(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
+    """By how much all that is fitted changes with other marks, in the covariance's order."""
+    moved = _core.fit_marks(marks, fit.laws, options)
+    return _all_fitted(moved, fit, options.deepest_mm) - _all_fitted(fit, fit, options.deepest_mm)
+
+
 def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
-    """By how much all that is fitted changes where every edge lies edge_mm farther out, in the covariance's order."""
-    wider = [
+    """The same where every edge lies edge_mm farther out."""
+    return moved_by(fit, farther_out(marks, edge_mm), options)
+
+
+def farther_out(marks: list, edge_mm: float) -> list:
+    return [
         _core.PaintedMark(
             mark.stroke,
             np.array(mark.poses_mm),
@@ -157,8 +179,6 @@ def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float)
         )
         for mark in marks
     ]
-    moved = _core.fit_marks(wider, fit.laws, options)
-    return _all_fitted(moved, fit, options.deepest_mm) - _all_fitted(fit, fit, options.deepest_mm)
 
 
 def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
@@ -233,6 +253,21 @@ def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple
             squares = np.minimum(off, OUTLYING) ** 2
             gain += float(squares[0].sum() - squares[1].sum()) / alike
     return (rounded if gain > TELLS else pointed), gain
+
+
+def simulated(made: MarkCalibration, marks: list):
+    """The brush that was found, as deep as marks ask for, and its traces along their ways, in the frame of the plan."""
+    brush = made.brush
+    run = {mark.stroke: miss.way_mm for mark, miss in zip(made.painted.marks, made.fit.marks, strict=True)}
+    ways = [np.array(run.get(mark.stroke, mark.poses_mm)) for mark in marks]
+    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + made.fit.height_mm)
+    brush = _core.read_brush(_core.write_brush(brush))
+    brush.depth_range_mm = (brush.depth_range_mm[0], reach)
+    passes = []
+    for mark, poses in zip(marks, ways, strict=True):
+        poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
+        passes.append(_core.Pass(mark.stroke, poses))
+    return brush, _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush).passes
 
 
 def options_for(expected: dict) -> _core.MarkOptions:

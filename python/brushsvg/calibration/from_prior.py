@@ -241,7 +241,7 @@ def _brush_of(brush, known: KnownLaws, laws, covariance, told: set[str], name: s
         brush.paint_depth_mm,
     )
     made.covariance = _joined(brush, made, told, whole, fitted).tolist()
-    made.extra, made.footprints = brush.extra, brush.footprints
+    made.extra, made.footprints, made.paint = brush.extra, brush.footprints, brush.paint
     if told & {"half_width", "tip_to_widest"}:
         made.footprints = _reshaped(brush, made, laws.front_per_half / known.laws.front_per_half)
     return made

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -36,15 +36,18 @@ LAID = (
 
 @dataclass(frozen=True)
 class Painted:
-    """Marks of one sheet; how many different depths were painted at."""
+    """Marks of one sheet; how many different depths were painted at; before_mm: by stroke the way of the TCP on the
+    paper along all strokes of the plan before it, where that is known."""
 
     marks: list
     deepest_mm: float
     depths: int
+    before_mm: dict[str, float] = field(default_factory=dict)
 
     def without(self, strokes: set[str]) -> Painted:
         """Error where what is left tells nothing."""
-        return painted_of([mark for mark in self.marks if mark.stroke not in strokes])
+        left = painted_of([mark for mark in self.marks if mark.stroke not in strokes])
+        return replace(left, before_mm=self.before_mm)
 
 
 def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], bytes]) -> Painted:
@@ -77,12 +80,15 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
     _refuse_other_frames(found)
     _refuse_what_is_no_paint(found)
     painted_as = {stroke: number for number, stroke in enumerate(passes)}
-    return painted_of(
+    whole = painted_of(
         [
             _core.PaintedMark(stroke, poses, _oriented(rings), passes[stroke].arcs)
             for stroke, poses, rings in sorted(found, key=lambda one: painted_as[one[0]])
         ]
     )
+    ways = [polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes.values()]
+    before = np.cumsum([0.0, *ways])[:-1].tolist()
+    return replace(whole, before_mm=dict(zip(passes, before, strict=True)))
 
 
 def painted_of(marks: list) -> Painted:

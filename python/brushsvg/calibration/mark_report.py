@@ -7,13 +7,22 @@ import math
 import numpy as np
 
 from .. import _core
-from ..brush.confidence import law_band
+from ..brush.confidence import law_band, paint_interval_per_m
 from ..brush.describe import LAWS, polynomial
 from ..brush.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
 from ..errors import Notice
 from ..geometry.rotation import rotation
 from . import machine_found
-from .from_marks import GAP_TERMS, HALF_TERMS, LAG_TERMS, TELLS, front_ratio, height_at, widest_ratio
+from .from_marks import (
+    GAP_TERMS,
+    HALF_TERMS,
+    LAG_TERMS,
+    TELLS,
+    front_ratio,
+    height_at,
+    simulated,
+    widest_ratio,
+)
 from .stray_marks import OUTLYING
 
 TABLE_ROWS = 6
@@ -37,6 +46,7 @@ def report(made) -> str:
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
+    lines += _paint(brush.paint) if brush.paint else []
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     if table := machine_found.cell_table(fit, made.expected):
         lines += ["", "for the cell:", *table]
@@ -54,6 +64,15 @@ def report(made) -> str:
     if not fit.converged:
         remarks.append("note: the fit had not converged when it was stopped: look at the picture")
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+
+
+def _paint(paint) -> list[str]:
+    half = paint_interval_per_m(paint)
+    known = "" if paint.narrows_per_m > half else ": these marks do not tell that they do"
+    return [
+        f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre of way since the dip{known} (95 %, up to "
+        f"{paint.calibrated_mm[1]:.0f} mm)"
+    ]
 
 
 def _tail(made) -> str:
@@ -321,16 +340,8 @@ def deepest_mm(mark) -> float:
 
 def predicted_marks(made, marks: list) -> list:
     """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
-    brush = made.brush
-    run = {mark.stroke: miss.way_mm for mark, miss in zip(made.painted.marks, made.fit.marks, strict=True)}
-    ways = [np.array(run.get(mark.stroke, mark.poses_mm)) for mark in marks]
-    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + made.fit.height_mm)
-    brush = _core.read_brush(_core.write_brush(brush))
-    brush.depth_range_mm = (brush.depth_range_mm[0], reach)
-    passes = []
-    for mark, poses in zip(marks, ways, strict=True):
-        poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
-        passes.append(_core.Pass(mark.stroke, poses))
-    painted = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
+    brush, traces = simulated(made, marks)
+    painted = _core.Marks()
+    painted.passes = traces
     _core.trace_outlines(painted, brush)
     return [one.outline_mm for one in painted.passes]

@@ -281,6 +281,13 @@ class Reload:
     every_mm: float = _number("for length: paint lasts so far", 1, 1e6, default=300.0)
     backtrack_mm: float = _number("a stroke goes on so far back in its own mark", 0, 100, default=5.0)
     wash: str = _key("station to visit before the colour changes", "text", default="")
+    narrower_percent: float = _number(
+        "for length, and a brush that says how its marks narrow: paint lasts until they are so much narrower; 0: not "
+        "looked at",
+        0,
+        90,
+        default=0.0,
+    )
 
 
 @dataclass(frozen=True)

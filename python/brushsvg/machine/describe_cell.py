@@ -68,7 +68,10 @@ def _reload(reload) -> str:
         "stroke": "before every stroke",
         "layer": "before every layer",
     }
-    return when[reload.when]
+    narrower = (
+        f", or where marks would be {reload.narrower_percent:g} % narrower" if reload.narrower_percent else ""
+    )
+    return when[reload.when] + (narrower if reload.when == "length" else "")
 
 
 def _point(values) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,7 +11,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from ..geometry.polylines import length
+from ..geometry.polylines import length, lengths
 from .arc_chords import chords, with_chords
 from .cell import Cell, Station, robot_from_paper, why_no_waiting
 from .distortion import is_similar, on_map_mm
@@ -30,6 +31,7 @@ class PlanInLoads:
 
     sheet_mm: tuple[float, float]
     loads: tuple
+    lasts_mm: float = math.inf  # of a brush that says so, on a cell that counts the way
 
     def strokes(self) -> list[str]:
         """For each load the stroke that it paints, or a part of."""
@@ -40,7 +42,7 @@ class PlanInLoads:
 
     def left(self, first_stroke: int) -> PlanInLoads:
         """The loads from that one on, counted from 1."""
-        return PlanInLoads(self.sheet_mm, self.loads[first_stroke - 1 :])
+        return PlanInLoads(self.sheet_mm, self.loads[first_stroke - 1 :], self.lasts_mm)
 
     def as_plan(self):
         """For who simulates what is run."""
@@ -56,7 +58,7 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     Error for a part that does not follow the one before it, and for a tilted brush: programs hold it upright.
     """
     _core.refuse_tilted(plan.passes, f"programs for cell {cell.name} hold the brush upright")
-    loads, last = list(plan.passes), None
+    loads, last, lasts_mm = list(plan.passes), None, math.inf
     for a_pass in loads:
         if is_later_part(a_pass) and (last is None or last.load != a_pass.load - 1):
             number = a_pass.load
@@ -64,7 +66,8 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
             raise Error(sentence, a_pass.stroke, code="load-out-of-order")
         last = a_pass
     if cell.reload and cell.reload.when == "length":
-        every_mm, back_mm = cell.reload.every_mm, cell.reload.backtrack_mm
+        every_mm, back_mm = load_lasts_mm(brush, cell), cell.reload.backtrack_mm
+        lasts_mm = every_mm if brush.paint else math.inf
         loads = []
         for a_pass in plan.passes:
             whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
@@ -73,7 +76,36 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         loads = map(with_chords, loads)
     if cell.machine and cell.machine.map_mm:
         loads = (on_way(each, on_map_mm(np.asarray(each.poses_mm), cell.machine), ()) for each in loads)
-    return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)))
+    return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)), lasts_mm)
+
+
+def load_lasts_mm(brush: _core.Brush, cell: Cell) -> float:
+    """The way that a load of paint lasts, for a cell that counts it: its own, until the brush's hairs run dry, and
+    until marks are as much narrower as the cell allows, whichever is the shortest. Error where no part could be so
+    short."""
+    reload = cell.reload
+    ways = [reload.every_mm]
+    if brush.paint and brush.paint.lasts_mm:
+        ways.append(brush.paint.lasts_mm)
+    if brush.paint and reload.narrower_percent:
+        ways.append(brush.paint.way_to_share_mm(1 - reload.narrower_percent / 100))
+    if min(ways) <= 2 * reload.backtrack_mm:
+        sentence = (
+            f"paint of brush {brush.name} lasts for {min(ways):.1f} mm on cell {cell.name}, which must be more than "
+            f"twice backtrack_mm {reload.backtrack_mm:g}"
+        )
+        raise Error(sentence, code="load-too-short")
+    return min(ways)
+
+
+def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
+    """A notice where the cell allows marks to get narrower, and the brush does not say that they do."""
+    if not cell.reload or not cell.reload.narrower_percent or brush.paint:
+        return []
+    sentence = (
+        f"brush {brush.name} does not say how its marks narrow: narrower_percent of the cell has no effect"
+    )
+    return [Notice("", sentence, code="paint-unknown", advice='measure it: "paint" of a brush file')]
 
 
 def _is_told_circles(cell: Cell) -> bool:
@@ -106,13 +138,13 @@ def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]
     """A notice of the stroke for parts that are longer than a load of paint lasts, unless they may not be cut."""
     if not cell.reload or cell.reload.when != "length":
         return []
-    every_mm, deepest_mm = cell.reload.every_mm, brush.depth_range_mm[1]
+    every_mm, deepest_mm = load_lasts_mm(brush, cell), brush.depth_range_mm[1]
     last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the lift comes back over its own mark
     sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
     return [
         Notice(
             a_pass.stroke,
-            f"{length_mm:.0f} {sentence} {every_mm:g}] mm of a load of paint",
+            f"{length_mm:.0f} {sentence} {every_mm:.4g}] mm of a load of paint",
             code="load-too-long",
         )
         for a_pass in loads.loads
@@ -143,12 +175,56 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
             last is None
             or changed
             or number == first_stroke
-            or _is_due(a_pass, last, used_mm + length_mm, cell)
+            or _is_due(a_pass, last, used_mm + length_mm, cell.reload, loads.lasts_mm)
         )
         found.append((*wash, station) if fetch else ())
         used_mm = length_mm + (0.0 if fetch else used_mm)
         last = a_pass
     return tuple(found)
+
+
+def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
+    """For each pass the ways [mm] of the TCP along it at which paint was just fetched, as `narrow` takes them.
+
+    passes: of the plan, or the loads themselves. Where no cell fetches paint every pass begins freshly dipped.
+    """
+    if not cell.reload:
+        return [[0.0] for _ in passes]
+    asked, found, k = visits(loads, cell), [], 0
+    for a_pass in passes:
+        dips = [0.0] if asked[k] else []
+        k += 1
+        while not a_pass.load and k < len(loads.loads) and is_later_part(loads.loads[k]):
+            dips.append(_begins_at_mm(a_pass, loads.loads[k], dips[-1] if dips else 0.0))
+            k += 1
+        found.append(dips)
+    return found
+
+
+def _begins_at_mm(stroke, part, after_mm: float) -> float:
+    """The way along a stroke at which one of its parts begins, its landing counted: by the moves that both share, and
+    that lie farther along the stroke than the part before began. Where there is none, by its first pose."""
+    line, poses = (chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part))
+    along, way = lengths(line), lengths(poses)
+    start, step = line[:-1], np.diff(line, axis=0)
+    size = np.maximum((step**2).sum(axis=1), 1e-18)
+    share = np.clip((((poses[:, None] - start) * step).sum(axis=2)) / size, 0.0, 1.0)
+    off = np.linalg.norm(start + share[..., None] * step - poses[:, None], axis=2)
+    place = along[:-1] + share * np.sqrt(size)
+    off[place <= after_mm] = np.inf
+    nearest = off.argmin(axis=1)
+    rows = np.arange(len(poses))
+    at, off = place[rows, nearest], off[rows, nearest]
+    shared = (off[:-1] < SHARED_MM) & (off[1:] < SHARED_MM) & (np.abs(np.diff(at) - np.diff(way)) < SHARED_MM)
+    begins = (at - way)[:-1]
+    if not shared.any():
+        return float(max(at[0], after_mm + SHARED_MM))
+    return float(max(np.median(begins[shared]), after_mm + SHARED_MM))
+
+
+SHARED_MM = (
+    0.02  # arcs of both are cut into chords at other places, which lie up to 0.01 mm off their circles
+)
 
 
 def may_pause(cell: Cell) -> bool:
@@ -219,17 +295,17 @@ def painted_mm(a_pass: _core.Pass) -> float:
     return length(chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
 
 
-def _is_due(a_pass, last, used_mm: float, cell: Cell) -> bool:
+def _is_due(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:
     if is_later_part(a_pass):
         return True
     asked = a_pass.settings.reload
     if asked is not None:
         return asked
-    if cell.reload.when == "stroke":
+    if reload.when == "stroke":
         return True
-    if cell.reload.when == "layer":
+    if reload.when == "layer":
         return a_pass.layer != last.layer
-    return used_mm > cell.reload.every_mm
+    return used_mm > min(reload.every_mm, lasts_mm)
 
 
 def is_later_part(a_pass: _core.Pass) -> bool:

@@ -18,7 +18,7 @@ from ..machine.arm.joints import is_installed
 from ..machine.cell import Cell
 from ..machine.cell_check import OF_EXAMPLE
 from ..machine.motion import duration_s
-from ..machine.paint_reload import PlanInLoads, in_loads, too_long, with_one_pen
+from ..machine.paint_reload import PlanInLoads, in_loads, too_long, with_one_pen, without_paint
 from ..machine.posts import POSTS
 from ..machine.program import WHOLE_JOB, Job, Walked
 from ..text_summary import summarized
@@ -244,7 +244,8 @@ class Tried:
         """What is told of a job that may be run."""
         first = self.walk.job.first_stroke
         pens = with_one_pen(self.loads, self.cell, first) if self.is_program else []
-        return [*too_long(self.loads, self.work.brush, self.cell), *pens]
+        brush, cell = self.work.brush, self.cell
+        return [*without_paint(brush, cell), *too_long(self.loads, brush, cell), *pens]
 
     def time_s(self) -> float | None:
         """How long the machine takes for the program, or for one of the plan."""

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 
 from .. import _core
+from ..errors import Error
+from ..machine.cell import Cell
+from ..machine.paint_reload import dips_mm, in_loads
 from .preparation import Work
 
 
@@ -13,7 +17,7 @@ def predict(
     work: Work, outlines: bool = True, stage: Callable[[str], object] = lambda text: None, whole: bool = True
 ) -> _core.Marks:
     """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
-    return marks_of(work.plan, work.brush, outlines, stage, whole)
+    return marks_of(work.plan, work.brush, outlines, stage, whole, work.options.cell)
 
 
 def marks_of(
@@ -22,12 +26,23 @@ def marks_of(
     outlines: bool = True,
     stage: Callable[[str], object] = lambda text: None,
     whole: bool = True,
+    cell: Cell | None = None,
 ) -> _core.Marks:
-    """The marks of any plan."""
+    """The marks of any plan. cell: where it fetches paint, of a brush whose marks narrow until then; where none does
+    every stroke is taken to begin freshly dipped."""
     marks = _core.simulate(plan, brush, progress=_counted(stage, "simulated"))
+    if brush.paint:
+        _core.narrow(marks, brush.paint, _dips_mm(plan, brush, cell))
     if not outlines:
         return marks
     return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
+
+
+def _dips_mm(plan, brush, cell) -> list[list[float]]:
+    if cell:
+        with suppress(Error):  # a colour that no station serves is told where a program is made
+            return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
+    return [[0.0] for _ in plan.passes]
 
 
 def outlined(

@@ -89,8 +89,15 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
+    visited = _visits(read, cell)
+    if brush.paint:
+        is_counted = cell.reload and len(visited) == len(
+            cut
+        )  # else each begins freshly dipped, as in predictions
+        dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
+        _core.narrow(marks, brush.paint, dips)
     problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
-    return Ran(plan, marks, list(dict.fromkeys(problems)), _visits(read, cell), tuple(lines), tuple(rests))
+    return Ran(plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
 
 def _rests(step: Step, cell: Cell) -> bool:

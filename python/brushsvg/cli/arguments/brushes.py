@@ -100,6 +100,11 @@ def add_calibrate(commands) -> None:
         help="from painted marks: also find what the machine does besides what it is told, of lean,axes,tilt,backlash",
     )
     fit.add_argument(
+        "--paint",
+        action="store_true",
+        help="from marks painted in the order of their plan with one load of paint: also find how they narrow",
+    )
+    fit.add_argument(
         "--brush",
         metavar="NAME|FILE",
         help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines; for one "
@@ -154,6 +159,8 @@ def _check_calibrate(args) -> None:
     if args.plan is not None or args.prior is not None:
         _check_update(args)
         return
+    if args.paint and args.brush is not None:
+        args.parser.error("--paint finds a brush of its own: --brush must go")
     if args.photos:
         _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
         return
@@ -177,7 +184,7 @@ def _check_calibrate(args) -> None:
 def _check_update(args) -> None:
     if args.plan is None or args.prior is None:
         args.parser.error("--plan and --prior go together: what was painted, and by which brush")
-    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot", "height"):
+    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot", "height", "paint"):
         if getattr(args, flag):
             args.parser.error(f"--{flag} is not for a job (--plan)")
     if args.norm != "squares":

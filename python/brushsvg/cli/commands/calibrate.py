@@ -36,7 +36,12 @@ def calibrate_file(args) -> None:
             made, report, report_picture = _from_photo(read, name, args)
         else:
             made = calibrate(
-                args.input, name, absolute=args.norm == "absolute", total=args.total, machine=args.machine
+                args.input,
+                name,
+                absolute=args.norm == "absolute",
+                total=args.total,
+                machine=args.machine,
+                paint=args.paint,
             )
             if isinstance(made, MarkCalibration):
                 from ...calibration.mark_report import report, report_picture
@@ -134,6 +139,7 @@ def _from_photo(read, name: str, args):
     from ...calibration.machine_found import ask_for
     from ...calibration.mark_input import read_painted
     from ...calibration.mark_report import report, report_picture
+    from ...calibration.paint_found import calibrate_paint
     from ...painted.repeats import read_displacement_mm
 
     stage("fitting the brush")
@@ -142,7 +148,8 @@ def _from_photo(read, name: str, args):
     known |= {"height_mm": args.height} if args.height is not None else {}
     options = options_for(expected(read) | known)
     ask_for(options, args.machine)
-    made = calibrate_marks(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
+    fit = calibrate_paint if args.paint else calibrate_marks
+    made = fit(painted, name, options=options, edge_mm=edge_mm(read), leave_out_strays=True)
     return made, report, report_picture
 
 

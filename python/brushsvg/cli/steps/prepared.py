@@ -65,7 +65,7 @@ def look(
                 raise
             held_upright, loads = [refusal.notice()], PlanInLoads(tuple(work.plan.sheet_mm), ())
         plan = loads.as_plan() if at_loads else work.plan
-        marks = prediction.marks_of(plan, brush, outlines, stage, whole)
+        marks = prediction.marks_of(plan, brush, outlines, stage, whole, cell)
         walk = None
         if not held_upright and (work.plan.passes or not work.refused):
             walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)

@@ -1,0 +1,104 @@
+"""How marks narrow comes back from sheets painted with one load, with the freshly dipped brush; the slow stepping
+simulator paints."""
+
+import json
+from functools import cache
+
+import numpy as np
+import painter
+import pytest
+from diagnostics import refused
+
+core = pytest.importorskip("brushsvg._core")
+if not hasattr(core, "fit_marks"):
+    pytest.skip("built without Ceres", allow_module_level=True)
+
+from brushsvg.calibration.from_file import calibrate  # noqa: E402
+from brushsvg.calibration.from_marks import calibrate_marks, height_at  # noqa: E402
+from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.cli import main  # noqa: E402
+
+pytestmark = pytest.mark.long
+
+
+@cache
+def sheet(seed, narrows_per_m, mixed=False):
+    """The true brush, and what a measurement file holds of its sheet."""
+    rng = np.random.default_rng(seed)
+    brush = painter.random_brush(rng)
+    strokes = painter.chart_strokes(brush.deepest, 3)
+    if mixed:
+        strokes = [strokes[k] for k in np.random.default_rng(1).permutation(len(strokes))]
+
+    def regions(brush, strokes, height):
+        return painter.swept(brush, strokes, height, narrows_per_m=narrows_per_m)
+
+    painted = painter.paint(rng, brush, strokes, painter.Faults(), regions)
+    passes = [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
+    marks = [
+        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks
+    ]
+    return brush, {"plan": {"passes": passes}, "marks": marks}
+
+
+@pytest.mark.parametrize(("seed", "rate", "mixed"), [(1, 0.5, False), (6, 0.8, True)])
+def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
+    brush, told = sheet(seed, rate, mixed)
+    made = calibrate(told, "b", paint=True)
+    paint = made.brush.paint
+    sigma = np.sqrt(paint.covariance[0][0])
+    assert abs(paint.narrows_per_m - rate) < 3 * sigma < 0.1
+    assert 600 < paint.calibrated_mm[1] < 700
+    plain = calibrate_marks(read_painted(told["plan"], told["marks"], None), "b").brush
+    half = brush.law("half_width")(brush.deepest)
+    assert made.brush.half_width(brush.deepest) == pytest.approx(half, rel=0.02)
+    assert plain.half_width(brush.deepest) < 0.9 * half, "taken for marks of a brush always freshly dipped"
+    for depth in np.linspace(0.2, 1.0, 5) * brush.deepest:
+        assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
+    end = height_at(made.fit) - 2  # widest section and front follow the half width
+    powers = brush.deepest ** np.arange(1, 3)
+    known, alone = (
+        powers @ np.array(each)[end - 2 : end, end - 2 : end] @ powers
+        for each in (made.covariance, made.fit.covariance)
+    )
+    assert known > 1.3 * alone, "what the rate leaves open is in the laws' intervals"
+
+
+def test_paint_that_does_not_run_out_is_not_said_to():
+    _, told = sheet(8, 0.0)
+    made = calibrate(told, "b", paint=True)
+    paint = made.brush.paint
+    assert paint.narrows_per_m < 3 * np.sqrt(paint.covariance[0][0]) < 0.1
+
+
+def test_the_command_writes_it(tmp_path, capsys):
+    _, told = sheet(6, 0.8, True)
+    path, out = tmp_path / "m.json", tmp_path / "b.json"
+    path.write_text(json.dumps({"format": "brushsvg/measurements", "version": 1, **told}))
+    assert main(["calibrate", str(path), "-o", str(out), "--paint"]) == 0
+    paint = json.loads(out.read_text())["paint"]
+    assert paint["narrows_per_m"] == pytest.approx(0.8, abs=0.06) and paint["assumed"] is False
+    assert f"narrow by {paint['narrows_per_m']:.3f} +- " in capsys.readouterr().out
+
+
+def test_marks_that_get_wider_are_refused():
+    """Told in the other order than they were painted in."""
+    _, told = sheet(6, 0.8, True)
+    with refused("paint-undetermined"):
+        calibrate({"plan": {"passes": told["plan"]["passes"][::-1]}, "marks": told["marks"]}, "b", paint=True)
+
+
+def test_an_order_by_depth_alone_is_refused():
+    """Of each depth one stroke, the deeper the later, drawn out so that the way within a stroke says little."""
+    _, told = sheet(1, 0.5)
+    arcs = [each for each in told["plan"]["passes"] if not each["stroke"].startswith("ramp")]
+    apart = [
+        {"stroke": f"gap{k}", "poses_mm": [[0, -900, -1], [4000, -900, -1]], "speed_mm_s": 20}
+        for k in range(3)
+    ]
+    by_depth = [[each for each in arcs if each["stroke"].endswith(f"-{k}")] for k in (1, 2, 3)]
+    passes = [one for k in range(3) for one in (apart[k], *by_depth[k])]
+    names = {each["stroke"] for each in arcs}
+    marks = [mark for mark in told["marks"] if mark["stroke"] in names]
+    with refused("paint-undetermined"):
+        calibrate({"plan": {"passes": passes}, "marks": marks}, "b", paint=True)
