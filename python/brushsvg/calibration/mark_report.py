@@ -38,7 +38,8 @@ def report(made) -> str:
         lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
-    if table := machine_found.cell_table(fit, made.expected):
+    found = machine_found.numbers(fit, made.covariance, made.expected)
+    if table := machine_found.cell_table(fit, made.expected, found):
         lines += ["", "for the cell:", *table]
     remarks = [
         f"note: {sentence}"

@@ -125,6 +125,7 @@ def walked(
         track = _track(section, frame, here)
         low = _as_true(track, cell) if _stroke(section) else track
         said = [*_careless(section, low, brush, cell, here_low, paper_mm)]
+        said += _play_taken_up(read, section, low, frame, brush, cell, paper_mm)
         if len(track.points):
             ends = [ends[0] if ends else track.points[0], track.points[-1]]
         if section is read.sections[-1]:
@@ -394,6 +395,29 @@ def _careless(
         for on in map(slice, first, last):
             top = paper_mm + slack
             yield from _ahead(steps[on], before[on], track.points[on], cell, limit, top)
+
+
+def _play_taken_up(
+    read: Readback, section: ReadSection, low: Track, frame: np.ndarray, brush, cell: Cell, paper_mm: float
+) -> Iterator[Notice]:
+    """Notices for axes that take up their play too fast while the brush touches, or have not done so before."""
+    top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
+    places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)
+    places = moved(np.linalg.inv(frame), places)
+    heights = (true_mm(places, cell.machine) if _stroke(section) else places)[:, 2]
+    for step, height_mm in zip(section.taking_up, heights, strict=True):
+        if height_mm <= top_mm and step.rapid:
+            sentence = f"line {step.line}: a rapid move while the brush touches"
+            yield Notice("", sentence, code="rapid-too-low")
+        elif height_mm <= top_mm and step.speed_mm_s > limit + 1e-6:
+            speeds = f"speed {step.speed_mm_s:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+            sentence = f"line {step.line}: {speeds}"
+            yield Notice("", sentence, code="speed-out-of-range")
+    lines = [section.steps[number].line for number in low.step[low.points[:, 2] <= top_mm]]
+    for line in (each for each in lines if each in read.unsure):
+        sentence = f"line {line}: the brush touches before the axes have taken up their backlash"
+        yield Notice("", sentence, code="backlash-not-taken-up")
+        break
 
 
 def _ahead(
