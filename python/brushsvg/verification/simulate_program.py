@@ -340,11 +340,22 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool
         for k in np.flatnonzero(slower & (sideways < 2 * unit_mm(cell))):
             poses[k + 1, :2] = poses[k, :2]
     arcs = _arcs(owner, track.centres)
-    for arc in arcs:  # at one depth, but for what is rounding
-        on_arc = poses[arc.first : arc.last + 1, 2]
-        if np.ptp(on_arc) <= slack_mm(cell):
-            on_arc[:] = on_arc.min()
+    for first, last in _chains(arcs):  # at one depth, but for what is rounding
+        on_arcs = poses[first : last + 1, 2]
+        if np.ptp(on_arcs) <= slack_mm(cell):
+            on_arcs[:] = on_arcs.min()
     return poses, radii, max(speed, landed_mm_s), arcs
+
+
+def _chains(arcs: list) -> list[list[int]]:
+    """First and last pose of arcs that follow each other, where one's last pose is the next one's first."""
+    chains: list[list[int]] = []
+    for arc in arcs:
+        if chains and chains[-1][1] == arc.first:
+            chains[-1][1] = arc.last
+        else:
+            chains.append([arc.first, arc.last])
+    return chains
 
 
 def _arcs(owner: np.ndarray, centres: list) -> list:

@@ -35,9 +35,10 @@ def as_gone(read: Readback, cell: Cell) -> Readback:
 
 
 class _Axes:
-    """told (3,): what they were told last; slide (2,): where they are; beside (2,): half of their backlash on the other
-    side of where they began, as far as it makes a difference still; unsure: the lines behind which it does; gone: by
-    line the steps to which each of its own led, None for one on which the tool stands."""
+    """near_mm: what rounding makes of places; step_mm: of a servo's heights. told (3,): what they were told last; slide
+    (2,): where they are; beside (2,): where they are if they began on the other side of their backlash; unsure: the
+    lines behind which that makes a difference; gone: by line the steps to which each of its own led, None for one on
+    which the tool stands."""
 
     def __init__(self, known: list[Step], half: np.ndarray, near_mm: float, step_mm: float):
         self.half, self.near_mm, self.step_mm = half, near_mm, step_mm
@@ -110,10 +111,10 @@ class _Axes:
         on = np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
         low, high = (of(np.vstack([begin[:2], end[:2]]), axis=0) for of in (np.min, np.max))
         is_one_way = (on > low - self.near_mm).all() and (on < high + self.near_mm).all()
-        pushes = np.abs(begin[:2] - self.slide - np.sign(end - begin)[:2] * self.half) < EQUAL_MM
-        if is_one_way and (pushes | (end == begin)[:2]).all():
+        pushes = np.abs(begin[:2] - self.slide - np.sign(end - begin)[:2] * self.half) < self.near_mm
+        if is_one_way and (pushes | (np.abs(end - begin)[:2] < self.near_mm)).all():
             aside, self.beside = self.slide - begin[:2], self._pushed(self.beside, end)
-            after = np.round(end[:2] + aside, 9) + 0.0
+            after = np.round(np.clip(end[:2] + aside, end[:2] - self.half, end[:2] + self.half), 9) + 0.0
             self.told, self.slide = end, after
             centre = (x + float(aside[0]), y + float(aside[1]), turn)
             yield step._replace(x=float(after[0]), y=float(after[1]), centre=centre)
