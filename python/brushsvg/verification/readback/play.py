@@ -45,9 +45,8 @@ class _Axes:
         self.told = np.array([known[0].x, known[0].y, known[0].z])
         places = np.array([(step.x, step.y) for step in known])
         first = first_side(np.diff(places, axis=0))
-        sides = np.where(
-            first == 0, 1.0, first
-        )  # as a program begins: on the way to the other side of its play
+        # as a program begins, its axes are on the way to the other side of their play
+        sides = np.where(first == 0, 1.0, first)
         self.slide, self.beside = self.told[:2] + sides * half, self.told[:2] - sides * half
         self.unsure: set[int] = set()
         self.gone: dict[int, list[Step | None]] = defaultdict(list)
