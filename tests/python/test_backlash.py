@@ -168,9 +168,9 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
         (f"{stands}\n", f"{stands.replace('G1', 'G0')}\n", "rapid-too-low"),
         (f"{stands}\n", f"F9000\n{stands}\n", "speed-out-of-range"),
         (f"{stands}\n", f"{moved}\n", "path-elsewhere"),
-        (f"{again}\n", "", "backlash-not-taken-up"),
+        (f"{first}\n", f"{again}\n", "backlash-not-taken-up"),
     ):
-        is_refused_when_damaged(capsys, path, old, new, told, *words)
+        assert is_refused_when_damaged(capsys, path, old, new, told, *words), (old, told)
         path.write_text(text)
 
 

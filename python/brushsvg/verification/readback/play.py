@@ -37,8 +37,8 @@ def as_gone(read: Readback, cell: Cell) -> Readback:
 class _Axes:
     """near_mm: what rounding makes of places; step_mm: of a servo's heights. told (3,): what they were told last; slide
     (2,): where they are; beside (2,): where they are if they began on the other side of their backlash; unsure: the
-    lines behind which that makes a difference; gone: by line the steps to which each of its own led, None for one on
-    which the tool stands."""
+    lines behind which that makes a difference; stood: whether the tool stood on the last step; gone: by line the steps
+    to which each of its own led, None for one on which the tool stands."""
 
     def __init__(self, known: list[Step], half: np.ndarray, near_mm: float, step_mm: float):
         self.half, self.near_mm, self.step_mm = half, near_mm, step_mm
@@ -49,21 +49,23 @@ class _Axes:
         sides = np.where(first == 0, 1.0, first)
         self.slide, self.beside = self.told[:2] + sides * half, self.told[:2] - sides * half
         self.unsure: set[int] = set()
+        self.stood = False
         self.gone: dict[int, list[Step | None]] = defaultdict(list)
 
     def go(self, step: Step) -> tuple[list[Step], list[Step]]:
         """The steps that a step leads to, and those on which the tool stands."""
         told, slide = self.told, self.slide
         steps = list(self._along_circle(step) if step.centre else self._straight(step))
-        if (np.abs(self.beside - self.slide) > EQUAL_MM).any():
+        if (np.abs(self.beside - self.slide) > self.near_mm).any():
             self.unsure.add(step.line)
         places = [(*slide.tolist(), float(told[2])), *((each.x, each.y, each.z) for each in steps)]
-        is_told = bool((told[:2] != self.told[:2]).any())
+        is_told = bool((told[:2] != self.told[:2]).any()) or self.stood  # or once more where it stands
         stay = [is_told and before == after for before, after in pairwise(places)]
         goes, stands = (
             [each for each, stays in zip(steps, stay, strict=True) if stays == which]
             for which in (False, True)
         )
+        self.stood = not goes
         self.gone[step.line].append(goes[-1] if goes else None)
         return goes, stands
 
