@@ -4,16 +4,21 @@ import json
 import math
 import re
 import subprocess
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from command import brush_file, brushsvg
 from drawings import SOURCES
+from judge.moves import Leg, Run
+from judge.play import with_play
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
+from brushsvg.machine.cell import Machine
+from brushsvg.machine.cell_file import find_cell, write_cell
 
 INTERPRET = Path(__file__).with_name("interpret.py")
 NEAR_MM = 1e-3
@@ -179,6 +184,38 @@ def test_the_stand_alone_interpreter_agrees(made, tmp_path):
     before, sections = canonical(made / "program.ngc", tmp_path)
     check_points(before, sections, passes_in(made))
     check_rapids(before, sections)
+
+
+@pytest.mark.parametrize("way", ["robot", "constant lag"])
+def test_axes_with_backlash_go_where_others_go(way, drawing, tmp_path):
+    """By places of the stand-alone interpreter, run by the judge's axes."""
+    source, flags = WAYS[way]
+    cell = find_cell("linuxcnc-3axis")
+    backlash_mm = (0.44, 0.28)
+    painted = []
+    for name, machine in (("exact", None), ("worn", Machine(backlash_mm=backlash_mm))):
+        (tmp_path / f"{name}.toml").write_text(write_cell(replace(cell, machine=machine)))
+        words = (drawing(source), f"{name}.ngc", "--cell", f"{name}.toml", *flags)
+        brushsvg("convert", *words, cwd=tmp_path, status=0)
+        before, sections = canonical(tmp_path / f"{name}.ngc", tmp_path)
+        run = Run(legs_of([*before, *(event for section in sections for event in section.events)]))
+        run = with_play(run, backlash_mm if machine else (0.0, 0.0))
+        painted.append(np.array([leg.end for leg in run.legs if max(leg.start[2], leg.end[2]) < -1e-3]))
+    one, other = painted
+    assert len(one) > 100
+    for points, path in ((one, other), (other, one)):
+        away = shapely.distance(shapely.points(points[:, :2]), shapely.LineString(path[:, :2]))
+        assert away.max() < 1e-3
+
+
+def legs_of(events):
+    """Of the judge's, from over the sheet's corner on."""
+    here, legs = (0.0, 0.0, 50.0), []
+    for number, (kind, x, y, z, *more) in enumerate(events):
+        centre, turn = (tuple(more[1:3]), int(np.sign(more[3]))) if kind == "arc" else (None, 0)
+        legs.append(Leg(number, kind, here, (x, y, z), 1.0, centre, turn))
+        here = x, y, z
+    return legs
 
 
 def test_rapids_keep_off_the_paper(made, tmp_path):

@@ -9,7 +9,8 @@ import pytest
 core = pytest.importorskip("brushsvg._core")
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.machine.cell import Machine  # noqa: E402
+from brushsvg.machine.cell import Machine, Paper, axes_along_paper  # noqa: E402
+from brushsvg.machine.cell_file import find_cell  # noqa: E402
 from brushsvg.machine.distortion import told_mm, true_mm  # noqa: E402
 from brushsvg.painted.fault_model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
 from brushsvg.painted.mended_cell import mended  # noqa: E402
@@ -32,6 +33,7 @@ def found(beyond: Machine, half=1e-6):
         (MACHINE, "lean in x"): beyond.lean_mm_per_mm[0],
         (MACHINE, "lean in y"): beyond.lean_mm_per_mm[1],
         (MACHINE, "backlash in x"): 0.4,
+        (MACHINE, "backlash in y"): 0.0,
         (PAPER, "height"): height,
         (PAPER, "tilt in x"): beyond.tilt_mm_per_mm[0],
         (PAPER, "tilt in y"): beyond.tilt_mm_per_mm[1],
@@ -76,6 +78,21 @@ def test_without_a_table_what_is_found_is_the_table():
 def test_the_map_of_the_paper_stays():
     rows = ((0.0, 0.0, 0.1), (50.0, 0.0, 0.2), (0.0, 50.0, 0.0), (50.0, 50.0, -0.1))
     assert mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows)).map_mm == rows
+
+
+@pytest.mark.parametrize("along, wanted", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
+def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, wanted):
+    """By which of the machine's axes go along x and y of the paper."""
+    before = replace(UNDONE, backlash_mm=(0.1, 0.2))
+    assert mended(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(wanted)
+    assert mended(found(TRUE, half=10.0), MIDDLE, before, along) is None
+
+
+@pytest.mark.parametrize("turned_deg, along", [(2.0, (0, 1)), (90.0, (1, 0)), (183.0, (0, 1)), (30.0, None)])
+def test_the_axes_along_the_paper(turned_deg, along):
+    turned = Paper(rotation_deg=(0.0, 0.0, turned_deg))
+    assert axes_along_paper(replace(find_cell("linuxcnc-3axis"), paper=turned)) == along
+    assert axes_along_paper(replace(find_cell("ur5e"), paper=turned)) is None
 
 
 def test_what_is_not_certain_changes_nothing():

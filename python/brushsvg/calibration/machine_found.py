@@ -19,6 +19,7 @@ PARTS = {
     "tilt": ("tilt_mm_per_mm", 0.005),
     "backlash": ("backlash_mm", 0.2),
 }
+LEAST_MM = 0.01  # of backlash that a cell undoes
 # Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer
 # lag at greater depth would be
 ONE_WAY = 0.8
@@ -77,10 +78,14 @@ def told(found: list[Number]) -> list[str]:
     return [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
 
 
-def cell_table(fit, options: _core.MarkOptions) -> list[str]:
-    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo."""
+def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
+    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo. Backlash that may as
+    well be none is left out."""
     parts, machine = asked(options), fit.machine
-    lines = ["[machine]"] if set(parts) - {"backlash"} else []
+    backlash = [
+        one.value if one.value > max(one.half, LEAST_MM) else 0.0 for one in found if one.part == "backlash"
+    ]
+    lines = ["[machine]"] if set(parts) - {"backlash"} or any(backlash) else []
     if "lean" in parts:
         lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
     if "axes" in parts:
@@ -88,6 +93,8 @@ def cell_table(fit, options: _core.MarkOptions) -> list[str]:
     if "tilt" in parts:
         height = fit.height_mm - float(np.dot(machine.tilt_mm_per_mm, fit.centre_mm))
         lines += [f"height_mm = {height:.3f}", f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}"]
+    if any(backlash):
+        lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*backlash))
     return lines
 
 

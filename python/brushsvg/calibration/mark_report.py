@@ -48,7 +48,8 @@ def report(made) -> str:
     overlap = overlaps(made)
     lines += _paint(brush.paint) if brush.paint else []
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
-    if table := machine_found.cell_table(fit, made.expected):
+    found = machine_found.numbers(fit, made.covariance, made.expected)
+    if table := machine_found.cell_table(fit, made.expected, found):
         lines += ["", "for the cell:", *table]
     remarks = [
         f"note: {sentence}"

@@ -33,7 +33,7 @@ def report(made) -> str:
 
 def _machine(made) -> list[str]:
     found = numbers(made.fit, made.covariance, made.options)
-    table = cell_table(made.fit, made.options)
+    table = cell_table(made.fit, made.options, found)
     return [*(["", "of the machine:"] if found else []), *told(found), *(["", *table] if table else [])]
 
 

@@ -209,6 +209,13 @@ class Machine:
         2e3,
         (),
     )
+    backlash_mm: tuple = _key(
+        "how far the machine's own x and y are told to go before they follow, where they turn back",
+        (2,),
+        0,
+        3,
+        (0.0, 0.0),
+    )
 
 
 @dataclass(frozen=True)
@@ -359,6 +366,11 @@ NEEDED_BY = {
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
 CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # how a language is told what ends a program
+NO_BACKLASH = dict.fromkeys(  # and why it is not undone
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"),
+    "joints of an arm have play of their own",
+) | {"ebb": "its motors share x and y, and have play of their own"}
+LEAST_BACKLASH_MM = 0.01
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
 LEAST_SPEED_MM_S = {
     "dobot": 1.0,
@@ -491,3 +503,27 @@ def why_no_waiting(cell: Cell) -> str:
     if cell.language == "hpgl":
         return "a pen plotter cannot wait for a person"
     return "a servo's brush falls while the program waits" if cell.servo else ""
+
+
+def why_no_backlash(cell: Cell) -> str:
+    """Why backlash is not undone for this cell; "" where it is."""
+    return NO_BACKLASH["urscript"] if cell.arm else NO_BACKLASH.get(cell.language, "")
+
+
+ALONG_RAD = 0.1  # an axis that is turned by less goes along the paper's edge, as far as its play shows
+
+
+def axes_along_paper(cell: Cell) -> tuple[int, int] | None:
+    """Which of the machine's axes go along x and along y of the paper; None where it lies askew, or backlash is not
+    undone."""
+    if why_no_backlash(cell):
+        return None
+    turned = np.abs(robot_from_paper(cell)[:2, :2])
+    if min(turned.max(axis=0)) < np.cos(ALONG_RAD):
+        return None
+    return (0, 1) if turned[0, 0] > turned[0, 1] else (1, 0)
+
+
+def least_backlash_mm(cell: Cell) -> float:
+    """Less is none: its half is no whole unit, and taking it up no move."""
+    return max(LEAST_BACKLASH_MM, 2 * unit_mm(cell))

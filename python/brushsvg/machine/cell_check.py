@@ -21,8 +21,10 @@ from .cell import (
     Speeds,
     Station,
     entries,
+    least_backlash_mm,
     robot_from_paper,
     value_mm,
+    why_no_backlash,
     why_no_waiting,
 )
 from .frames import moved, normal_tilt_deg
@@ -61,6 +63,8 @@ def check(cell: Cell) -> None:
     _check_workspace(cell)
     if cell.machine and cell.machine.map_mm:
         _check_map(cell.machine.map_mm)
+    if cell.machine and any(cell.machine.backlash_mm):
+        _check_backlash(cell)
     if cell.pen:
         _check_pen(cell)
     if cell.motors:
@@ -385,6 +389,24 @@ def _check_servo(cell: Cell) -> None:
             where="heights.clearance_mm",
             code="cell-heights",
         )
+
+
+def _check_backlash(cell: Cell) -> None:
+    where, values = "machine.backlash_mm", [*cell.machine.backlash_mm]
+    if why := why_no_backlash(cell):
+        raise Error(
+            f"backlash_mm {values} is outside the range [0, 0] of language {cell.language!r}: {why}",
+            where=where,
+            code="cell-machine",
+        )
+    least = least_backlash_mm(cell)
+    for value in values:
+        if 0 < value < least:
+            raise Error(
+                f"backlash_mm {value:g} is neither 0 nor in the range [{least:g}, 3] mm",
+                where=where,
+                code="cell-machine",
+            )
 
 
 def _check_map(map_mm: tuple) -> None:

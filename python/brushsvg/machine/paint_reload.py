@@ -12,7 +12,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
-from .arc_chords import chords, with_chords
+from .arc_chords import chords, cut_at_extremes, with_chords
 from .cell import Cell, Station, robot_from_paper, why_no_waiting
 from .distortion import is_similar, on_map_mm
 from .frames import is_upright
@@ -54,7 +54,8 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
 
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
     already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
-    no circles, arcs have poses enough for lines; where the cell has a map of the paper, lines have enough for that.
+    no circles, arcs have poses enough for lines; where its axes have backlash, arcs end where one turns back; where the
+    cell has a map of the paper, lines have enough for that.
     Error for a part that does not follow the one before it, and for a tilted brush: programs hold it upright.
     """
     _core.refuse_tilted(plan.passes, f"programs for cell {cell.name} hold the brush upright")
@@ -74,6 +75,9 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
             loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
     if not _is_told_circles(cell):
         loads = map(with_chords, loads)
+    elif cell.machine and any(cell.machine.backlash_mm):
+        axes = robot_from_paper(cell)[:2, 0]
+        loads = (cut_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
     if cell.machine and cell.machine.map_mm:
         loads = (on_way(each, on_map_mm(np.asarray(each.poses_mm), cell.machine), ()) for each in loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)), lasts_mm)

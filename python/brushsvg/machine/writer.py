@@ -10,6 +10,7 @@ from pathlib import Path
 from .. import _core
 from ..errors import Error, need
 from ..files import write_files
+from .backlash import undone
 from .cell import Cell
 from .cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
@@ -103,7 +104,8 @@ def painting_cell(suffix: str, cell: Cell) -> Cell:
 
 def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
     """The program in a robot's language, in pieces, as files of an extension have it."""
-    pieces = post.others.get(suffix, post.write)(in_robot_frame(made) if post.in_robot_frame else made)
+    made = undone(in_robot_frame(made)) if post.in_robot_frame else made
+    pieces = post.others.get(suffix, post.write)(made)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 

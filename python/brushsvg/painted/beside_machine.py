@@ -6,19 +6,19 @@ import numpy as np
 
 from .comparison import BESIDE_MM, Comparison, Wanted, without
 from .fault_model import FaultModel
-from .faults import Faults
-from .mended_cell import sure
 from .placing import NOWHERE, Canvas, Placed, place
 
 FINE_PX_PER_MM = 8.0
 
 
-def beside_machine(found: Comparison, faults: Faults, plan, brush, strokes: list[Wanted]) -> Comparison:
+def beside_machine(
+    found: Comparison, certain: dict[str, float], plan, brush, strokes: list[Wanted]
+) -> Comparison:
     """The comparison, of each mark what the faults that go into a mended cell do to it left out, as read from what it
-    would be with these faults alone. plan: as it was told; strokes: those that were compared."""
+    would be with these faults alone. certain: these, of `mended_cell.sure`; plan: as it was told; strokes: those that
+    were compared."""
     names = tuple(stroke.stroke for stroke in strokes if stroke.predicted)
     model = FaultModel(plan, brush, names, found.middle_mm)
-    certain = sure(faults)
     amiss = np.array([certain.get(number.name, 0.0) for number in model.numbers])
     straight, led = (model.rings(numbers) for numbers in (np.zeros_like(amiss), amiss))
     done = {name: _does(straight.get(name), led.get(name), found.canvas) for name in names}

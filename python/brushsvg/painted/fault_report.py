@@ -56,7 +56,7 @@ def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
     if machine:
         lines += [
             "",
-            "The cell's table for the next job: what is certain, and what it undid before (backlash needs a mechanic):",
+            "The cell's table for the next job: what is certain, and what it undid before:",
             *as_table(machine),
         ]
     return lines

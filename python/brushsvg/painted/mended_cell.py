@@ -4,28 +4,41 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..machine.cell import Machine
+from ..machine.cell import LEAST_BACKLASH_MM, Machine
 from .fault_model import MACHINE, PAPER
 from .faults import Faults
 
 SURE = 1.0  # half intervals from 0, from where on a number goes into a cell
 
 
-def sure(faults: Faults) -> dict[str, float]:
+Along = (
+    tuple[int, int] | None
+)  # which of the machine's axes go along x and y of the paper; None: backlash stays
+
+
+def sure(faults: Faults, before: Machine | None, along: Along) -> dict[str, float]:
     """By the name of each number what of it goes into a cell: 0 where it is not certain."""
-    return {
+    certain = {
         one.number.name: one.value if abs(one.value) > SURE * one.half else 0.0
         for one in faults.found
-        if one.number.cause in (MACHINE, PAPER) and not one.number.name.startswith("backlash")
+        if one.number.cause in (MACHINE, PAPER)
     }
+    for paper, name in enumerate("xy"):
+        was = before.backlash_mm[along[paper]] if before and along else 0.0
+        now = was + certain.get(f"backlash in {name}", 0.0) if along else was
+        certain[f"backlash in {name}"] = (now if now >= LEAST_BACKLASH_MM else 0.0) - was
+    return certain
 
 
-def mended(faults: Faults, middle_mm, before: Machine | None) -> Machine | None:
+def mended(faults: Faults, middle_mm, before: Machine | None, along: Along = (0, 1)) -> Machine | None:
     """before: what the painted job's cell undid; the rest comes on top. None where nothing is certain."""
-    certain = sure(faults)
+    certain = sure(faults, before, along)
     if not any(certain.values()):
         return None
     before = before or Machine()
+    backlash = np.array(before.backlash_mm)
+    if along:
+        backlash[[*along]] += [certain["backlash in x"], certain["backlash in y"]]
     lean, tilt, scale = (
         np.array([certain[f"{name} in {axis}"] for axis in "xy"]) for name in ("lean", "tilt", "scale")
     )
@@ -39,6 +52,7 @@ def mended(faults: Faults, middle_mm, before: Machine | None) -> Machine | None:
         round(float(height_mm), 3),
         _rounded(np.array(before.tilt_mm_per_mm) + tilt @ was),
         before.map_mm,
+        tuple(round(float(value), 3) for value in backlash),
     )
 
 
@@ -62,6 +76,8 @@ def as_table(machine: Machine) -> list[str]:
             f"height_mm = {machine.height_mm:.3f}",
             f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}",
         ]
+    if any(machine.backlash_mm):
+        lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*machine.backlash_mm))
     return lines
 
 

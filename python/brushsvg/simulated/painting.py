@@ -11,6 +11,7 @@ from ..brush.perturbed import with_factors
 from ..geometry.rotation import rotation
 from ..machine.arc_chords import with_chords
 from ..machine.as_run import as_run
+from ..machine.backlash import from_air_mm
 from ..machine.cell import Machine
 from ..machine.distortion import told_mm
 from ..machine.pass_way import on_way
@@ -57,5 +58,8 @@ def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int) -> l
 
 
 def _told(a_pass, undone: Machine | None):
-    a_pass = with_chords(a_pass)
-    return on_way(a_pass, told_mm(np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3), undone), [])
+    poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3)
+    told = told_mm(poses, undone)
+    if undone and any(undone.backlash_mm):
+        told = from_air_mm(told, undone.backlash_mm)
+    return on_way(a_pass, told, [])

@@ -132,6 +132,7 @@ def walked(
         track = _track(section, frame, here)
         low = _as_true(track, cell) if _stroke(section) else track
         said = [*_careless(section, low, brush, cell, here_low, paper_mm)]
+        said += _play_taken_up(read, section, low, frame, brush, cell, paper_mm)
         if len(track.points):
             ends = [ends[0] if ends else track.points[0], track.points[-1]]
         if section is read.sections[-1]:
@@ -346,11 +347,22 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool
         for k in np.flatnonzero(slower & (sideways < 2 * unit_mm(cell))):
             poses[k + 1, :2] = poses[k, :2]
     arcs = _arcs(owner, track.centres)
-    for arc in arcs:  # at one depth, but for what is rounding
-        on_arc = poses[arc.first : arc.last + 1, 2]
-        if np.ptp(on_arc) <= slack_mm(cell):
-            on_arc[:] = on_arc.min()
+    for first, last in _chains(arcs):  # at one depth, but for what is rounding
+        on_arcs = poses[first : last + 1, 2]
+        if np.ptp(on_arcs) <= slack_mm(cell):
+            on_arcs[:] = on_arcs.min()
     return poses, radii, max(speed, landed_mm_s), arcs
+
+
+def _chains(arcs: list) -> list[list[int]]:
+    """First and last pose of arcs that follow each other, where one's last pose is the next one's first."""
+    chains: list[list[int]] = []
+    for arc in arcs:
+        if chains and chains[-1][1] == arc.first:
+            chains[-1][1] = arc.last
+        else:
+            chains.append([arc.first, arc.last])
+    return chains
 
 
 def _arcs(owner: np.ndarray, centres: list) -> list:
@@ -401,6 +413,29 @@ def _careless(
         for on in map(slice, first, last):
             top = paper_mm + slack
             yield from _ahead(steps[on], before[on], track.points[on], cell, limit, top)
+
+
+def _play_taken_up(
+    read: Readback, section: ReadSection, low: Track, frame: np.ndarray, brush, cell: Cell, paper_mm: float
+) -> Iterator[Notice]:
+    """Notices for axes that take up their play too fast while the brush touches, or have not done so before."""
+    top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
+    places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)
+    places = moved(np.linalg.inv(frame), places)
+    heights = (true_mm(places, cell.machine) if _stroke(section) else places)[:, 2]
+    for step, height_mm in zip(section.taking_up, heights, strict=True):
+        if height_mm <= top_mm and step.rapid:
+            sentence = f"line {step.line}: a rapid move while the brush touches"
+            yield Notice("", sentence, code="rapid-too-low")
+        elif height_mm <= top_mm and step.speed_mm_s > limit + 1e-6:
+            speeds = f"speed {step.speed_mm_s:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+            sentence = f"line {step.line}: {speeds}"
+            yield Notice("", sentence, code="speed-out-of-range")
+    lines = [section.steps[number].line for number in low.step[low.points[:, 2] <= top_mm]]
+    for line in (each for each in lines if each in read.unsure):
+        sentence = f"line {line}: the brush touches before the axes have taken up their backlash"
+        yield Notice("", sentence, code="backlash-not-taken-up")
+        break
 
 
 def _ahead(

@@ -15,7 +15,7 @@ class Leg(NamedTuple):
     kind: rapid, feed, process (a robot's move at an even speed), arc, jump (a servo's value, at once), wait or stop
     (until a person starts again). Ends [mm] in the robot's frame. cut_mm: how far from its end the corner may
     be passed, or, for robots, how far before its end the blend begins. tilt_rad: how far the tool leans from where it
-    should at the end.
+    should at the end. takes_up: the tool stands, since what goes is the play of its axes.
     """
 
     line: int
@@ -29,6 +29,7 @@ class Leg(NamedTuple):
     seconds: float = 0.0
     tilt_rad: float = 0.0
     acceleration: float = 0.0
+    takes_up: bool = False
 
 
 @dataclass
@@ -50,7 +51,7 @@ class RefusedError(Exception):
     """The controller stops here with an error."""
 
 
-CHORD_RAD = 0.05
+CHORD_RAD, CHORD_MM = 0.05, 1e-4
 
 
 def arc_points(leg: Leg) -> np.ndarray:
@@ -59,7 +60,9 @@ def arc_points(leg: Leg) -> np.ndarray:
     first, last = math.atan2(b - y, a - x), math.atan2(e - y, d - x)
     sweep = (last - first) * leg.turn % math.tau
     sweep = leg.turn * (sweep if sweep > 1e-9 else math.tau)
-    count = max(2, math.ceil(abs(sweep) / CHORD_RAD))
+    radius_mm = math.hypot(a - x, b - y)
+    chord_rad = min(CHORD_RAD, math.sqrt(8 * CHORD_MM / max(radius_mm, 1e-9)))
+    count = max(2, math.ceil(abs(sweep) / chord_rad))
     part = np.arange(1, count + 1) / count
     radius = math.hypot(a - x, b - y) * (1 - part) + math.hypot(d - x, e - y) * part
     angle = first + sweep * part

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from brushsvg import _core
 from brushsvg.errors import Error
+from brushsvg.machine.cell import unit_mm
 from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import CRASHED, converted, put
 from .random_works import random_brush, random_cell, random_flags, random_svg
-from .verdict import broken, unlike, way_of
+from .verdict import Way, broken, unlike, way_of
 from .works import CELLS, PENS, job_for
 
 
@@ -63,10 +65,44 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
     wrong += broken(way, job)
     if not (cell.reload and cell.reload.when == "length") and max(job.servo_mm) <= 0.1:
         wrong += unlike(way, job)  # a stroke in loads is another plan, and a coarse servo another path
+    if any((job.machine or {}).get("backlash_mm", ())):
+        exact = put(folder / "exact.toml", write_cell(without_backlash(cell)))
+        twin = folder / f"exact{suffix}"
+        if said := converted(source, twin, "--cell", exact, *flags):
+            wrong.append(f"no program without backlash: {said}")
+        else:
+            of = job_for(
+                exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags
+            )
+            wrong += apart(way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell)
     asked = [word for flag in ("--brush", "--corners") for word in said_of(flags, flag)]
     denied = check(program, source, "--cell", toml, *asked)
     assert not any(CRASHED in said for said in denied), denied
     return Tried(dialect, number, (), tuple(wrong), tuple(denied))
+
+
+def without_backlash(cell):
+    return replace(cell, machine=replace(cell.machine, backlash_mm=(0.0, 0.0)))
+
+
+def apart(way: Way, exact: Way, cell) -> list[str]:
+    """What a machine with backlash paints elsewhere than one without that runs its own program. A brush that stands in
+    one place while play is taken up is in that place in both."""
+    # half of the backlash is rounded, so are centres of circles; a servo's parts are those of a way whose ends are
+    near_mm = unit_mm(cell) * (1.5 if cell.servo else 1.0) * 2**0.5 + CHORDS_MM
+    if len(way.touches) != len(exact.touches):
+        return [f"{len(way.touches)} touches, {len(exact.touches)} without backlash"]
+    lines = [shapely.LineString(each.samples[:, :2]) for each in (way, exact)]
+    touches = zip(way.touches, exact.touches, strict=True)
+    for number, both in enumerate(touches, 1):
+        for touch, line in zip(both, lines[::-1], strict=True):
+            far_mm = shapely.distance(shapely.points(touch[:, :2]), line).max()
+            if far_mm > near_mm:
+                return [f"touch {number} is {far_mm:.4g} mm from where it is without backlash"]
+    return []
+
+
+CHORDS_MM = 2e-4  # of the judge's own chords of circles
 
 
 def said_of(flags: tuple[str, ...], name: str) -> tuple[str, ...]:

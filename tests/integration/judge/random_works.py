@@ -118,7 +118,13 @@ def random_cell(random, dialect: str):
     if random.random() < 0.5 and dialect != "hpgl":
         cell = _with_paint(random, cell)
     (apart,) = random.spawn(1)  # so that all else is as it is on machines that go where they are told to
-    return replace(cell, machine=_machine(apart, dialect)) if apart.random() < 0.5 else cell
+    if apart.random() < 0.5:
+        cell = replace(cell, machine=_machine(apart, dialect))
+    (apart,) = apart.spawn(1)
+    if dialect in ROBOTS or dialect == "ebb" or apart.random() < 0.5:
+        return cell
+    found = np.round(apart.uniform(0.05, 0.6, 2) * apart.choice(((1, 1), (1, 1), (1, 0), (0, 1))), 3)
+    return replace(cell, machine=replace(cell.machine or Machine(), backlash_mm=tuple(found.tolist())))
 
 
 NEVER_SLOWER = (

@@ -24,6 +24,7 @@ from .hpgl import run_hpgl
 from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
+from .play import with_play
 from .printer import Pen, run_printer
 from .rapid import run_rapid
 from .ros2 import run_ros2
@@ -141,6 +142,12 @@ class Job:
         return tuple(places.moved(self.paper, places.told_in_air(end, height, self.machine)[None])[0])
 
     def interpret(self, text: str) -> Run:
+        """As the tool goes, on axes that have play."""
+        run = self._interpreted(text)
+        backlash_mm = (self.machine or {}).get("backlash_mm", (0.0, 0.0))
+        return with_play(run, backlash_mm) if any(backlash_mm) else run
+
+    def _interpreted(self, text: str) -> Run:
         if robot := ROBOTS.get(self.language):
             more = [self.cell["blending"].get("ramp_s", 0.5)] if self.language == "fanuc" else []
             more += [
@@ -300,6 +307,7 @@ def _fast(way: Way, job: Job):
     speeds = np.array([legs[k].speed_mm_s for k in way.leg])
     low = np.minimum(way.starts[:, 2], way.ends[:, 2]) <= job.touch_mm
     still = np.linalg.norm(way.ends - way.starts, axis=1) < 1e-6
+    still &= ~np.array([legs[k].takes_up for k in way.leg], dtype=bool)
     fast = (
         low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01))
     )

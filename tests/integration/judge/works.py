@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import CONTACT_BY, Contact, Paper, Reload, Station
+from brushsvg.machine.cell import CONTACT_BY, Contact, Machine, Paper, Reload, Station, why_no_backlash
 from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import converted, put
@@ -70,7 +70,10 @@ def _with_arcs(cell):
 
 
 def _turned(cell):
-    """On paper that lies askew, and higher; arms that can feel stop where the tool is pressed."""
+    """On paper that lies askew, and higher; arms that can feel stop where the tool is pressed, other axes have
+    backlash."""
+    if not why_no_backlash(cell):
+        cell = replace(cell, machine=Machine(backlash_mm=(0.4, 0.25)))
     if by := CONTACT_BY.get(cell.language):
         cell = replace(cell, contact=Contact(**{by: 3 if by == "sensitivity" else 12.5}))
     if cell.language in FLAT:

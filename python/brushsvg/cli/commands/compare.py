@@ -7,6 +7,7 @@ from dataclasses import replace
 from ...errors import Error, Notice
 from ...evaluation import report as figures
 from ...files import read_bytes
+from ...machine.cell import axes_along_paper
 from ...machine.cell_file import parse_cell, write_cell
 from ...painted.corrections import (
     aside_before_mm,
@@ -31,7 +32,7 @@ def compare_files(args) -> None:
     from ...painted.ends import ends_of
     from ...painted.faults import whose_fault
     from ...painted.job_page import job_page
-    from ...painted.mended_cell import mended
+    from ...painted.mended_cell import mended, sure
     from ...painted.next_time import farther, next_corrections
     from ...painted.picture import comparison_png
     from ...painted.report import Made, as_json, as_text
@@ -66,12 +67,13 @@ def compare_files(args) -> None:
     beyond = farther(found, aside_before_mm(args.corrections)) if args.corrections else []
     warn(args.photos[0], [*found.notices, *too_far, *beyond])
     cell = work.options.cell
-    machine = mended(faults, found.middle_mm, cell.machine) if faults else None
+    along = axes_along_paper(cell) if cell else None
+    machine = mended(faults, found.middle_mm, cell.machine, along) if faults else None
     title = work.title or "untitled"
     files = {}
     beside = None
     if machine and faults:
-        rest = left_beside(found, faults, told, work.brush, strokes)
+        rest = left_beside(found, sure(faults, cell.machine, along), told, work.brush, strokes)
         beside = machine_sha256(machine), next_corrections(rest, work.plan, before, work.brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = Made(work.brush.sha256, work.plan.brush_sha256, machine_sha256(undone))

@@ -57,17 +57,20 @@ class Act(NamedTuple):
 
 @dataclass
 class ReadSection:
-    """What stands under one of our comments, in a line of the file, from 1."""
+    """What stands under one of our comments, in a line of the file, from 1. taking_up: steps on which the tool stands,
+    since an axis only takes up its play."""
 
     title: str
     line: int = 0
     steps: list[Step] = field(default_factory=list)
+    taking_up: list[Step] = field(default_factory=list)
 
 
 @dataclass
 class Readback:
     """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
-    it first moves; rises_mm: heights to which it goes straight from wherever the tool is.
+    it first moves; rises_mm: heights to which it goes straight from wherever the tool is; unsure: lines behind which an
+    axis may be anywhere in its backlash, as it was before the program.
 
     in_paper_frame: points are the paper's; else the robot's. blends_by_radius: each move says how far before its end
     the next one may begin; else joint_mm holds for all corners.
@@ -80,6 +83,7 @@ class Readback:
     acts: list[Act] = field(default_factory=list)
     modes: frozenset[str] | None = None
     rises_mm: list[float] = field(default_factory=list)
+    unsure: set[int] = field(default_factory=set)
 
     def section(self) -> ReadSection:
         """The one being read."""
@@ -139,7 +143,8 @@ def _of_letter(letter: str, line: int) -> str:
 
 
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
-    """What a program of the cell's language does. Error with the line for what brushsvg would not have written."""
+    """What a program of the cell's language does, its places those where a machine with the cell's backlash goes. Error
+    with the line for what brushsvg would not have written."""
     from ...machine.posts import POSTS
 
     post = POSTS.get(cell.language)
@@ -160,7 +165,13 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
                 code="line-unread",
             )
-    return _READERS[cell.language](text, cell)
+    return _as_gone(_READERS[cell.language](text, cell), cell)
+
+
+def _as_gone(read: Readback, cell: Cell) -> Readback:
+    from .play import as_gone
+
+    return as_gone(read, cell)
 
 
 _HUGE = re.compile(
