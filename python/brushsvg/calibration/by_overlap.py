@@ -29,12 +29,9 @@ from ..geometry.rotation import rotation
 from .from_marks import MarkCalibration, brush_of, front_ratio, widest_ratio
 from .lag_by_outlines import Placed, PlacedMark
 
-SHIFTED = (
-    0.5  # share of the overlap with each mark moved: 0 paints too wide, 1 says nothing of where marks lie
-)
-FARTHEST = (
-    2.0  # how far a mark may move for it, in standard deviations of what displacements are expected to be
-)
+# Share of the overlap with each mark moved: 0 paints too wide, 1 says nothing of where marks lie
+SHIFTED = 0.5
+FARTHEST = 2.0  # how far, in standard deviations of what displacements are expected to be
 PIXEL, MARGIN_MM = 1 / 6, 8.0  # of the pictures: half widths of the deepest mark, around way and paint
 FEW = 30  # marks on which the search begins
 # How far overlaps of single marks scatter, and beyond what a footprint is not called round, in half widths: length
