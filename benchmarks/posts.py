@@ -44,9 +44,11 @@ def tried_with(name: str) -> tuple:
 
 
 def roomy(name: str):
-    """The cell with room for the page, wherever its example paper lies."""
+    """The cell with room for the page, wherever its example paper lies; its arm, if any, is not followed."""
     cell = find_cell(name)
-    return replace(cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg))
+    return replace(
+        cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg), arm=None
+    )
 
 
 def write(name: str, plan, brush) -> int:

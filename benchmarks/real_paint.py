@@ -1,12 +1,12 @@
 """Brushes fitted to strokes that robots painted, and how well they predict strokes they have not seen.
 
-    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings]
+    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings] [--tilt]
 
 A set is a file NAME.npz of FOLDER, all of them unless --sets says which. Its arrays: `intensity` (strokes, rows,
 columns), pixels that are paint above 70, `z_range_m`, and either `ctrl` (strokes, 4, 3 or more), control points of a
-cubic with x, y [m] and depth [shares of z_range_m], with `poses` (how many places the robot went through, else 10),
-`x_range`, `y_range` [m] and `grid_m`; or `path` (strokes, 4, 3 or more), places that a spline goes through, with
-`canvas_w_m` and `canvas_h_m`.
+cubic with x, y [m], depth [shares of z_range_m] and tilt [rad], with `poses` (how many places the robot went
+through, else 10), `x_range`, `y_range` [m] and `grid_m`; or `path` (strokes, 4, 3 or more), places that a spline goes
+through, with `canvas_w_m` and `canvas_h_m`.
 
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
@@ -22,6 +22,10 @@ with the machine's numbers beside: lean 2, axes 3, which `overlap` leaves as edg
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
 both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
+
+--tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted. Which way a positive tilt leans
+the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two numbers, found on the
+strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another point than its tip.
 """
 
 from __future__ import annotations
@@ -73,6 +77,7 @@ class Stroke:
     paint: np.ndarray
     window: tuple  # x y width height, mm
     px: float
+    tilt_rad: float = 0.0
 
 
 def load(folder: Path, name: str) -> list[Stroke]:
@@ -91,6 +96,7 @@ def load(folder: Path, name: str) -> list[Stroke]:
         depth = np.interp(t, np.linspace(0, 1, 4), ctrl[:, 2]) * deep if deep else np.ones(count)
         poses = np.column_stack([xy, -np.maximum(depth, 0)])
         out.append(_stroke(poses, paint, (x0, y0, x1 - x0, y1 - y0), px))
+        out[-1].tilt_rad = float(ctrl[:, 3].mean()) if ctrl.shape[1] > 3 else 0.0
     return out
 
 
@@ -329,14 +335,57 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     return poses
 
 
-def our_marks(strokes, fit, options) -> list[np.ndarray]:
+def _moved(stroke: Stroke, fit) -> _core.Pass:
+    """The same where the fit found paper and sheet to lie."""
+    return _core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
+
+
+def our_marks(strokes, fit, options, led=_moved) -> list[np.ndarray]:
     brush = brush_for(strokes, fit, options)
     plan, out = _core.Plan("fitted", "", (1.0, 1.0), []), []
     for stroke in strokes:
-        plan.passes = [_core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))]
+        plan.passes = [led(stroke, fit)]
         marks = _core.simulate(plan, brush)
         out.append(_core.coverage(marks, brush, stroke.window, 1 / stroke.px) > 0.5)
     return out
+
+
+def tilt_words(seen, unseen, fit, options):
+    def leant(towards):
+        def led(stroke, fit):
+            one = _moved(stroke, fit)
+            axis = [*(np.sin(stroke.tilt_rad) * np.array(towards)), np.cos(stroke.tilt_rad)]
+            one.tool_axes = np.tile(axis, (len(one.poses_mm), 1))
+            return one
+
+        return led
+
+    def moved_by(lever_mm):
+        def led(stroke, fit):
+            one = _moved(stroke, fit)
+            one.poses_mm = one.poses_mm + np.tan(stroke.tilt_rad) * np.array([*lever_mm, 0.0])
+            return one
+
+        return led
+
+    def score(strokes, led) -> float:
+        return float(scores(strokes, our_marks(strokes, fit, options, led))[0].mean())
+
+    def told(what, led):
+        return f"{what:22s} fixed {score(unseen, led):.4f}  ({score(seen, led):.4f} on the strokes fitted)"
+
+    yield told("upright", _moved)
+    for what, towards in (("+x", (1, 0)), ("-x", (-1, 0)), ("+y", (0, 1)), ("-y", (0, -1))):
+        yield told(f"tilted towards {what}", leant(towards))
+    found = minimize(
+        lambda lever: -score(seen, moved_by(lever)),
+        np.zeros(2),
+        method="Nelder-Mead",
+        options={"initial_simplex": [[0, 0], [8, 0], [0, 8]], "maxfev": 50, "xatol": 0.2, "fatol": 1e-4},
+    )
+    x, y = found.x
+    yield told(f"lever {x:.1f}, {y:.1f} mm", moved_by(found.x))
+    yield told("the same, other sign", moved_by(-found.x))
 
 
 def picture(strokes, predicted, shifts, score, path: Path) -> None:
@@ -444,6 +493,7 @@ def main():
     arguments.add_argument("--ceilings", action="store_true")
     arguments.add_argument("--pictures", type=Path)
     arguments.add_argument("--no-peers", action="store_true")
+    arguments.add_argument("--tilt", action="store_true")
     arguments.add_argument("--machine", metavar="PARTS", type=_parts, default=(), help="lean,axes")
     args = arguments.parse_args()
     for name in args.sets or sorted(path.stem for path in args.folder.glob("*.npz")):
@@ -482,6 +532,9 @@ def main():
             f"{found.overlap:.3f} on the strokes fitted; {found.numbers} numbers)",
             flush=True,
         )
+        if args.tilt and any(stroke.tilt_rad for stroke in strokes):
+            for line in tilt_words(seen, unseen, best, options):
+                print(f"    {line}", flush=True)
         for what, one in (("edges", fit), ("overlap", best)):
             print(f"    {what}: {laws_in_words(one)}")
         for line in [*residual_words(unseen, best, options), *fit.remarks]:

@@ -18,7 +18,9 @@ auto column(std::vector<T> brushsvg::PassMarks::* member) {
 void bind_marks(py::module_& m) {
     using namespace brushsvg;
     py::class_<PassMarks> one(m, "PassMarks",
-                              "What the patch does during one pass; parallel rows (mm, rad), read only.");
+                              R"(What the patch does during one pass; parallel rows (mm, rad), read only.
+
+lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.)");
     one.def(py::init<>())
         .def_readwrite("stroke", &PassMarks::stroke)
         .def_property_readonly("pose", column(&PassMarks::pose))
@@ -33,6 +35,7 @@ void bind_marks(py::module_& m) {
                                    return as_typed<py::array_t<bool>>(frozen(out));
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
+        .def_property_readonly("lean_mm_per_mm", [](const PassMarks& p) -> const Ring& { return p.lean_mm_per_mm; })
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
                       [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); })
         .def("__repr__", [](const PassMarks& p) {

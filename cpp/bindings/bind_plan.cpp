@@ -28,22 +28,25 @@ poses_mm: (n, 3) x, y, z = -depth [mm], straight moves in between, depth linear 
 to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
 the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
 load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
-file, as JSON.)");
+file, as JSON. tool_axes: (n, 3) of each pose the unit vector from the tip up along the brush, in the frame of the paper,
+tilted by at most 30 degrees; empty for a brush that is upright; given, read and replaced as poses_mm.)");
     one.def(py::init([](StrokeId stroke, Poses poses_mm, double speed_mm_s, std::string layer, std::string colour,
-                        Settings settings, std::string extra, std::vector<Arc> arcs, int load) {
+                        Settings settings, std::string extra, std::vector<Arc> arcs, int load, Poses tool_axes) {
                 return Pass{std::move(stroke), std::move(poses_mm), std::move(arcs),     speed_mm_s,
                             std::move(layer),  std::move(colour),   std::move(settings), load,
-                            std::move(extra)};
+                            std::move(extra),  std::move(tool_axes)};
             }),
             py::arg("stroke") = "", py::arg("poses_mm") = Poses(0, 3), py::arg("speed_mm_s") = 20.0,
             py::arg("layer") = "", py::arg("colour") = "", py::arg("settings") = Settings{}, py::arg("extra") = "{}",
-            py::arg("arcs") = std::vector<Arc>{}, py::arg("load") = 0)
+            py::arg("arcs") = std::vector<Arc>{}, py::arg("load") = 0, py::arg("tool_axes") = Poses(0, 3))
         .def_property(
             "stroke", [](const Pass& p) { return p.stroke.name(); },
             [](Pass& p, StrokeId stroke) { p.stroke = std::move(stroke); })
         .def_property_readonly("origin", [](const Pass& p) { return p.stroke; })
         .def_property(
             "poses_mm", [](const Pass& p) -> const Poses& { return p.poses_mm; }, replace(&Pass::poses_mm))
+        .def_property(
+            "tool_axes", [](const Pass& p) -> const Poses& { return p.tool_axes; }, replace(&Pass::tool_axes))
         .def_property("arcs", frozen_copy(&Pass::arcs),
                       [](Pass& p, std::vector<Arc> arcs) { p.arcs = std::move(arcs); })
         .def_readwrite("speed_mm_s", &Pass::speed_mm_s)
@@ -62,8 +65,9 @@ file, as JSON.)");
                 deepest = std::max(deepest, -p.poses_mm(i, 2));
             }
             return "<Pass " + quoted(p.stroke.name()) + ": " + counted(std::size_t(n), "pose") +
-                   (p.arcs.empty() ? "" : ", " + counted(p.arcs.size(), "arc")) + ", " + told(length) +
-                   " mm long, at most " + told(deepest) + " mm deep, " + told(p.speed_mm_s) + " mm/s>";
+                   (p.arcs.empty() ? "" : ", " + counted(p.arcs.size(), "arc")) + (is_tilted(p) ? ", tilted" : "") +
+                   ", " + told(length) + " mm long, at most " + told(deepest) + " mm deep, " + told(p.speed_mm_s) +
+                   " mm/s>";
         });
     as_value(one);
     py::class_<Plan> plan(m, "Plan",
@@ -90,4 +94,13 @@ order, to be set as a whole; extra: unknown keys of the file, as JSON.)");
                    counted(poses, "pose") + ", sheet " + told(p.sheet_mm[0]) + " x " + told(p.sheet_mm[1]) + " mm>";
         });
     as_value(plan);
+    m.def(
+        "refuse_tilted",
+        [](const std::vector<Pass>& passes, const std::string& upright) {
+            for (const Pass& pass : passes) refuse_tilted(pass, upright);
+        },
+        py::arg("passes"), py::arg("upright"),
+        R"(Error for the first pass whose brush is not upright everywhere.
+
+upright: who keeps it upright, as the sentence begins: "cell ur5e holds the brush upright".)");
 }

@@ -74,7 +74,7 @@ template <>
 inline constexpr auto members<brushsvg::Pass> =
     std::tuple(&brushsvg::Pass::stroke, &brushsvg::Pass::poses_mm, &brushsvg::Pass::arcs, &brushsvg::Pass::speed_mm_s,
                &brushsvg::Pass::layer, &brushsvg::Pass::colour, &brushsvg::Pass::settings, &brushsvg::Pass::load,
-               &brushsvg::Pass::extra);
+               &brushsvg::Pass::extra, &brushsvg::Pass::tool_axes);
 
 template <>
 inline constexpr auto members<brushsvg::Plan> =
@@ -85,7 +85,8 @@ template <>
 inline constexpr auto members<brushsvg::PassMarks> =
     std::tuple(&brushsvg::PassMarks::stroke, &brushsvg::PassMarks::pose, &brushsvg::PassMarks::tcp_mm,
                &brushsvg::PassMarks::contact_mm, &brushsvg::PassMarks::heading_rad, &brushsvg::PassMarks::depth_mm,
-               &brushsvg::PassMarks::taut, &brushsvg::PassMarks::pull, &brushsvg::PassMarks::outline_mm);
+               &brushsvg::PassMarks::taut, &brushsvg::PassMarks::pull, &brushsvg::PassMarks::lean_mm_per_mm,
+               &brushsvg::PassMarks::outline_mm);
 
 template <>
 inline constexpr auto members<brushsvg::Marks> = std::tuple(&brushsvg::Marks::passes, &brushsvg::Marks::outline_mm);

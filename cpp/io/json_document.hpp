@@ -2,6 +2,8 @@
 
 // Private to brushsvg::io: from a text to a JSON document that is well formed, of the right format and version.
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string>
@@ -30,7 +32,7 @@ struct PassRows {
 /// and collects the rows of passes.
 class Watcher {
  public:
-    explicit Watcher(PassRows* rows) : rows_(rows) {}
+    explicit Watcher(std::vector<PassRows>* tables) : tables_(tables) {}
 
     Json parse(const std::string& text) {
         return Json::parse(text, [this](int, Json::parse_event_t event, Json& parsed) { return see(event, parsed); });
@@ -93,15 +95,18 @@ class Watcher {
     }
 
     bool collect(const Json& row) {
-        if (rows_ == nullptr || levels_.size() != 4 || levels_[0].key != "passes" || !levels_[1].is_array ||
-            levels_[2].key != rows_->key || !levels_[3].is_array) {
+        if (tables_ == nullptr || levels_.size() != 4 || levels_[0].key != "passes" || !levels_[1].is_array ||
+            !levels_[3].is_array) {
             return false;
         }
+        const auto rows = std::find_if(tables_->begin(), tables_->end(),
+                                       [&](const PassRows& each) { return each.key == levels_[2].key; });
+        if (rows == tables_->end()) return false;
         const std::size_t pass = levels_[1].index;
-        if (rows_->values.size() <= pass) rows_->values.resize(pass + 1);
-        std::vector<double>& values = rows_->values[pass];
+        if (rows->values.size() <= pass) rows->values.resize(pass + 1);
+        std::vector<double>& values = rows->values[pass];
         // Rows after a misshapen one stay too, so that it keeps its number.
-        if (row.size() != rows_->width || values.size() != levels_[3].index * rows_->width) return false;
+        if (row.size() != rows->width || values.size() != levels_[3].index * rows->width) return false;
         for (const Json& value : row) {
             if (!value.is_number()) return false;
         }
@@ -109,7 +114,7 @@ class Watcher {
         return true;
     }
 
-    PassRows* rows_;
+    std::vector<PassRows>* tables_;
     std::vector<Level> levels_;
 };
 
@@ -152,9 +157,16 @@ inline std::string reason_of(const std::string& message) {
     return reason.substr(0, reason.find("; last read"));
 }
 
-/// Parses a text that must be one JSON object with this format and version 1.
-inline Fields parse_document(const std::string& text, const std::string& format, PassRows* rows = nullptr) {
-    Watcher watcher(rows);
+/// A JSON document of one of our formats.
+struct Document {
+    Fields fields;
+    int version;
+};
+
+/// Parses a text that must be one JSON object with this format, of version 1 up to the newest one.
+inline Document parse_versions(const std::string& text, const std::string& format, int newest,
+                               std::vector<PassRows>* tables) {
+    Watcher watcher(tables);
     Json document;
     try {
         document = watcher.parse(text);
@@ -173,12 +185,19 @@ inline Fields parse_document(const std::string& text, const std::string& format,
                      "the file calls itself " + found.value.dump() + ", where \"" + format + "\" is needed");
     }
     const Field version = fields.take("version");
-    if (number(version) != 1.0) {
+    const double told = number(version);
+    if (!(told >= 1.0 && told <= newest && told == std::floor(told))) {
         throw Error("version-unknown",
-                    "version " + version.value.dump() + " of " + format + " is not known; this program reads version 1",
-                    version.path, number(version));
+                    "version " + version.value.dump() + " of " + format + " is not known; this program reads version" +
+                        (newest == 1 ? " 1" : "s 1 to " + std::to_string(newest)),
+                    version.path, told);
     }
-    return fields;
+    return {std::move(fields), static_cast<int>(told)};
+}
+
+/// Of a format that has had one version.
+inline Fields parse_document(const std::string& text, const std::string& format) {
+    return parse_versions(text, format, 1, nullptr).fields;
 }
 
 /// The JSON object in a value type's `extra` or `settings`; none of its keys may be one the writer itself writes.

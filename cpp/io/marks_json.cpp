@@ -1,7 +1,10 @@
 #include "marks_json.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "brushsvg/plan.hpp"
 #include "json_document.hpp"
 #include "json_fields.hpp"
 #include "json_text.hpp"
@@ -10,6 +13,7 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/marks";
+constexpr int kLeaning = 2;  // the version that says how a tilted brush leans; others are written without
 
 /// Rows are parallel, read or about to be written. `path`: of the pass.
 void require_parallel(const PassMarks& pass, const std::string& path) {
@@ -24,6 +28,7 @@ void require_parallel(const PassMarks& pass, const std::string& path) {
     require("heading_rad", pass.heading_rad.size());
     require("depth_mm", pass.depth_mm.size());
     require("taut", pass.taut.size());
+    if (pass.lean_mm_per_mm.rows() > 0) require("lean_mm_per_mm", static_cast<std::size_t>(pass.lean_mm_per_mm.rows()));
 }
 
 void require_within(const std::vector<double>& values, const std::string& path, double least, double greatest) {
@@ -35,6 +40,19 @@ void require_within(const std::vector<double>& values, const std::string& path, 
                         path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
 }
 
+/// No brush is tilted farther than a plan may say.
+void require_lean(const PassMarks& pass, const std::string& path) {
+    static const double most = std::tan(kMostTiltDeg * std::acos(-1.0) / 180.0);
+    for (Eigen::Index i = 0; i < pass.lean_mm_per_mm.rows(); ++i) {
+        const double lean = pass.lean_mm_per_mm.row(i).norm();
+        if (!(lean <= most + 1e-6))  // written to seven decimals
+            throw Error("out-of-range",
+                        "row " + std::to_string(i) + " of stroke " + pass.stroke + " leans by " + in_words(lean) +
+                            " mm per mm, outside [0, " + in_words(most) + "]",
+                        path + "[" + std::to_string(i) + "]", lean, std::array<double, 2>{0.0, most});
+    }
+}
+
 Rings read_rings(Fields& fields) {
     Rings rings;
     if (auto field = fields.find("outline_mm")) {
@@ -43,20 +61,27 @@ Rings read_rings(Fields& fields) {
     return rings;
 }
 
-PassMarks read_pass(Field field, std::size_t index, const PassRows& rows) {
+PassMarks read_pass(Field field, std::size_t index, const std::vector<PassRows>& tables, int version) {
     const std::string path = field.path;
     Fields fields(std::move(field));
     PassMarks pass;
     pass.stroke = text(fields.take("stroke"));
     pass.pose = numbers(fields.take("pose"));
-    pass.contact_mm = rows.of_pass<Ring>(index, fields.take("contact_mm"), "two numbers [x, y]");
+    pass.contact_mm = tables[0].of_pass<Ring>(index, fields.take("contact_mm"), "two numbers [x, y]");
     pass.heading_rad = numbers(fields.take("heading_rad"));
     pass.depth_mm = numbers(fields.take("depth_mm"));
     for (const Field& value : members(fields.take("taut"))) pass.taut.push_back(truth(value) ? 1 : 0);
+    if (const auto lean = fields.find("lean_mm_per_mm")) {
+        if (version < kLeaning)
+            lean->refuse("version-unknown", "lean_mm_per_mm of stroke " + pass.stroke + " needs version 2 of " +
+                                                kFormat + "; the file says version 1");
+        pass.lean_mm_per_mm = tables[1].of_pass<Ring>(index, *lean, "two numbers [x, y]");
+    }
     pass.outline_mm = read_rings(fields);
     pass.pull.assign(pass.pose.size(), 1.0);
     require_parallel(pass, path);
     require_coordinates(pass.contact_mm, path + ".contact_mm");
+    require_lean(pass, path + ".lean_mm_per_mm");
     require_within(pass.pose, path + ".pose", 0.0, 1e9);
     require_within(pass.heading_rad, path + ".heading_rad", -kFarthestMm, kFarthestMm);
     require_within(pass.depth_mm, path + ".depth_mm", -kFarthestMm, kFarthestMm);
@@ -88,6 +113,10 @@ void append_pass(std::string& out, const PassMarks& pass, const std::string& pat
     append_column(out, "depth_mm", pass.depth_mm);
     out += ",\n     \"taut\": ";
     append_array(out, pass.taut.size(), 7, [&](std::size_t i) { out += pass.taut[i] != 0 ? "true" : "false"; });
+    if (pass.lean_mm_per_mm.rows() > 0) {
+        out += ",\n     \"lean_mm_per_mm\": ";
+        append_rows(out, pass.lean_mm_per_mm, 7, "lean_mm_per_mm");
+    }
     out += ",\n     \"outline_mm\": ";
     append_rings(out, pass.outline_mm, 7);
     out += '}';
@@ -96,18 +125,21 @@ void append_pass(std::string& out, const PassMarks& pass, const std::string& pat
 }  // namespace
 
 Marks read_marks(const std::string& text) {
-    PassRows rows{"contact_mm", 2, {}};
-    Fields fields = parse_document(text, kFormat, &rows);
+    std::vector<PassRows> tables{{"contact_mm", 2, {}}, {"lean_mm_per_mm", 2, {}}};
+    auto [fields, version] = parse_versions(text, kFormat, kLeaning, &tables);
     Marks marks;
     marks.outline_mm = read_rings(fields);
     for (Field& pass : members(fields.take("passes"))) {
-        marks.passes.push_back(read_pass(std::move(pass), marks.passes.size(), rows));
+        marks.passes.push_back(read_pass(std::move(pass), marks.passes.size(), tables, version));
     }
     return marks;
 }
 
 std::string write_marks(const Marks& marks) {
-    std::string out = std::string("{\n  \"format\": \"") + kFormat + "\",\n  \"version\": 1,\n  \"outline_mm\": ";
+    const bool leans = std::any_of(marks.passes.begin(), marks.passes.end(),
+                                   [](const PassMarks& pass) { return pass.lean_mm_per_mm.rows() > 0; });
+    std::string out = std::string("{\n  \"format\": \"") + kFormat +
+                      "\",\n  \"version\": " + std::to_string(leans ? kLeaning : 1) + ",\n  \"outline_mm\": ";
     append_rings(out, marks.outline_mm, 4);
     out += ",\n  \"passes\": [";
     for (std::size_t i = 0; i < marks.passes.size(); ++i) {

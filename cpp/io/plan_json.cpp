@@ -1,5 +1,6 @@
 #include "plan_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,9 +15,10 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/plan";
+constexpr int kTilting = 2;  // the version that says how the brush is tilted; others are written without
 const std::set<std::string> kPlanKeys{"format", "version", "brush", "brush_sha256", "sheet_mm", "passes"};
-const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs",     "speed_mm_s",
-                                      "layer",  "colour",   "settings", "load"};
+const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s", "layer",
+                                      "colour", "settings", "load", "tool_axes"};
 
 /// What holds for every pass, read or about to be written. `path`: of the pass; `slack_mm`: how far above the
 /// paper still counts as on it.
@@ -55,6 +57,7 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
                     path + ".load", pass.load);
     }
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, path + ".arcs[" + std::to_string(k) + "]");
+    check_tool_axes(pass, path + ".tool_axes");
 }
 
 /// [first pose, last pose, x and y of the centre, 1 or -1]
@@ -106,12 +109,18 @@ void append_settings(std::string& out, const Settings& settings, const std::stri
     append_json(out, said, path);
 }
 
-Pass read_pass(Field field, std::size_t index, const PassRows& rows) {
+Pass read_pass(Field field, std::size_t index, const std::vector<PassRows>& tables, int version) {
     const std::string path = field.path;
     Fields fields(std::move(field));
     Pass pass;
     pass.stroke = text(fields.take("stroke"));
-    pass.poses_mm = rows.of_pass<Poses>(index, fields.take("poses_mm"), "three numbers [x, y, z]");
+    pass.poses_mm = tables[0].of_pass<Poses>(index, fields.take("poses_mm"), "three numbers [x, y, z]");
+    if (auto axes = fields.find("tool_axes")) {
+        if (version < kTilting)
+            axes->refuse("version-unknown", "tool_axes of stroke " + pass.stroke.name() + " needs version 2 of " +
+                                                kFormat + "; the file says version 1");
+        pass.tool_axes = tables[1].of_pass<Poses>(index, *axes, "three numbers [x, y, z]");
+    }
     if (auto arcs = fields.find("arcs"))
         for (const Field& arc : members(std::move(*arcs))) pass.arcs.push_back(read_arc(arc));
     if (const auto speed = fields.find("speed_mm_s")) pass.speed_mm_s = number(*speed);
@@ -151,28 +160,35 @@ void append_pass(std::string& out, const Pass& pass, const std::string& path) {
     if (pass.load != 0) out += ",\n     \"load\": " + std::to_string(pass.load);
     out += ",\n     \"poses_mm\": ";
     append_rows(out, pass.poses_mm, 7, "poses_mm");
+    if (pass.tool_axes.rows() > 0) {
+        out += ",\n     \"tool_axes\": ";
+        append_rows(out, pass.tool_axes, 7, "tool_axes");
+    }
     out += '}';
 }
 
 }  // namespace
 
 Plan read_plan(const std::string& text) {
-    PassRows rows{"poses_mm", 3, {}};
-    Fields fields = parse_document(text, kFormat, &rows);
+    std::vector<PassRows> tables{{"poses_mm", 3, {}}, {"tool_axes", 3, {}}};
+    auto [fields, version] = parse_versions(text, kFormat, kTilting, &tables);
     Plan plan;
     plan.brush = io::text(fields.take("brush"));
     if (const auto digest = fields.find("brush_sha256")) plan.brush_sha256 = io::text(*digest);
     plan.sheet_mm = pair(fields.take("sheet_mm"));
     check_sheet(plan.sheet_mm);
     for (Field& pass : members(fields.take("passes"))) {
-        plan.passes.push_back(read_pass(std::move(pass), plan.passes.size(), rows));
+        plan.passes.push_back(read_pass(std::move(pass), plan.passes.size(), tables, version));
     }
     plan.extra = fields.extra();
     return plan;
 }
 
 std::string write_plan(const Plan& plan) {
-    std::string out = std::string("{\n  \"format\": \"") + kFormat + "\",\n  \"version\": 1,\n  \"brush\": ";
+    const bool tilts =
+        std::any_of(plan.passes.begin(), plan.passes.end(), [](const Pass& pass) { return pass.tool_axes.rows() > 0; });
+    std::string out = std::string("{\n  \"format\": \"") + kFormat +
+                      "\",\n  \"version\": " + std::to_string(tilts ? kTilting : 1) + ",\n  \"brush\": ";
     append_string(out, plan.brush, "brush");
     out += ",\n  \"brush_sha256\": ";
     append_string(out, plan.brush_sha256, "brush_sha256");

@@ -123,6 +123,7 @@ void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
     for (const Pass& pass : plan.passes) {
         const std::string where = pass.stroke.name();
         if (pass.poses_mm.rows() == 0) throw Error("pass-empty", "the pass has no poses", where);
+        refuse_tilted(pass, "a machine of three axes holds the brush upright");
         require_inside(pass, cell, plan.sheet_mm);
         const double deepest_mm = -pass.poses_mm.col(2).minCoeff();
         require(deepest_mm, {0.0, brush.depth_range_mm[1]}, "the depth", "mm", where);

@@ -52,6 +52,7 @@ Eigen::RowVector3d on_arc(const Arc& arc, const Pass& pass, Index pose, double s
 Fine refined(const Pass& pass, double between_mm) {
     const Index count = pass.poses_mm.rows();
     Fine out{pass, {}};
+    out.pass.tool_axes.resize(0, 3);  // upright, as are all that are parted
     std::vector<Eigen::RowVector3d> poses;
     std::vector<Index> at;
     for (Index i = 0; i < count; ++i) {
@@ -144,6 +145,7 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintL
         throw Error("load-too-short", "paint must last for more than twice the backtrack", pass.stroke,
                     options.every_mm);
     require_usable(brush);
+    refuse_tilted(pass, "strokes are parted into loads of paint for an upright brush");
     if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     const auto refuse_often = [&](double loads) {

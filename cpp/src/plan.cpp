@@ -1,5 +1,6 @@
 #include "brushsvg/plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -15,6 +16,8 @@ constexpr double kSameDepthMm = 1e-6;
 /// Nearer to half a turn than this the direction of a chord no longer tells on which side the arc lies.
 constexpr double kAlmostHalfTurnRad = 1e-6;
 
+constexpr double kPi = 3.14159265358979323846;
+
 constexpr double kLargestSheetMm = 1e6;  // as files and strokes have it
 
 template <class... Numbers>
@@ -23,6 +26,8 @@ std::string text_of(const char* format, Numbers... numbers) {
     std::snprintf(text, sizeof text, format, numbers...);
     return text;
 }
+
+double tilt_deg(const Eigen::RowVector3d& axis) { return std::atan2(axis.head<2>().norm(), axis.z()) * 180.0 / kPi; }
 
 }  // namespace
 
@@ -76,6 +81,47 @@ void check_arc(const Pass& pass, std::size_t k, const std::string& where) {
             refuse(text_of("does not go %s from pose %lld to pose %lld by less than 180 degrees",
                            arc.direction > 0 ? "counter-clockwise" : "clockwise", at - 1, at));
     }
+}
+
+void check_tool_axes(const Pass& pass, const std::string& where) {
+    const Poses& axes = pass.tool_axes;
+    if (axes.rows() == 0) return;
+    const std::string stroke = "stroke " + pass.stroke.name();
+    if (axes.rows() != pass.poses_mm.rows())
+        throw Error("sizes-differ",
+                    "tool_axes of " + stroke + " has " + std::to_string(axes.rows()) + " rows where poses_mm has " +
+                        std::to_string(pass.poses_mm.rows()),
+                    where);
+    if (!pass.arcs.empty())
+        throw Error("arc-invalid", stroke + " has tool_axes and arcs: a tilted brush is led on straight moves", where);
+    for (Eigen::Index i = 0; i < axes.rows(); ++i) {
+        const std::string row = "row " + std::to_string(i) + " of tool_axes of " + stroke;
+        const double length = axes.row(i).norm();
+        if (!(std::abs(length - 1.0) <= kUnitLength))
+            throw Error("tool-axis-invalid",
+                        row + text_of(" has length %.6g, outside the range [%g, %g]", length, 1.0 - kUnitLength,
+                                      1.0 + kUnitLength),
+                        where, length, std::array<double, 2>{1.0 - kUnitLength, 1.0 + kUnitLength});
+        const double tilt = tilt_deg(axes.row(i));
+        if (!(tilt <= kMostTiltDeg))
+            throw Error("tool-axis-invalid",
+                        row + text_of(" is tilted by %.4g degrees, outside the range [0, %g] degrees from upright",
+                                      tilt, kMostTiltDeg),
+                        where, tilt, std::array<double, 2>{0.0, kMostTiltDeg});
+    }
+}
+
+bool is_tilted(const Pass& pass) {
+    return pass.tool_axes.rows() > 0 &&
+           !(pass.tool_axes.leftCols<2>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 0.0);
+}
+
+void refuse_tilted(const Pass& pass, const std::string& upright) {
+    if (!is_tilted(pass)) return;
+    double most = 0.0;
+    for (const auto& axis : pass.tool_axes.rowwise()) most = std::max(most, tilt_deg(axis));
+    throw Error("tilt-unsupported", upright + text_of(", and this stroke tilts it by up to %.4g degrees", most),
+                pass.stroke, most, std::array<double, 2>{0.0, 0.0});
 }
 
 }  // namespace brushsvg

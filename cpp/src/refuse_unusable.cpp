@@ -89,11 +89,13 @@ void require_usable(const PassMarks& marks) {
     const std::size_t rows = marks.pose.size();
     const auto parallel = [rows](auto count) { return std::size_t(count) == rows; };
     if (!parallel(marks.contact_mm.rows()) || !parallel(marks.heading_rad.size()) || !parallel(marks.depth_mm.size()) ||
-        !parallel(marks.taut.size()) || !parallel(marks.pull.size()))
+        !parallel(marks.taut.size()) || !parallel(marks.pull.size()) ||
+        (marks.lean_mm_per_mm.rows() > 0 && !parallel(marks.lean_mm_per_mm.rows())))
         throw Error("sizes-differ", "the rows of the marks are not parallel: some columns are shorter than others",
                     marks.stroke);
     const auto sound = [](double x) { return std::abs(x) <= kFarthestPaintedMm; };
     if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm)) ||
+        (marks.lean_mm_per_mm.rows() > 0 && !marks.lean_mm_per_mm.allFinite()) ||
         !std::all_of(marks.heading_rad.begin(), marks.heading_rad.end(), sound) ||
         !std::all_of(marks.depth_mm.begin(), marks.depth_mm.end(), sound) ||
         !std::all_of(marks.pull.begin(), marks.pull.end(), sound))

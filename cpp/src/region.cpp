@@ -1,5 +1,6 @@
 #include "brushsvg/region.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/polygon/polygon.hpp>
 #include <cmath>
@@ -92,7 +93,6 @@ void require_outer_rings(const Rings& rings) {
 
 /// Rings that are already disjoint, holes included.
 Set to_set(const Rings& rings) {
-    require_outer_rings(rings);
     Set set;
     for (const Ring& ring : rings) {
         if (ring.rows() < 3) continue;
@@ -301,6 +301,46 @@ Rings filled_by(const Rings& outlines, FillRule rule) {
     return to_rings(filled);
 }
 
+/// Which of the four sides of a window a corner lies beyond, a bit each.
+int beyond_sides(const Eigen::RowVector2d& corner, const Eigen::AlignedBox2d& window) {
+    return (corner.x() < window.min().x()) | (corner.x() > window.max().x()) << 1 |
+           (corner.y() < window.min().y()) << 2 | (corner.y() > window.max().y()) << 3;
+}
+
+/// The ring without corners between two others that lie beyond the same side of a window: in the window nothing
+/// changes.
+Ring seen_in(const Ring& ring, const Eigen::AlignedBox2d& window) {
+    std::vector<Eigen::Index> kept;
+    int last = 0;
+    for (Eigen::Index i = 0; i < ring.rows(); ++i) {
+        const int side = beyond_sides(ring.row(i), window);
+        const int next = i + 1 < ring.rows() ? beyond_sides(ring.row(i + 1), window) : 0;
+        if (last & side & next) continue;
+        kept.push_back(i);
+        last = side;
+    }
+    if (kept.size() == std::size_t(ring.rows())) return ring;
+    Ring out(Eigen::Index(kept.size()), 2);
+    for (Eigen::Index k = 0; k < out.rows(); ++k) out.row(k) = ring.row(kept[std::size_t(k)]);
+    // far outside it may cross itself, and run the other way round all in all
+    return (signed_area(out) < 0.0) == (signed_area(ring) < 0.0) ? out : ring;
+}
+
+/// Of some rings what can meet others: a box is often held against a whole letter.
+Rings seen_near(const Rings& rings, const Rings& others) {
+    Eigen::AlignedBox2d window;
+    for (const Ring& ring : others)
+        for (Eigen::Index i = 0; i < ring.rows(); ++i) window.extend(ring.row(i).transpose());
+    Rings out;
+    if (window.isEmpty()) return out;
+    for (const Ring& ring : rings) {
+        Eigen::AlignedBox2d box;
+        for (Eigen::Index i = 0; i < ring.rows(); ++i) box.extend(ring.row(i).transpose());
+        if (box.intersects(window)) out.push_back(seen_in(ring, window));
+    }
+    return out;
+}
+
 Rings in_common(const Rings& a, const Rings& b) {
     using namespace bp::operators;
     const Set first = to_set(a), second = to_set(b);
@@ -311,6 +351,8 @@ Rings in_common(const Rings& a, const Rings& b) {
 
 double common_share(const Rings& a, const Rings& b) {
     using namespace bp::operators;
+    require_outer_rings(a);
+    require_outer_rings(b);
     const Set first = to_set(a), second = to_set(b);
     Set both;
     both = first & second;
@@ -329,7 +371,11 @@ Rings fill(const Rings& outlines, FillRule rule) {
     return heard([rule](const Rings& rings) { return filled_by(rings, rule); }, outlines);
 }
 
-Rings intersect(const Rings& a, const Rings& b) { return heard(in_common, a, b); }
+Rings intersect(const Rings& a, const Rings& b) {
+    require_outer_rings(a);
+    require_outer_rings(b);
+    return heard(in_common, seen_near(a, b), seen_near(b, a));
+}
 
 double area(const Rings& rings) {
     double sum = 0.0;

@@ -44,15 +44,61 @@ struct Extents {
     }
 };
 
+/// Poses nearer to each other than this on the paper are one place; files are rounded to 1e-7 mm.
+constexpr double kOnTheSpotMm = 1e-6;
+
+/// The way of the place where the brush's axis meets the paper, q + d s, which the patch trails: straight from pose to
+/// pose. An upright brush's axis is over its tip, and its way is that of the poses.
+///
+/// While its tip goes straight down on the paper, or up from it, a leaning brush's axis wanders over the paper. The
+/// patch trails it from where it is at the deepest: bristles that are pressed down would else fall the way that the
+/// brush leans however little it does, and real strokes (benchmarks/real_paint.py --tilt) lie worse so.
+struct AxisWay {
+    Ring lean{0, 2};  ///< per pose, s = (a_x, a_y) / a_z of the tool axis a; empty: upright
+    Poses poses_mm;
+
+    explicit AxisWay(const Pass& pass) : poses_mm(pass.poses_mm) {
+        if (pass.poses_mm.rows() == 0 || !is_tilted(pass)) return;
+        const Poses& tip = pass.poses_mm;
+        const Eigen::Index last = tip.rows() - 1;
+        lean = pass.tool_axes.leftCols<2>().array().colwise() / pass.tool_axes.col(2).array();
+        const Ring axis = tip.leftCols<2>().array() - lean.array().colwise() * tip.col(2).array();
+        poses_mm.leftCols<2>() = axis;
+        // from pose i to the next one on the spot: 1 up, -1 down, 0 elsewhere or not at all
+        const auto goes = [&](Eigen::Index i) {
+            const Eigen::RowVector3d way = tip.row(i + 1) - tip.row(i);
+            return way.head<2>().norm() > kOnTheSpotMm ? 0 : (way.z() > 0.0) - (way.z() < 0.0);
+        };
+        const auto hold = [&](Eigen::Index from, Eigen::Index to, Eigen::Index deepest) {
+            for (Eigen::Index i = from; i <= to; ++i) poses_mm.row(i).head<2>() = axis.row(deepest);
+        };
+        for (Eigen::Index i = 0; i <= last; ++i) {
+            Eigen::Index deepest = i;
+            if (tip(i, 2) >= 0.0 || i == last) {
+                while (deepest > 0 && goes(deepest - 1) > 0) --deepest;
+                hold(deepest, i, deepest);
+            }
+            deepest = i;
+            if (tip(i, 2) >= 0.0 || i == 0) {
+                while (deepest < last && goes(deepest) < 0) ++deepest;
+                if (deepest > i) hold(i, deepest, deepest);
+            }
+        }
+    }
+};
+
 class Tracer {
  public:
-    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, std::size_t poses, PassMarks& out)
+    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, const Pass& pass, const AxisWay& way,
+           PassMarks& out)
         : brush_(brush),
+          lean_(way.lean),
           law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
           extents_(brush),
           tolerance_(tolerance_mm),
           for_outlines_(for_outlines),
-          most_rows_(kMostRows + kMostRowsPerPose * poses),
+          most_rows_(kMostRows + kMostRowsPerPose * std::size_t(pass.poses_mm.rows())),
+          poses_mm_(pass.poses_mm),
           out_(out) {
         kinks_ = extents_.depth;
         for (const Profile* profile : {&brush.tip_gap, &brush.tip_to_widest})
@@ -90,6 +136,12 @@ class Tracer {
         const Eigen::Index n = Eigen::Index(out_.pose.size());
         out_.tcp_mm = Eigen::Map<const Ring>(tcp_.data(), n, 2);
         out_.contact_mm = Eigen::Map<const Ring>(contact_.data(), n, 2);
+        if (lean_.rows() == 0) return;
+        out_.lean_mm_per_mm.resize(n, 2);
+        for (Eigen::Index i = 0; i < n; ++i) {  // what was followed was the axis on the paper, not the tip
+            out_.tcp_mm.row(i) = between_poses(poses_mm_.leftCols<2>(), out_.pose[std::size_t(i)]);
+            out_.lean_mm_per_mm.row(i) = between_poses(lean_, out_.pose[std::size_t(i)]);
+        }
     }
 
  private:
@@ -105,10 +157,19 @@ class Tracer {
         add(t, q, -z, away, 0.0);
     }
 
+    /// Rows of one table per pose, at an index with fractions.
+    template <class Table>
+    static Eigen::RowVector2d between_poses(const Table& table, double pose) {
+        const auto i = std::min(Eigen::Index(pose), table.rows() - 1), next = std::min(i + 1, table.rows() - 1);
+        const double share = pose - double(i);
+        return (1.0 - share) * table.row(i) + share * table.row(next);
+    }
+
     /// What the footprint looks like at one instant; its corners stand for its motion.
     struct Instant {
         LagState<double> state;
         double depth, pull;
+        Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();  ///< of a tilted brush, about the contact
         Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
     };
 
@@ -128,6 +189,10 @@ class Tracer {
         const Vec2<double> u = now.state.heading, n(-u.y(), u.x()), tip = tip_of(now);
         now.corners << tip + half * n, tip - half * n, tip + front * u + half * n, tip + front * u - half * n,
             tip + brush_.tip_to_widest(now.depth) * u;
+        if (lean_.rows() > 0) {
+            now.stretch = stretch_of(between_poses(lean_, pose_ + scale_ * t));
+            now.corners = (now.stretch * (now.corners.colwise() - now.state.contact)).colwise() + now.state.contact;
+        }
         return now;
     }
     Vec2<double> tip_of(const Instant& now) const {
@@ -195,7 +260,8 @@ class Tracer {
     /// (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only where this is small.
     double shape_gap(const Instant& a, const Instant& b, const Instant& c) const {
         if (!for_outlines_) return 0.0;
-        const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05;
+        const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05 ||
+                           (a.stretch - b.stretch).cwiseAbs().maxCoeff() > 0.01;
         // turning about a point of its flank a footprint leaves a waist that no hull has; while it is dragged forwards
         // the widest section has painted there before
         const bool turns_in_place = !a.state.taut && a.state.heading.dot(b.state.heading) < 1.0 - 1e-8;
@@ -221,7 +287,10 @@ class Tracer {
         const Vec2<double> u = now.state.heading, tip = tip_of(now);
         Eigen::Matrix2d turn;
         turn << u.x(), u.y(), -u.y(), u.x();
-        return (footprint_at(brush_.footprints, now.depth, now.pull) * turn).rowwise() + tip.transpose();
+        const Ring placed = (footprint_at(brush_.footprints, now.depth, now.pull) * turn).rowwise() + tip.transpose();
+        if (lean_.rows() == 0) return placed;
+        const Eigen::RowVector2d contact = now.state.contact.transpose();
+        return ((placed.rowwise() - contact) * now.stretch).rowwise() + contact;
     }
 
     /// r'/r, 1 when taut.
@@ -263,12 +332,14 @@ class Tracer {
     }
 
     const Brush& brush_;
+    const Ring& lean_;  ///< per pose; empty: upright
     LagLaw<double> law_;
     Extents extents_;
     std::vector<double> kinks_;
     double tolerance_;
     bool for_outlines_;
     std::size_t most_rows_;
+    const Poses& poses_mm_;
     PassMarks& out_;
     LagState<double> state_;
     std::vector<double> tcp_, contact_;
@@ -317,13 +388,14 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bo
     require_tolerance(tolerance_mm, pass.stroke);
     refuse_bad_poses(pass, brush);
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
+    check_tool_axes(pass, pass.stroke);
     PassMarks marks;
     marks.stroke = pass.stroke;
-    Tracer tracer(brush, tolerance_mm, for_outlines, std::size_t(pass.poses_mm.rows()), marks);
-    if (pass.poses_mm.rows() > 0) {
-        if (pass.poses_mm(0, 2) > 0.0)
-            tracer.begin_above(pass.poses_mm.row(0).head<2>().transpose(), pass.poses_mm(0, 2));
-        walk_pass<double>(ToldWay<double>{pass.poses_mm, pass.arcs, 0.0}, false, tracer);
+    const AxisWay way(pass);
+    Tracer tracer(brush, tolerance_mm, for_outlines, pass, way, marks);
+    if (const Poses& poses = way.poses_mm; poses.rows() > 0) {
+        if (poses(0, 2) > 0.0) tracer.begin_above(poses.row(0).head<2>().transpose(), poses(0, 2));
+        walk_pass<double>(ToldWay<double>{poses, pass.arcs, 0.0}, false, tracer);
     }
     tracer.finish();
     return marks;
@@ -341,8 +413,9 @@ Ring widest_points(const PassMarks& marks, const Brush& brush) {
     Ring points = marks.contact_mm;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
         const double e = brush.lever_to_widest(std::max(0.0, marks.depth_mm[i]));
-        points(i, 0) += e * std::cos(marks.heading_rad[i]);
-        points(i, 1) += e * std::sin(marks.heading_rad[i]);
+        Eigen::RowVector2d away(e * std::cos(marks.heading_rad[i]), e * std::sin(marks.heading_rad[i]));
+        if (marks.lean_mm_per_mm.rows() > 0) away *= stretch_of(marks.lean_mm_per_mm.row(i));
+        points.row(i) += away;
     }
     return points;
 }

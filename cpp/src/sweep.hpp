@@ -73,6 +73,11 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
             ring(k, 0) = x0 + c * x - s * y;
             ring(k, 1) = y0 + s * x + c * y;
         }
+        if (marks.lean_mm_per_mm.rows() > 0) {
+            const Eigen::RowVector2d contact = marks.contact_mm.row(Eigen::Index(i));
+            const Eigen::Matrix2d stretch = stretch_of(marks.lean_mm_per_mm.row(Eigen::Index(i)));
+            ring = ((ring.rowwise() - contact) * stretch).rowwise() + contact;
+        }
         return ring;
     };
     Ring before;

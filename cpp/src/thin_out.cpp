@@ -324,6 +324,7 @@ Pass thinned(const Pass& pass, const Brush& brush, const TracedPass& was, double
         poses.push_back(pass.poses_mm.row(i).transpose());
     };
     Pass out = pass;
+    out.tool_axes.resize(0, 3);  // upright, as are all that are thinned out
     out.arcs.clear();
     Walk walk(was, brush, law, tolerance_mm);
     for (Index i = 0; i < n;) {
@@ -372,6 +373,7 @@ double apart(const PassMarks& marks, const Brush& brush, const Ring& middle) {
 }  // namespace
 
 Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
+    refuse_tilted(pass, "poses are thinned out for an upright brush");
     require_tolerance(tolerance_mm, pass.stroke);
     const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
     const PassMarks marks = simulate(pass, brush, exact_mm, false);

@@ -76,6 +76,10 @@ TEST_CASE("what would lead a machine astray is refused") {
     CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes.clear(); }) == "nothing-to-paint");
     CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes[0].poses_mm.resize(0, 3); }) == "pass-empty");
     CHECK(code_of([](Plan&, Brush& brush, FlatCell&) { brush.name = "mine"; }) == "options-contradict");
+    CHECK(code_of([](Plan& plan, Brush&, FlatCell&) {
+              plan.passes[2].tool_axes = Poses::Zero(plan.passes[2].poses_mm.rows(), 3);
+              plan.passes[2].tool_axes.rowwise() = Eigen::RowVector3d(0.6, 0.0, 0.8);
+          }) == "tilt-unsupported");
     CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.sheet_mm = {0.0, 50.0}; }) == "out-of-range");
     CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.sheet_mm = {50.0, 120.0}; }) == "out-of-range");
     CHECK(code_of([](Plan& plan, Brush&, FlatCell&) { plan.passes[0].arcs[0].centre_mm.x() += 1.0; }) == "arc-invalid");

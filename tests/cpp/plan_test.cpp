@@ -58,3 +58,27 @@ TEST_CASE("not finite is refused like anything off the circle") {
         }
     }
 }
+
+TEST_CASE("tool axes: one for each pose, of length 1, tilted by at most 30 degrees, without arcs") {
+    Pass pass;
+    pass.stroke = "s";
+    pass.poses_mm = Poses::Zero(2, 3);
+    CHECK_NOTHROW(check_tool_axes(pass, ""));
+    pass.tool_axes.resize(2, 3);
+    pass.tool_axes << 0.0, 0.0, 1.0, 0.5, 0.0, std::sqrt(0.75) + 1e-9;
+    CHECK_NOTHROW(check_tool_axes(pass, ""));
+    CHECK(is_tilted(pass));
+    CHECK_THROWS_AS(refuse_tilted(pass, "a test holds it upright"), Error);
+    pass.arcs = {{0, 1, {1.0, 0.0}, 1}};
+    CHECK_THROWS_AS(check_tool_axes(pass, ""), Error);
+    pass.arcs.clear();
+    for (const auto& [x, z] : {std::pair(0.51, std::sqrt(1.0 - 0.51 * 0.51)), {0.0, -1.0}, {0.0, 1.002}, {NAN, 1.0}}) {
+        pass.tool_axes.row(1) << x, 0.0, z;
+        CHECK_THROWS_AS(check_tool_axes(pass, ""), Error);
+    }
+    pass.tool_axes.row(1) << 0.0, 0.0, 1.0;
+    CHECK_FALSE(is_tilted(pass));
+    CHECK_NOTHROW(refuse_tilted(pass, "a test holds it upright"));
+    pass.tool_axes.conservativeResize(1, 3);
+    CHECK_THROWS_AS(check_tool_axes(pass, ""), Error);
+}

@@ -55,6 +55,30 @@ TEST_CASE("clockwise rings are holes in nothing: they are refused, not lost") {
     CHECK(unite({square, turned}).empty());  // a hole as large as the shape
 }
 
+TEST_CASE("a box held against a large shape with holes has what lies in it, wherever it lies") {
+    // a comb of many corners, folded: its teeth reach past the box on all sides, and it has a hole larger than the box
+    Rings shape;
+    Ring comb(402, 2);
+    for (int k = 0; k < 200; ++k) comb.row(k) << 0.5 * k, (k % 2 ? -3.0 : 0.0);
+    comb.row(200) << 100.0, 0.0;
+    for (int k = 0; k < 200; ++k) comb.row(201 + k) << 100.0 - 0.5 * k, (k % 2 ? 53.0 : 50.0);
+    comb.row(401) << 0.0, 50.0;
+    shape.push_back(comb);
+    shape.push_back(box(40.0, 20.0, 20.0, 10.0).colwise().reverse().eval());
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> x(-3.0, 101.0), y(-6.0, 54.0), size(0.3, 12.0);
+    for (int k = 0; k < 200; ++k) {
+        const Ring small = box(x(random), y(random), size(random), size(random));
+        // the share of the box, by another way: what both cover together
+        const double both = area({small}) + area(shape) - area(unite({small, shape[0], shape[1]}));
+        const bool is_on_hole = area(intersect({small}, {box(40.0, 20.0, 20.0, 10.0)})) > 0.0;
+        if (!is_on_hole) CHECK(std::abs(area(intersect(shape, {small})) - both) < 1e-3);
+        CHECK(std::abs(area(intersect({small}, shape)) - area(intersect(shape, {small}))) < 1e-3);
+        const double on_hole = area(intersect({small}, {box(40.0, 20.0, 20.0, 10.0)}));
+        CHECK(std::abs(area(intersect(shape, {small})) + on_hole - area(intersect({comb}, {small}))) < 1e-3);
+    }
+}
+
 TEST_CASE("many shapes far from the origin") {
     Rings boxes;
     for (int i = 0; i < 300; ++i) boxes.push_back(box(5000 + 0.3 * i, 5000 + 0.1 * i, 1, 1));

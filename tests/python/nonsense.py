@@ -104,12 +104,16 @@ def plans():
     yield plan(a_pass(arcs=[brushsvg.Arc(1, 2, (35, 20), 1)] * 3))
     yield plan(a_pass(settings=_core.Settings(extra="{"), extra="[]"), extra="{")
     yield plan(a_pass(speed_mm_s=1e-320))
+    yield plan(a_pass(tool_axes=[(0.28, 0.0, 0.96)] * 3))
+    yield plan(a_pass(tool_axes=[(0.0, 0.0, 1.0)]))
+    yield plan(a_pass((), tool_axes=[(0.28, 0.0, 0.96)]))
     for value in (NAN, INF, -INF, 1e300, 1e6, -1e6):
         yield plan(a_pass(settings=_core.Settings(speed_mm_s=value, width_mm=value, brush="\0")))
         yield plan(a_pass([(0, 0, 0), (value, 0, -2)]))
         yield plan(a_pass([(0, 0, 0), (9, 0, value)]))
         yield plan(a_pass(speed_mm_s=value), sheet_mm=(value, value))
         yield plan(a_pass(arcs=[brushsvg.Arc(1, 2, (value, 0), 1)]))
+        yield plan(a_pass(tool_axes=[(0.0, value, 1.0)] * 3))
 
 
 def marks():

@@ -92,8 +92,8 @@ def test_the_table_lists_the_codes_that_there_are():
 
 def test_python_is_told_the_codes_of_the_library():
     with pytest.raises(Error) as refused:
-        _core.read_plan('{"format": "brushsvg/plan", "version": 2}')
-    assert (refused.value.code, refused.value.value) == ("version-unknown", 2)
+        _core.read_plan('{"format": "brushsvg/plan", "version": 3}')
+    assert (refused.value.code, refused.value.value) == ("version-unknown", 3)
     brush = find_brush("round-6")
     odd = _core.remarks(brush)
     assert {notice.code for notice in odd} <= in_library()[0] and len(odd) > 0

@@ -155,9 +155,12 @@ def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
     brushsvg.save_brush(brush, tmp_path / "shipped.json")
     brushsvg.save_brush(brushsvg.calibrate(rows).brush, tmp_path / "fitted.json")
     shipped, fitted = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("shipped", "fitted"))
-    of_brush, of_plan, of_marks = map(whole, of_kind("json", "brush.md"))
+    of_brush, of_plan, of_tilted, of_marks = map(whole, of_kind("json", "brush.md"))
     assert set(unlike(of_brush, shipped)) & set(unlike(of_brush, fitted)) == set()
     assert unlike(of_plan, json.loads(brushsvg.write_plan(plan))) == []
+    for a_pass in plan.passes:
+        a_pass.arcs, a_pass.tool_axes = [], [(0.28, 0.0, 0.96)] * len(a_pass.poses_mm)
+    assert unlike(of_tilted, json.loads(brushsvg.write_plan(plan))) == []
     assert unlike(of_marks, json.loads(brushsvg.write_marks(marks))) == []
 
 

@@ -36,6 +36,9 @@ def with_(value, **fields):
     return made
 
 
+LEANING = _core.Plan("round-6", "ab", (100, 60), [with_(PASS, tool_axes=[(0.0, 0.28, 0.96)] * 4)])
+
+
 def marks(plan=PLAN):
     made = brushsvg.simulate(plan, BRUSH)
     brushsvg.trace_outlines(made, BRUSH)
@@ -181,6 +184,7 @@ VALUES_OF = {
                 "settings": _core.Settings(skip=True),
                 "load": 3,
                 "extra": "{}",
+                "tool_axes": [(0.0, 0.6, 0.8)] * 4,
             }.items()
         ),
     ],
@@ -201,6 +205,7 @@ VALUES_OF = {
     _core.PassMarks: lambda _: [
         marks().passes[0],
         brushsvg.simulate(PLAN, BRUSH).passes[0],
+        brushsvg.simulate(LEANING, BRUSH).passes[0],
         with_(marks().passes[0], stroke="x"),
         marks().passes[1],
         _core.PassMarks(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,15 @@ struct PassMarks {
     std::vector<double> depth_mm;
     std::vector<unsigned char> taut;
     std::vector<double> pull;  ///< r'/r, 1 when taut
+    Ring lean_mm_per_mm;       ///< how far a tilted brush's axis goes sideways for each mm up; empty: upright
     Rings outline_mm;          ///< filled from outline() in coverage.hpp
 };
+
+/// The footprint of a brush that leans by s, seen from its contact: a section of the brush by a plane at an angle t to
+/// the one across it is 1 / cos t as long the way that it leans, S = I + s s^T / (1 + sqrt(1 + |s|^2)), |s| = tan t.
+inline Eigen::Matrix2d stretch_of(const Eigen::RowVector2d& lean) {
+    return Eigen::Matrix2d::Identity() + lean.transpose() * lean / (1.0 + std::sqrt(1.0 + lean.squaredNorm()));
+}
 
 struct Marks {
     std::vector<PassMarks> passes;

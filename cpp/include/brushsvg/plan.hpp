@@ -32,6 +32,13 @@ inline constexpr std::array<double, 2> kArcRadiusMm{0.1, kLargestMm};
 /// The arc between two poses runs through both, so nothing jumps; much more would hide a wrong centre.
 inline constexpr double kOnCircleMm = 3e-3;
 
+/// How far from upright a brush may be tilted: what its laws say of one that lies on its side has never been measured,
+/// and at 30 degrees a section of it is 15 % longer already.
+inline constexpr double kMostTiltDeg = 30.0;
+
+/// How far from 1 the length of a tool axis may be: coordinates rounded to three decimals add up to 0.0009.
+inline constexpr double kUnitLength = 1e-3;
+
 /// One stroke's motion: straight moves between poses, depth linear along each.
 struct Pass {
     StrokeId stroke;  ///< the stroke it paints
@@ -43,6 +50,7 @@ struct Pass {
     Settings settings;
     int load = 0;              ///< which of its stroke's loads of paint it is, from 1; 0 for a stroke that is whole
     std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
+    Poses tool_axes;           ///< of each pose the unit vector from the tip up along the brush; empty: upright
 };
 
 struct Plan {
@@ -64,5 +72,16 @@ double turn_between(const Arc& arc, const Eigen::Vector2d& from_mm, const Eigen:
 /// predecessor's end, or when its poses are not on one circle, not at one depth, or do not go round it in the direction
 /// said, each by less than half a turn.
 void check_arc(const Pass& pass, std::size_t k, const std::string& where);
+
+/// Throws Error, with this `where`, when a pass has tool axes and not one for each pose, or arcs beside them, or when
+/// one is not of length 1 or is tilted by more than 30 degrees.
+void check_tool_axes(const Pass& pass, const std::string& where);
+
+/// Whether the brush is not upright at every pose.
+bool is_tilted(const Pass& pass);
+
+/// Throws Error for a tilted pass, where nothing is known of one: a pass that lost its tilt would paint something else.
+/// `upright`: who keeps the brush upright, as the sentence begins.
+void refuse_tilted(const Pass& pass, const std::string& upright);
 
 }  // namespace brushsvg

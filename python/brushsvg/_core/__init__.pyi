@@ -76,6 +76,7 @@ __all__: list[str] = [
     "read_brush",
     "read_marks",
     "read_plan",
+    "refuse_tilted",
     "remarks",
     "simulate",
     "thin_out",
@@ -520,7 +521,8 @@ class Pass:
     to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
     the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
     load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
-    file, as JSON.
+    file, as JSON. tool_axes: (n, 3) of each pose the unit vector from the tip up along the brush, in the frame of the paper,
+    tilted by at most 30 degrees; empty for a brush that is upright; given, read and replaced as poses_mm.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -543,6 +545,7 @@ class Pass:
         extra: str = "{}",
         arcs: collections.abc.Sequence[Arc] = [],
         load: int = 0,
+        tool_axes: numpy.typing.ArrayLike = ...,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
@@ -568,6 +571,10 @@ class Pass:
     def stroke(self) -> str: ...
     @stroke.setter
     def stroke(self, arg1: StrokeId | str) -> None: ...
+    @property
+    def tool_axes(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    @tool_axes.setter
+    def tool_axes(self, arg1: numpy.typing.ArrayLike) -> None: ...
 
 class Plan:
     """
@@ -607,6 +614,8 @@ class Plan:
 class PassMarks:
     """
     What the patch does during one pass; parallel rows (mm, rad), read only.
+
+    lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -624,6 +633,8 @@ class PassMarks:
     def depth_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
     def heading_rad(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    @property
+    def lean_mm_per_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
     def outline_mm(self) -> tuple[numpy.typing.NDArray[numpy.float64], ...]: ...
     @outline_mm.setter
@@ -1554,6 +1565,13 @@ def read_marks(text: str) -> Marks:
 def read_plan(text: str) -> Plan:
     """
     plan.json; Error names the key.
+    """
+
+def refuse_tilted(passes: collections.abc.Sequence[Pass], upright: str) -> None:
+    """
+    Error for the first pass whose brush is not upright everywhere.
+
+    upright: who keeps it upright, as the sentence begins: "cell ur5e holds the brush upright".
     """
 
 def remarks(brush: Brush) -> list[Notice]:

@@ -16,7 +16,7 @@ from ..errors import Error
 from ..laws.fitted import need_fits
 from .from_widths import outlines_assumed
 from .machine_found import PARTS, Number, ask_for, numbers
-from .mark_input import Painted, depths_painted, middle
+from .mark_input import UPRIGHT, Painted, depths_painted, middle
 from .plausibility import BEYOND
 from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 from .stray_marks import MOST, OUTLYING, Stray, strays
@@ -286,6 +286,7 @@ def expected_machine(
 def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMark]:
     """The marks of a plan by such a brush, as the fit sees it: outlines in mm of the paper, without noise."""
     need_fits()
+    _core.refuse_tilted(plan.passes, UPRIGHT)
     seen = brush_of(laws_of(brush), brush.name, brush.depth_range_mm)
     marks = _core.simulate(plan, seen)
     _core.trace_outlines(marks, seen)

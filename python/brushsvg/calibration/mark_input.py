@@ -18,6 +18,7 @@ WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to 
 LEAST_MM2 = 0.1
 LARGEST_MM = 1e6
 STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that a displacement would not
+UPRIGHT = "brushes are found from marks of a brush held upright"
 PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
 UNITS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
@@ -107,6 +108,7 @@ def _passes(plan, read) -> dict[str, _core.Pass]:
         raise Error(
             'marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing"
         )
+    _core.refuse_tilted(parsed.passes, UPRIGHT)
     out: dict[str, _core.Pass] = {}
     for number, one in enumerate(parsed.passes, 1):
         name = one.stroke or f"stroke{number}"

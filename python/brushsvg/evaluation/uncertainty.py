@@ -123,6 +123,7 @@ def covariance_of(brush) -> np.ndarray:
 
 
 def _all_effects(plan, brush, marks):
+    _core.refuse_tilted(plan.passes, "how sure a mark is is known of a brush held upright")
     at = places(brush)
     lag = at["lag"]
     scale = np.concatenate(  # of a coefficient by what it changes at the greatest depth: all in mm

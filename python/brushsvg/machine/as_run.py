@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .. import _core
 from .arc_chords import with_chords
 from .cell import Machine
 from .distortion import true_mm
@@ -17,7 +18,8 @@ STRAIGHT = 1e-7  # sine of the turn of two moves that are one
 
 def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float = np.inf) -> list:
     """What is on the paper of passes that were told; those that never reach it are left out. deepest_mm: below, no
-    depth counts."""
+    depth counts. Error for a tilted brush, which no machine of ours holds."""
+    _core.refuse_tilted(passes, "machines are simulated with the brush upright")
     out = []
     for one in with_play(passes, backlash_mm):
         poses = np.asarray(with_chords(one).poses_mm, dtype=float).reshape(-1, 3)

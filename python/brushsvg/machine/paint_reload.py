@@ -53,8 +53,9 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
     already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
     no circles, arcs have poses enough for lines; where the cell has a map of the paper, lines have enough for that.
-    Error for a part that does not follow the one before it.
+    Error for a part that does not follow the one before it, and for a tilted brush: programs hold it upright.
     """
+    _core.refuse_tilted(plan.passes, f"programs for cell {cell.name} hold the brush upright")
     loads, last = list(plan.passes), None
     for a_pass in loads:
         if is_later_part(a_pass) and (last is None or last.load != a_pass.load - 1):

@@ -6,7 +6,9 @@ from .. import _core
 
 
 def on_way(a_pass, poses_mm, arcs):
-    """The pass, with all that is said of it, led along other poses (n, 3) and arcs."""
+    """The pass, with all that is said of it, led along other poses (n, 3) and arcs. Error for a tilted one: how the
+    brush would be held there is not known."""
+    _core.refuse_tilted([a_pass], "a pass is led another way with the brush upright")
     return _core.Pass(
         a_pass.origin,
         poses_mm,

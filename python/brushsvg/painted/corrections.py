@@ -77,6 +77,7 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
     if not corrections:
         return plan
     refuse_corrected(plan)
+    _core.refuse_tilted(plan.passes, "strokes are corrected for a brush held upright")
     beside = corrections[0].brush_sha256
     if beside and brush.sha256 and beside != brush.sha256:
         raise Error(

@@ -42,7 +42,9 @@ class JobPage:
 
 
 def job_page(plan, title: str = "") -> JobPage:
-    """Markers that name the plan, of the chart's dictionary: another job's page is told from this one."""
+    """Markers that name the plan, of the chart's dictionary: another job's page is told from this one. Error for a
+    tilted brush: what is learnt from photographs of a job holds for one that is upright."""
+    _core.refuse_tilted(plan.passes, "jobs are compared with photographs of a brush held upright")
     sheet = plan.sheet_mm
     side = min(max(min(sheet) / 14, MARKERS[0]), MARKERS[1])
     frame = math.ceil(EDGE_MM + (1 + 2 * QUIET) * side)

@@ -57,6 +57,7 @@ def read_chart(data: bytes) -> Chart:
         plan = _core.read_plan(json.dumps(content["plan"]))
     except Error as refusal:
         raise Error(str(refusal), f"plan.{refusal.where}", refusal.value, code=refusal.code) from None
+    _core.refuse_tilted(plan.passes, "charts are painted with the brush upright")
     sheet_mm = _places(content.get("sheet_mm"), "sheet_mm", 2, LARGEST_MM)
     if not np.allclose(sheet_mm, plan.sheet_mm, atol=1e-3):
         sentence = f"{sheet_mm[0]:g} x {sheet_mm[1]:g} mm are not the sheet of the plan"

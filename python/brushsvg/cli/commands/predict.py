@@ -13,7 +13,7 @@ def predict_file(args) -> None:
     check_places(args.output)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
-    looked = look(settled(typed(args), args.input), outlines=outlines, whole=suffix == ".json")
+    looked = look(settled(typed(args), args.input), outlines=outlines, whole=suffix == ".json", tilted=True)
     work, marks = looked.work, looked.marks
     with about(args.input):
         band = None

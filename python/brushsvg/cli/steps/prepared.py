@@ -45,19 +45,32 @@ class Looked:
 
 
 def look(
-    chosen: Choices, outlines: bool, at_loads: bool = False, partly: bool = False, whole: bool = True
+    chosen: Choices,
+    outlines: bool,
+    at_loads: bool = False,
+    partly: bool = False,
+    whole: bool = True,
+    tilted: bool = False,
 ) -> Looked:
+    """tilted: look at the marks of a tilted brush, too, which no cell can paint: it is warned of, and there are no
+    loads."""
     work = prepare(chosen, partly=partly)
     brush, cell = work.brush, work.options.cell
     with about(chosen.input):
-        loads = in_loads(work.plan, brush, cell)
+        held_upright = []
+        try:
+            loads = in_loads(work.plan, brush, cell)
+        except Error as refusal:
+            if not tilted or refusal.code != "tilt-unsupported":
+                raise
+            held_upright, loads = [refusal.notice()], PlanInLoads(tuple(work.plan.sheet_mm), ())
         plan = loads.as_plan() if at_loads else work.plan
         marks = prediction.marks_of(plan, brush, outlines, stage, whole)
         walk = None
-        if work.plan.passes or not work.refused:
+        if not held_upright and (work.plan.passes or not work.refused):
             walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
         forbidden = walk.problems if walk else []
-        warnings = [*work.notices, *forbidden]
+        warnings = [*work.notices, *forbidden, *held_upright]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
     return Looked(work, loads, marks, walk, warnings, forbidden)

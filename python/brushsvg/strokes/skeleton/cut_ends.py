@@ -81,14 +81,11 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
             if _turn(back[0, :2] - back[1, :2], axis) < UNSEEN_RAD:
                 return line
             continue
-        for turn_rad in TURNS_RAD:
-            ahead = rotation(turn_rad).T @ axis
-            cut = _cut(here, ahead, half, rings)
-            if cut and abs(np.arctan(cut[1]) - turn_rad) < np.arctan(STEEPEST):
-                break
-        else:
+        ways = np.array([rotation(turn_rad).T @ axis for turn_rad in TURNS_RAD])
+        cut = _first_cut(here, ways, half, rings)
+        if cut is None:
             continue
-        to_cut_mm, slope = cut
+        ahead, to_cut_mm, slope = cut
         on_mm = to_cut_mm - half * np.hypot(1, slope)
         if on_mm <= 0:
             return line[: len(line) - k]
@@ -96,50 +93,75 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     return line
 
 
-def straight_cut(
-    here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
-) -> tuple[float, float] | None:
-    """How far ahead of a place the outline of rings is cut straight across, in mm, and its slope; None where it is
-    not, over the width of a line of this half width."""
-    left = np.array([-ahead[1], ahead[0]])
+def _first_cut(
+    here: np.ndarray, ways: np.ndarray, half: float, rings: list[np.ndarray]
+) -> tuple[np.ndarray, float, float] | None:
+    """The first of the ways, turned by TURNS_RAD, on which a line with straight sides runs up to a straight cut, not
+    too steep to where the line ends; how far away that is, in mm, and its slope."""
+    to_cut_mm, slope = straight_cuts(here, ways, half, rings)
+    is_cut = np.abs(np.arctan(slope) - TURNS_RAD) < np.arctan(STEEPEST)  # False for nan
+    for k in np.flatnonzero(is_cut):
+        if _has_straight_sides(here, ways[k], half, to_cut_mm[k], slope[k], rings):
+            return ways[k], float(to_cut_mm[k]), float(slope[k])
+    return None
+
+
+def straight_cuts(
+    here: np.ndarray, ways: np.ndarray, half: float, rings: list[np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """How far ahead of a place, in mm, the outline of rings is cut straight across, over the width of a line of this
+    half width, and its slope. Both (k,) for ways (k, 2), unit vectors; nan where there is no such cut."""
     aside = ASIDE * half * np.linspace(-1.0, 1.0, 7)
-    reached = np.array([_left_ahead(here, ahead, left, y, rings) for y in aside])
-    if not np.isfinite(reached).all():
-        return None
-    slope = (reached[-1] - reached[0]) / (aside[-1] - aside[0])
-    middle = (reached[0] + reached[-1]) / 2
-    if abs(slope) > STEEPEST or (np.abs(middle + slope * aside - reached) > STRAIGHT * half).any():
-        return None
-    return float(middle), float(slope)
+    reached = np.full((len(ways), 7), np.inf)
+    for ring in rings:
+        ahead_mm, left_mm = _seen(ring - here, ways)
+        crossed_mm = _first_crossed(
+            np.repeat(ahead_mm, 7, axis=0), np.repeat(left_mm, 7, axis=0) - np.tile(aside, len(ways))[:, None]
+        )
+        reached = np.minimum(reached, crossed_mm.reshape(-1, 7))
+    reached[~np.isfinite(reached).all(axis=1)] = np.nan
+    slope = (reached[:, -1] - reached[:, 0]) / (aside[-1] - aside[0])
+    middle = (reached[:, 0] + reached[:, -1]) / 2
+    bent = np.abs(middle[:, None] + slope[:, None] * aside - reached).max(axis=1)
+    is_none = ~((np.abs(slope) <= STEEPEST) & (bent <= STRAIGHT * half))
+    middle[is_none] = slope[is_none] = np.nan
+    return middle, slope
 
 
-def _cut(
-    here: np.ndarray, ahead: np.ndarray, half: float, rings: list[np.ndarray]
-) -> tuple[float, float] | None:
-    """The straight cut ahead of a place up to which the line has straight sides."""
-    cut = straight_cut(here, ahead, half, rings)
-    if cut is None:
-        return None
+def _has_straight_sides(
+    here: np.ndarray, ahead: np.ndarray, half: float, to_cut_mm: float, slope: float, rings: list[np.ndarray]
+) -> bool:
+    """Whether a line has straight sides from a place on to the cut ahead of it."""
     left = np.array([-ahead[1], ahead[0]])
     for side in (-1, 1):
-        for on_mm in np.linspace(0.0, 0.9 * (cut[0] + cut[1] * side * ASIDE * half), 4):
+        for on_mm in np.linspace(0.0, 0.9 * (to_cut_mm + slope * side * ASIDE * half), 4):
             at = here + on_mm * ahead + 0.7 * half * side * left  # inside, on either side of a slanted cut
-            if abs(_left_ahead(at, side * left, ahead, 0.0, rings) - 0.3 * half) > BENT * half:
-                return None
-    return cut
+            beside_mm = min(_first_crossed(*_seen(ring - at, side * left[None]))[0] for ring in rings)
+            if abs(beside_mm - 0.3 * half) > BENT * half:
+                return False
+    return True
 
 
 def _turn(one: np.ndarray, other: np.ndarray) -> float:
     return abs(float(np.arctan2(one[0] * other[1] - one[1] * other[0], one @ other)))
 
 
-def _left_ahead(at: np.ndarray, ahead: np.ndarray, left: np.ndarray, aside: float, rings) -> float:
-    """How far ahead, beside a place, the outline is first crossed."""
-    nearest = np.inf
-    for ring in rings:
-        x, y = (ring - at) @ ahead, (ring - at) @ left - aside
-        on_x, on_y = np.roll(x, -1), np.roll(y, -1)
-        crosses = (y > 0) != (on_y > 0)
-        where = x[crosses] + (on_x - x)[crosses] * y[crosses] / (y - on_y)[crosses]
-        nearest = min(nearest, where[where > 0].min(initial=np.inf))
-    return float(nearest)
+def _seen(off_mm: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Places (n, 2) seen along ways (k, 2): how far ahead and how far to the left, both (k, n)."""
+    return np.array([off_mm @ way for way in ways]), np.array([off_mm @ (-way[1], way[0]) for way in ways])
+
+
+def _first_crossed(ahead_mm: np.ndarray, left_mm: np.ndarray) -> np.ndarray:
+    """How far ahead of each of k places a ring is first crossed, in mm; infinite where it is not. Both (k, n): the
+    ring as it is seen from there."""
+    nearest = np.full(len(ahead_mm), np.inf)
+    is_left = left_mm > 0
+    ray, at = np.nonzero(is_left != np.roll(is_left, -1, axis=1))
+    after = (at + 1) % ahead_mm.shape[1]
+    here_mm, left_here_mm = ahead_mm[ray, at], left_mm[ray, at]
+    crossed_mm = here_mm + (ahead_mm[ray, after] - here_mm) * left_here_mm / (
+        left_here_mm - left_mm[ray, after]
+    )
+    is_ahead = crossed_mm > 0
+    np.minimum.at(nearest, ray[is_ahead], crossed_mm[is_ahead])
+    return nearest

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from .cut_ends import straight_cut
+from .cut_ends import straight_cuts
 
 # In half widths: how far from its end a line's cut may lie, and what of the corners no disc of any line reaches, in
 # their squares; one corner of 90 degrees has 0.21.
@@ -20,11 +20,12 @@ def with_shared_corners(strokes: list, area: list[np.ndarray]) -> list:
     ends = [(k, box) for k, stroke in enumerate(strokes) for box in _boxes(stroke, area)]
     if not ends:
         return strokes
-    discs = _core.unite([ring for stroke in strokes for ring in _core.wanted_outline(_drawn(stroke), 0.01)])
+    lines = [_core.wanted_outline(_drawn(stroke), 0.01) for stroke in strokes]
     out = list(strokes)
     for k, (box, half) in ends:
         corners = _core.intersect([box], area)
-        if _core.area(corners) - _core.area(_core.intersect(corners, discs)) > BARE * half**2:
+        covered = _core.unite([ring for line in lines for ring in _core.intersect(corners, line)])
+        if _core.area(corners) - _core.area(covered) > BARE * half**2:
             out[k] = replace(out[k], wanted_mm=_core.unite([*out[k].wanted_mm, *corners]))
     return out
 
@@ -43,10 +44,10 @@ def _boxes(stroke, area) -> list[tuple[np.ndarray, float]]:
         here = way[-1, :2]
         ahead = (here - back) / np.hypot(*(here - back))
         left = np.array([-ahead[1], ahead[0]])
-        cut = straight_cut(here, ahead, half, area)
-        if cut is None or not NEAR[0] < cut[0] / (half * np.hypot(1, cut[1])) < NEAR[1]:
+        (to_cut_mm,), (slope,) = straight_cuts(here, ahead[None], half, area)
+        if not NEAR[0] < to_cut_mm / (half * np.hypot(1, slope)) < NEAR[1]:  # nan: there is none
             continue
-        to_cut = [cut[0] + cut[1] * side * half for side in (1, -1)]
+        to_cut = [to_cut_mm + slope * side * half for side in (1, -1)]
         box = [here + half * left, here - half * left]
         box += [here + to_cut[1] * ahead - half * left, here + to_cut[0] * ahead + half * left]
         boxes.append((np.array(box), half))

@@ -1,0 +1,258 @@
+"""How a brush is tilted: read, written, kept, and refused wherever it would be lost."""
+
+import copy
+import json
+import pickle
+
+import numpy as np
+import pytest
+from diagnostics import agrees, are_told, in_json, refused
+
+import brushsvg
+from brushsvg import _core
+from brushsvg.calibration.chart.file import read_chart, write_chart
+from brushsvg.calibration.chart.layout import chart
+from brushsvg.calibration.from_marks import expected_marks
+from brushsvg.calibration.mark_input import read_painted
+from brushsvg.evaluation.uncertainty import uncertainty
+from brushsvg.machine.as_run import as_run
+from brushsvg.machine.cell import Machine
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.pass_way import on_way
+from brushsvg.painted.corrections import Correction, corrected
+from brushsvg.painted.job_page import job_page
+
+BRUSH = brushsvg.find_brush("round-6")
+POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [70, 30, 0]]
+
+
+def axes(*tilts_deg, towards_deg=0.0):
+    """Unit vectors leaned towards a direction of the paper."""
+    tilts, towards = np.radians(tilts_deg), np.radians(towards_deg)
+    return np.column_stack([np.sin(tilts) * np.cos(towards), np.sin(tilts) * np.sin(towards), np.cos(tilts)])
+
+
+TILTED = axes(0, 5, 5, 12)
+
+
+def plan(tool_axes=TILTED):
+    tilted = _core.Pass("tilted", POSES, tool_axes=tool_axes)
+    return _core.Plan("round-6", "", (100, 100), [_core.Pass("upright", POSES), tilted])
+
+
+def told(change):
+    """The text of a plan.json with something of its second pass changed."""
+    document = json.loads(_core.write_plan(plan()))
+    change(document, document["passes"][1])
+    return json.dumps(document)
+
+
+# Written and read -------------------------------------------------------------------------------------------
+
+
+def test_a_tilt_comes_back_as_it_was_written():
+    text = _core.write_plan(plan())
+    assert json.loads(text)["version"] == 2
+    back = _core.read_plan(text)
+    assert len(back.passes[0].tool_axes) == 0
+    assert back.passes[1].tool_axes == pytest.approx(plan().passes[1].tool_axes, abs=1e-7)
+    assert _core.write_plan(back) == text
+
+
+def test_a_plan_without_is_written_as_before():
+    text = _core.write_plan(plan(tool_axes=np.zeros((0, 3))))
+    assert json.loads(text)["version"] == 1
+    assert "tool_axes" not in text
+
+
+def test_a_file_of_version_2_need_not_tilt():
+    def upright(document, one):
+        del one["tool_axes"]
+
+    back = _core.read_plan(told(upright))
+    assert json.loads(_core.write_plan(back))["version"] == 1
+
+
+def axis(row, *value):
+    def change(document, one):
+        one["tool_axes"][row] = list(value)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "expected", "where"),
+    [
+        (lambda document, one: document.update(version=1), "version-unknown tilted 1 2", "tool_axes"),
+        (lambda document, one: document.update(version=3), "version-unknown 3 2", "version"),
+        (lambda document, one: document.update(version=1.5), "version-unknown 1.5", "version"),
+        (lambda document, one: one["tool_axes"].pop(), "sizes-differ tilted 3 4", "tool_axes"),
+        (lambda document, one: one.update(tool_axes={}), "wrong-type", "tool_axes"),
+        (axis(2, 0, 0, 1.0011), "tool-axis-invalid tilted 2 1.0011 0.999 1.001", "tool_axes"),
+        (axis(2, 0, 0, 0), "tool-axis-invalid tilted 2 0 0.999", "tool_axes"),
+        (axis(1, *axes(31)[0]), "tool-axis-invalid tilted 1 31 30", "tool_axes"),
+        (axis(3, 0, 0, -1), "tool-axis-invalid tilted 3 180 30", "tool_axes"),
+        (axis(1, 0, 1), "wrong-type", "tool_axes[1]"),
+        (axis(1, 0, 0, "up"), "wrong-type", "tool_axes[1][2]"),
+        (lambda document, one: one.update(arcs=[[1, 2, 45, 40, 1]]), "arc-invalid tilted", "tool_axes"),
+    ],
+)
+def test_what_is_no_tilt_is_refused(change, expected, where):
+    if where.startswith("tool_axes"):
+        where = f"passes[1].{where}"
+    with refused(expected, where):
+        _core.read_plan(told(change))
+
+
+def test_three_decimals_are_enough():
+    for tilt in np.linspace(0, 29, 30):
+        for towards in np.linspace(0, 360, 37):
+            rounded = np.round(axes(tilt, towards_deg=towards)[0], 3)
+            _core.read_plan(told(axis(1, *rounded)))
+
+
+def test_what_cannot_be_read_is_not_written():
+    with refused("tool-axis-invalid tilted 40 30"):
+        _core.write_plan(plan(axes(0, 5, 40, 5)))
+
+
+# A value ----------------------------------------------------------------------------------------------------
+
+
+def test_a_tilt_is_part_of_the_pass():
+    one = plan().passes[1]
+    other = copy.copy(one)
+    assert pickle.loads(pickle.dumps(one)) == one == other
+    other.tool_axes = axes(0, 5, 5, 12.1)
+    assert other != one
+    assert "tilted" in repr(one).split(":", 1)[1]
+    assert "tilted" not in repr(plan().passes[0])
+
+
+# Refused where it would be lost -----------------------------------------------------------------------------
+
+
+def read_chart_of(of):
+    document = json.loads(write_chart(chart(BRUSH, (210, 297))))
+    read_chart(json.dumps(document | {"plan": json.loads(_core.write_plan(of))}).encode())
+
+
+CORRECTION = Correction("tilted", (20.0, 20.0), (40.0, 20.0), (1.0, 0.0), 0.0)
+
+READERS = {
+    "thin_out": lambda of: _core.thin_out(of.passes[1], BRUSH, 0.5),
+    "interrupted": lambda of: _core.interrupted(of.passes[1], BRUSH, 20, 20),
+    "in_loads": lambda of: in_loads(of, BRUSH, brushsvg.find_cell("ur5e")),
+    "on_way": lambda of: on_way(of.passes[1], POSES, ()),
+    "as_run": lambda of: as_run(of.passes, Machine()),
+    "expected_marks": lambda of: expected_marks(of, BRUSH),
+    "read_painted": lambda of: read_painted(json.loads(_core.write_plan(of)), [], None),
+    "read_chart": read_chart_of,
+    "job_page": lambda of: job_page(of),
+    "corrected": lambda of: corrected(of, (CORRECTION,), BRUSH),
+    "uncertainty": lambda of: uncertainty(of, BRUSH, brushsvg.simulate(plan(np.zeros((0, 3))), BRUSH)),
+}
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_who_knows_an_upright_brush_only_refuses(name):
+    with refused("tilt-unsupported 12", "tilted"):
+        READERS[name](plan())
+
+
+@pytest.mark.parametrize("name", [name for name in READERS if not name.startswith("read_")])
+def test_and_takes_one_that_is_held_upright(name):
+    made = READERS[name](plan(axes(0, 0, 0, 0)))
+    passes = {"thin_out": [made], "on_way": [made], "interrupted": made, "as_run": made}.get(name, [])
+    for one in passes:
+        assert len(one.tool_axes) in (0, len(one.poses_mm))
+
+
+def test_no_cell_writes_a_program(tmp_path):
+    for name in brushsvg.cell_names():
+        cell = brushsvg.find_cell(name)
+        with refused(f"tilt-unsupported {name} 12", "tilted"):
+            in_loads(plan(), BRUSH, cell)
+    with refused("tilt-unsupported", "tilted"):
+        brushsvg.write_program(tmp_path / "a.ngc", plan(), BRUSH)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["convert", "a.json", "a.ngc"],
+        ["convert", "a.json", "b.json"],
+        ["animate", "a.json", "a.html"],
+        ["report", "a.json"],
+        ["border", "a.json", "a.ngc"],
+        ["predict", "a.json", "a.svg", "--band"],
+    ],
+)
+def test_commands_refuse(words, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.json").write_text(_core.write_plan(plan()))
+    status, _, heard = in_json(capsys, *words)
+    assert status == 1
+    assert all(agrees(each, "tilt-unsupported 12", "tilted") for _, each in heard)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.json"]
+
+
+# Predicted --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [".json", ".svg", ".png"])
+def test_predict_shows_the_mark_and_says_that_no_program_paints_it(suffix, tmp_path, capsys):
+    given, made = tmp_path / "a.json", tmp_path / f"b{suffix}"
+    pictures = []
+    for tool_axes in (axes(0, 0, 0, 0), axes(0, 20, 20, 20)):
+        given.write_text(_core.write_plan(plan(tool_axes)))
+        status, _, heard = in_json(capsys, "predict", given, made)
+        assert status == 0
+        is_tilted = tool_axes[:, 0].any()
+        assert are_told([each for _, each in heard], *(["tilt-unsupported 20"] if is_tilted else []))
+        pictures.append(made.read_bytes())
+    assert pictures[0] != pictures[1]
+
+
+def test_marks_say_how_the_brush_leans():
+    marks = brushsvg.simulate(plan(axes(0, 10, 10, 10)), BRUSH)
+    brushsvg.trace_outlines(marks, BRUSH)
+    upright, tilted = marks.passes
+    assert len(upright.lean_mm_per_mm) == 0
+    assert tilted.lean_mm_per_mm[-1] == pytest.approx([np.tan(np.radians(10)), 0])
+    assert pickle.loads(pickle.dumps(marks)) == marks
+    text = _core.write_marks(marks)
+    assert json.loads(text)["version"] == 2
+    back = _core.read_marks(text)
+    assert back.passes[1].lean_mm_per_mm == pytest.approx(tilted.lean_mm_per_mm, abs=1e-7)
+    assert _core.write_marks(back) == text
+    marks.passes = marks.passes[:1]
+    assert json.loads(_core.write_marks(marks))["version"] == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "expected", "where"),
+    [
+        (lambda document, one: document.update(version=1), "version-unknown 1 2", "lean_mm_per_mm"),
+        (lambda document, one: one["lean_mm_per_mm"].pop(), "sizes-differ", "lean_mm_per_mm"),
+        (lambda document, one: one["lean_mm_per_mm"].insert(0, [0.6, 0]), "sizes-differ", "lean_mm_per_mm"),
+        (
+            lambda document, one: one["lean_mm_per_mm"][3].__setitem__(0, 0.6),
+            "out-of-range 0.6",
+            "lean_mm_per_mm[3]",
+        ),
+    ],
+)
+def test_marks_that_cannot_lean_so_are_refused(change, expected, where):
+    document = json.loads(_core.write_marks(brushsvg.simulate(plan(), BRUSH)))
+    change(document, document["passes"][1])
+    with refused(expected, f"passes[1].{where}"):
+        _core.read_marks(json.dumps(document))
+
+
+def test_a_pass_whose_axes_are_none_is_not_simulated():
+    with refused("tool-axis-invalid tilted 2 45 30", "tilted"):
+        brushsvg.simulate(plan(axes(0, 5, 45, 12)), BRUSH)
+    with refused("sizes-differ 3 4", "tilted"):
+        brushsvg.simulate(plan(axes(0, 5, 12)), BRUSH)
