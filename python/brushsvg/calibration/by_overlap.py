@@ -104,7 +104,10 @@ def by_overlap(
         tuple((np.array(fit.shift_mm) + found.shift_mm @ rotation(fit.turn_rad)).tolist()),
         fit.centre_mm,
         found.height_mm,
-        tuple(PlacedMark(np.array(miss.way_mm), miss.displacement_mm) for miss in fit.marks),
+        tuple(
+            PlacedMark(np.array(miss.way_mm), tuple((miss.displacement_mm - found.shift_mm).tolist()))
+            for miss in fit.marks
+        ),
     )
     return OverlapCalibration(replace(made, brush=brush, fit=placed, covariance=None), made, found)
 
