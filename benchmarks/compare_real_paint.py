@@ -77,7 +77,7 @@ def away_mm(mask, px: float) -> np.ndarray:
 
 def searched(stroke, predicted):
     """The same by searching."""
-    shift = real_paint.best_shift(predicted, stroke.mask, stroke.px)[1]
+    shift = real_paint.best_shift(predicted, stroke.mask, stroke.px, real_paint.FARTHEST_MM)[1]
     columns, rows = np.round(shift / stroke.px * [1, -1]).astype(int)
     moved = cv2.warpAffine(
         np.uint8(predicted), np.float32([[1, 0, columns], [0, 1, rows]]), predicted.shape[::-1]
@@ -97,7 +97,7 @@ def fully_searched(stroke, predicted, middle_mm, start_mm):
         matrix = cv2.getRotationMatrix2D(middle, np.degrees(x[2]), 1.0)
         matrix[:, 2] += (x[0] / stroke.px, -x[1] / stroke.px)
         lies = cv2.warpAffine(away, matrix, away.shape[::-1], flags=cv2.INTER_LINEAR, borderValue=99.0)
-        return 1 - real_paint._soft_overlap(mask, np.clip(0.5 + (x[3] - lies) / stroke.px, 0, 1))
+        return 1 - real_paint.soft_overlap(mask, np.clip(0.5 + (x[3] - lies) / stroke.px, 0, 1))
 
     steps, found = np.diag([0.5, 0.5, 0.05, 0.2]), []
     for start in (np.array([*start_mm, 0, 0]), np.zeros(4)):

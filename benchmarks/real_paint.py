@@ -13,11 +13,11 @@ Each set is cleaned up to one blob per stroke; strokes with even numbers are fit
 3 mm. Beside ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
 that is linear in depth, each fitted to the largest `fixed`.
 
-Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` goes on from there to the largest `fixed` of the same
-laws, with footprints held round as long as the strokes do not speak against it. Numbers: lag 2, tip gap 1, half width
-2, the footprint's shape 2, height of the paper 1, the set's displacement 2 (at one depth lag 1, half width 1, no
-height); `edges` also has a shift for each fitted stroke. --machine: ours with the machine's numbers beside, in both:
-lean 2, axes 3.
+Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` what it does with --aim overlap: it goes on from there
+with the same laws to the largest mean of `fixed` and `shift`, with footprints held round as long as the strokes do not
+speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the set's
+displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
+with the machine's numbers beside: lean 2, axes 3, which `overlap` leaves as edges found them.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
@@ -44,6 +44,14 @@ from scipy.optimize import minimize
 
 from brushsvg import _core
 from brushsvg.calibration import machine_found
+from brushsvg.calibration.by_overlap import (
+    Target,
+    best_shift,
+    largest_overlap,
+    on_paper,
+    predicted,
+    soft_overlap,
+)
 from brushsvg.calibration.from_marks import brush_of
 from brushsvg.cli.arguments import values
 from brushsvg.scan.mask_contours import mask_outlines
@@ -52,14 +60,9 @@ LEVEL = 70
 FARTHEST_MM = 3.0
 NEAR_MM = 8.0
 JOINED_MM = 1.5
-FEW = 30  # strokes on which the search begins
 MARGIN_MM = 8.0  # around way and paint, while searching
 DISCS = ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth"))
-# While searching: how far overlaps of single strokes scatter, and beyond what a footprint is not called round, in half
-# widths: length behind the widest section, in front of it, from there to the centre of friction.
-SCATTER, ROUND = 0.1, (0.4, 0.3, 0.4)
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
-ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAWS = ("lag", "tip_gap", "half_width")
 # Commands are nearly equal: rms distance of their ways as a share of the paint's width, rms distance of their depths
 # as a share of the deepest, the sum of both. Farther apart, what strokes miss no longer grows along a line.
@@ -141,21 +144,9 @@ def overlap(a, b) -> float:
     return float(np.logical_and(a, b).sum() / both) if both else 1.0
 
 
-def best_shift(predicted, mask, px) -> tuple[float, np.ndarray]:
-    """Largest overlap when the prediction moves by whole pixels up to FARTHEST_MM; where to [mm], y up."""
-    reach = int(FARTHEST_MM / px)
-    grown = cv2.copyMakeBorder(np.float32(mask), reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0)
-    found = cv2.matchTemplate(grown, np.float32(predicted), cv2.TM_CCORR)
-    total = predicted.sum() + mask.sum()
-    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-    score = np.where(x**2 + y**2 <= reach**2, found / np.maximum(total - found, 1e-9), 0)
-    k = np.unravel_index(int(score.argmax()), score.shape)
-    return float(score[k]), np.array([x[k], -y[k]]) * px
-
-
 def scores(strokes, predicted) -> tuple[np.ndarray, np.ndarray, list]:
     fixed = np.array([overlap(p, s.mask) for p, s in zip(predicted, strokes, strict=True)])
-    moved = [best_shift(p, s.mask, s.px) for p, s in zip(predicted, strokes, strict=True)]
+    moved = [best_shift(p, s.mask, s.px, FARTHEST_MM) for p, s in zip(predicted, strokes, strict=True)]
     return fixed, np.array([m[0] for m in moved]), [m[1] for m in moved]
 
 
@@ -196,7 +187,7 @@ def _along(poses, at) -> np.ndarray:
 
 
 def _missing(a: Stroke, b: Stroke) -> tuple[float, float]:
-    return 1 - overlap(a.mask, b.mask), 1 - best_shift(a.mask, b.mask, a.px)[0]
+    return 1 - overlap(a.mask, b.mask), 1 - best_shift(a.mask, b.mask, a.px, FARTHEST_MM)[0]
 
 
 def ceiling_words(strokes) -> str:
@@ -292,142 +283,21 @@ def fit_ours(strokes, name, machine=()):
 
 
 def by_overlap(strokes, fit, options):
-    """The fitted brush, changed to the largest overlap on the same strokes where they lie, as the discs are. Edges say
-    what the usual mark is, overlap also what to predict where marks vary and lie off: a little more.
-
-    Lag and footprint tell little apart where the brush hardly turns, so that a footprint that is not round has its
-    price, as in `calibrate`: squares of what it is off, weighed against overlaps as if those scattered normally.
-
-    Changed are lag and half width (as values at control depths), tip gap, the footprint's two lengths, the height of
-    the paper and the set's displacement. A simplex search, from the edges' fit and from a disc; on a part of the
-    strokes first. Returns a fit of the same kind, the overlap reached and how many numbers were changed.
-    """
-    begin = _controls(fit, options)
-    half = begin["half_width"].sum()
-    disc = begin | {"tip_gap": np.array([half]), "shape": np.ones(2)}
-    starts = [begin, disc] if options.round_tail else [begin]
-    sizes = np.cumsum([len(v) for v in begin.values()])[:-1]
-
-    def named(x):
-        return dict(zip(begin, np.split(x, sizes), strict=True))
-
-    def loss_on(chosen):
-        masks = [_coarse(stroke)[0] for stroke in chosen]
-
-        def loss(x):
-            now = named(x)
-            if _impossible(now, options):
-                return 1.0
-            pictures = _soft_pictures(chosen, _from_controls(now, fit, options), options)
-            missing = 1 - np.mean([_soft_overlap(m, p) for m, p in zip(masks, pictures, strict=True)])
-            return missing + SCATTER / (2 * len(strokes)) * _out_of_round(now)
-
-        return loss
-
-    few, steps = (
-        loss_on(strokes[:: max(1, len(strokes) // FEW)]),
-        np.concatenate(list(_steps(begin).values())),
-    )
-    found = [_simplex(few, np.concatenate(list(start.values())), steps, 260) for start in starts]
-    best = min(found, key=lambda one: one.fun)
-    best = _simplex(loss_on(strokes), best.x, 0.4 * steps, 200)
-    return _from_controls(named(best.x), fit, options), 1 - best.fun, len(best.x)
+    """What `calibrate --aim overlap` makes of the edges' fit: a fit of the same kind, and what is said of it."""
+    targets = [_target(stroke, fit) for stroke in strokes]
+    found = largest_overlap(targets, fit.laws, fit.height_mm, options, fit.shift_mm)
+    return _like(fit, laws=found.laws, height_mm=found.height_mm, shift_mm=found.shift_mm), found
 
 
-def _out_of_round(x: dict) -> float:
-    behind, front = x["shape"]
-    friction = x["tip_gap"][0] / max(0.1, x["half_width"].sum()) - behind
-    return float(np.sum(np.square(np.array([behind - 1, front - 1, friction]) / ROUND)))
-
-
-def _simplex(loss, x, steps, most):
-    simplex = np.vstack([x, *(x + d for d in np.diag(steps))])
-    told = {"initial_simplex": simplex, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
-    return minimize(loss, x, method="Nelder-Mead", options=told)
-
-
-def _controls(fit, options) -> dict[str, np.ndarray]:
-    """The unknowns of a fit: lag and half width as values at as many depths as they have numbers."""
-    laws, deepest = fit.laws, options.deepest_mm
-    depths = _control_depths(options.lag_terms, deepest)
-    half = np.polyval(laws.half_width[::-1], np.linspace(0, deepest, options.half_width_terms + 1))
-    return {
-        "lag": np.polyval(laws.lag[::-1], depths),
-        "tip_gap": np.array([laws.tip_gap[1] * deepest]),
-        "half_width": np.diff(half),
-        "shape": np.array([laws.widest_per_half, laws.front_per_half]),
-        "height": np.array([fit.height_mm] if options.height_mm.sigma > 0 else []),
-        "shift": np.array(fit.shift_mm),
-        "lean": np.array(fit.machine.lean_mm_per_mm if options.lean_mm_per_mm > 0 else []),
-        "axes": _axes(fit.machine) if options.axes > 0 else np.zeros(0),
-    }
+def _like(fit, **changed):
+    names = ("laws", "height_mm", "shift_mm", "centre_mm", "machine")
+    return SimpleNamespace(**{name: getattr(fit, name) for name in names} | changed)
 
 
 def machine_of(fit) -> tuple[np.ndarray, np.ndarray]:
     """Lean x and y; scale x and y less 1, and skew."""
-    if hasattr(fit, "machine"):
-        return np.array(fit.machine.lean_mm_per_mm), _axes(fit.machine)
-    return fit.lean, fit.axes
-
-
-def _axes(machine) -> np.ndarray:
-    return np.array([machine.scale[0] - 1, machine.scale[1] - 1, machine.skew])
-
-
-def _steps(x: dict) -> dict[str, np.ndarray]:
-    size = {
-        "lean": 0.1,
-        "axes": 0.01,
-        "lag": 0.8,
-        "tip_gap": 0.4,
-        "half_width": 0.4,
-        "shape": 0.2,
-        "height": 0.4,
-        "shift": 0.4,
-    }
-    return {name: np.full(len(values), size[name]) for name, values in x.items()}
-
-
-def _control_depths(terms: int, deepest: float) -> np.ndarray:
-    return np.linspace(0, deepest, terms) if terms > 1 else np.array([deepest / 2])
-
-
-def _through(depths, values, powers) -> list[float]:
-    out = np.zeros(max(powers) + 1)
-    out[list(powers)] = np.linalg.solve(np.asarray(depths)[:, None] ** np.array(powers), values)
-    return out.tolist()
-
-
-def _from_controls(x: dict, fit, options) -> SimpleNamespace:
-    deepest, terms = options.deepest_mm, options.half_width_terms
-    laws = _core.MarkLaws(
-        _through(_control_depths(options.lag_terms, deepest), x["lag"], range(options.lag_terms)),
-        [0.0, float(x["tip_gap"][0]) / deepest],
-        _through(np.linspace(0, deepest, terms + 1)[1:], np.cumsum(x["half_width"]), range(1, terms + 1)),
-        *(float(v) for v in x["shape"]),
-        fit.laws.round_tail,
-    )
-    height = float(x["height"][0]) if len(x["height"]) else fit.height_mm
-    return SimpleNamespace(
-        laws=laws,
-        shift_mm=x["shift"],
-        height_mm=height,
-        centre_mm=fit.centre_mm,
-        lean=x["lean"] if len(x["lean"]) else np.zeros(2),
-        axes=x["axes"] if len(x["axes"]) else np.zeros(3),
-    )
-
-
-def _impossible(x: dict, options) -> bool:
-    """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes."""
-    height = float(x["height"][0]) if len(x["height"]) else 0.0
-    if abs(height) > 6.0 or x["shape"].min() < 0.1 or x["half_width"][0] <= 0:
-        return True
-    old = SimpleNamespace(laws=SimpleNamespace(round_tail=True), height_mm=0.0, centre_mm=(0.0, 0.0))
-    new = _from_controls(x, old, options)
-    depths = np.linspace(0, options.deepest_mm + max(0.0, height), 12)
-    half = np.polyval(new.laws.half_width[::-1], depths)
-    return np.polyval(new.laws.lag[::-1], depths).min() < 0.02 or np.diff(half).min() < 0 or half[-1] > 20
+    machine = fit.machine
+    return np.array(machine.lean_mm_per_mm), np.array([*np.subtract(machine.scale, 1), machine.skew])
 
 
 @cache
@@ -445,23 +315,9 @@ def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
     return part, (x + left * stroke.px, y + tall - top * stroke.px - size[1], *size)
 
 
-def _soft_pictures(strokes, fit, options):
-    """Anti-aliased pictures of predicted marks on the windows of `_coarse`, which change smoothly; footprints of half
-    as many vertices."""
-    brush = brush_for(strokes, fit, options)
-    outlines = [(one.depth_mm, np.array(one.outline_mm)[::2]) for one in brush.footprints.dragged]
-    brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
-    plan = _core.Plan("fitted", "", (1.0, 1.0), [])
-    for stroke in strokes:
-        plan.passes = [_moved(stroke, fit)]
-        marks = _core.simulate(plan, brush, ROUGHLY_MM)
-        yield _core.coverage(marks, brush, _coarse(stroke)[1], 0.5 / stroke.px)
-
-
-def _soft_overlap(mask, painted) -> float:
-    both = float(np.minimum(mask, painted).sum())
-    either = float(mask.sum() + painted.sum()) - both
-    return both / either if either > 0 else 1.0
+def _target(stroke: Stroke, fit) -> Target:
+    paint, window = _coarse(stroke)
+    return Target(_as_run(stroke, fit), paint, window, 0.5 / stroke.px)
 
 
 def brush_for(strokes, fit, options) -> _core.Brush:
@@ -469,15 +325,19 @@ def brush_for(strokes, fit, options) -> _core.Brush:
     return brush_of(fit.laws, "fitted", (0.0, deepest + max(0.0, fit.height_mm)))
 
 
-def _moved(stroke: Stroke, fit) -> _core.Pass:
-    """The TCP's way on the paper as the fit found it to lie, and as the machine ran it."""
+def _as_run(stroke: Stroke, fit) -> np.ndarray:
+    """The TCP's way as the machine ran it, on the paper as high as it was told."""
     lean, axes = machine_of(fit)
     poses = np.array(stroke.poses)
-    at = poses[:, :2] - fit.centre_mm
-    poses[:, 2] = np.minimum(poses[:, 2] - fit.height_mm, 0.0)
+    at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
-    poses[:, :2] += fit.shift_mm - poses[:, 2:] * np.asarray(lean)
-    return _core.Pass("stroke", poses)
+    poses[:, :2] += depth * lean
+    return poses
+
+
+def _moved(stroke: Stroke, fit) -> _core.Pass:
+    """The same where the fit found paper and sheet to lie."""
+    return _core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
 
 
 def our_marks(strokes, fit, options, led=_moved) -> list[np.ndarray]:
@@ -580,25 +440,24 @@ def laws_in_words(fit) -> str:
 
 def residual_words(strokes, fit, options) -> list[str]:
     """What is missing to a whole overlap, by what wins it back when each stroke may have its own: place, width, lag."""
-    laws = fit.laws
+    laws, targets = fit.laws, [_target(stroke, fit) for stroke in strokes]
 
     def places(width, lag):
-        tried = SimpleNamespace(
-            laws=_core.MarkLaws(
-                [lag * c for c in laws.lag],
-                laws.tip_gap,
-                [width * c for c in laws.half_width],
-                laws.widest_per_half,
-                laws.front_per_half,
-                laws.round_tail,
-            ),
-            **{name: getattr(fit, name) for name in ("shift_mm", "height_mm", "centre_mm", "lean", "axes")},
+        tried = _core.MarkLaws(
+            [lag * c for c in laws.lag],
+            laws.tip_gap,
+            [width * c for c in laws.half_width],
+            laws.widest_per_half,
+            laws.front_per_half,
+            laws.round_tail,
         )
         out = []
-        for stroke, picture in zip(strokes, _soft_pictures(strokes, tried, options), strict=True):
-            mask = _coarse(stroke)[0]
-            fixed = _soft_overlap(mask, picture)
-            out.append((fixed, max(fixed, best_shift(picture, mask, 2 * stroke.px)[0])))
+        pictures = predicted(targets, tried, fit.height_mm, fit.shift_mm, options.deepest_mm)
+        for target, picture in zip(targets, pictures, strict=True):
+            fixed = soft_overlap(target.paint, picture)
+            out.append(
+                (fixed, max(fixed, best_shift(picture, target.paint, 1 / target.px_per_mm, FARTHEST_MM)[0]))
+            )
         return np.array(out)
 
     by = np.array([[places(width, lag) for lag in OWN_LAGS] for width in OWN_WIDTHS])
@@ -664,13 +523,13 @@ def main():
             f"{fit.iterations} iterations{converged})",
             flush=True,
         )
-        best, reached, numbers = by_overlap(seen, fit, options)
+        best, found = by_overlap(seen, fit, options)
         took = time.perf_counter() - begin
-        predicted = our_marks(unseen, best, options)
-        fixed, moved, shifts = scores(unseen, predicted)
+        marks = our_marks(unseen, best, options)
+        fixed, moved, shifts = scores(unseen, marks)
         print(
-            f"  {'ours, overlap':22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  ({took:.1f} s; {reached:.3f} "
-            f"on the strokes fitted; {numbers} numbers)",
+            f"  {'ours, overlap':22s} fixed {fixed.mean():.3f}  shift {moved.mean():.3f}  ({took:.1f} s; "
+            f"{found.overlap:.3f} on the strokes fitted; {found.numbers} numbers)",
             flush=True,
         )
         if args.tilt and any(stroke.tilt_rad for stroke in strokes):
@@ -681,7 +540,7 @@ def main():
         for line in [*residual_words(unseen, best, options), *fit.remarks]:
             print(f"    {line}")
         if args.pictures:
-            picture(unseen, predicted, shifts, moved, args.pictures / f"{name}.png")
+            picture(unseen, marks, shifts, moved, args.pictures / f"{name}.png")
 
 
 if __name__ == "__main__":

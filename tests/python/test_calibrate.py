@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, refused
+from diagnostics import agrees, are_told, in_json, refused
 from scipy import special
 
+import brushsvg
 from brushsvg import _core, find_brush
 from brushsvg.brush.confidence import law_band
 from brushsvg.calibration import plausibility
@@ -601,3 +602,27 @@ def test_measured_numbers_say_nothing_of_paint(tmp_path, capsys):
     status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--paint")
     assert status == 1 and agrees(told, "options-contradict --paint")
     assert not out.exists()
+
+
+def test_an_overlap_needs_marks(tmp_path, capsys):
+    (tmp_path / "m.csv").write_text(TABLE)
+    out = tmp_path / "own.json"
+    status, _, told = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--aim", "overlap")
+    assert status == 1 and are_told([notice for _, notice in told], "options-contradict --aim overlap")
+    assert not out.exists()
+
+
+def test_an_aim_that_there_is_not_is_refused(tmp_path):
+    (tmp_path / "m.csv").write_text(TABLE)
+    with refused("choice-unknown edges overlap width"):
+        brushsvg.calibrate(tmp_path / "m.csv", aim="width")
+
+
+@pytest.mark.parametrize(
+    "more",
+    [["--plan", "p.json", "--prior", "round-6"], ["--chart", "c.json", "--brush", "round-6"], ["--chart", "c.json", "--paint"]],
+)
+def test_an_overlap_is_not_for_jobs_nor_for_outlines_that_are_known(more, tmp_path, capsys):
+    out = str(tmp_path / "own.json")
+    assert main(["calibrate", "a.jpg", "-o", out, "--aim", "overlap", *more]) == 2
+    assert "--aim" in capsys.readouterr().err

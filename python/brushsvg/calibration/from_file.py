@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any, Required, TypedDict, overload
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, Required, TypedDict, overload
 
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, need, need_one_of
 from ..files import read_bytes
+from .by_overlap import OverlapCalibration, by_overlap
 from .from_marks import MarkCalibration, calibrate_marks, options_for
 from .from_measurements import Calibration
 from .from_measurements import calibrate as calibrate_measured
@@ -20,6 +21,8 @@ from .mark_input import read_painted
 from .measurements import FORMAT, Measurements, Row, read_measurements
 from .paint_found import calibrate_paint
 from .turn_picture import centre_line
+
+AIMS = ("edges", "overlap")
 
 Rows = Sequence[Mapping[str, object]]
 
@@ -62,8 +65,22 @@ def calibrate(
 ) -> Calibration: ...
 @overload
 def calibrate(
-    measured: PaintedMarks, name: str = "", *, machine: tuple[str, ...] = (), paint: bool = False
+    measured: PaintedMarks,
+    name: str = "",
+    *,
+    machine: tuple[str, ...] = (),
+    paint: bool = False,
+    aim: Literal["edges"] = "edges",
 ) -> MarkCalibration: ...
+@overload
+def calibrate(
+    measured: str | os.PathLike[str] | Mapping[str, Any],
+    name: str = "",
+    *,
+    machine: tuple[str, ...] = (),
+    aim: Literal["overlap"],
+    progress: Callable[[str], object] | None = None,
+) -> OverlapCalibration: ...
 @overload
 def calibrate(
     measured: str | os.PathLike[str] | Mapping[str, Any],
@@ -73,6 +90,8 @@ def calibrate(
     total: bool = False,
     machine: tuple[str, ...] = (),
     paint: bool = False,
+    aim: Literal["edges"] = "edges",
+    progress: Callable[[str], object] | None = None,
 ) -> Calibration | MarkCalibration: ...
 def calibrate(
     measured: str | os.PathLike[str] | Mapping[str, Any],
@@ -82,20 +101,27 @@ def calibrate(
     total: bool = False,
     machine: tuple[str, ...] = (),
     paint: bool = False,
-) -> Calibration | MarkCalibration:
+    aim: Literal["edges", "overlap"] = "edges",
+    progress: Callable[[str], object] | None = None,
+) -> Calibration | MarkCalibration | OverlapCalibration:
     """A brush of what was measured: numbers (.csv, .json) or painted marks (.json), as docs/calibration.md has them.
 
     measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
     for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
     own. absolute: least absolute residuals instead of squares; total: total least squares for series of angles.
     machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash". paint: they were painted in the
-    plan's order with one load of paint: find how they narrow. Returns what was found: brush, a
-    Brush [mm] that save_brush writes; of numbers laws and remarks, too, of marks what moved and what is left.
+    plan's order with one load of paint: find how they narrow. aim: of painted marks, "edges" of the usual mark, or from
+    there to the "overlap" that predicts further marks best, without intervals and not with paint; progress: is told in
+    words how far that is. Returns what was found: brush, a Brush [mm] that save_brush writes; of numbers laws and
+    remarks, too, of marks what moved and what is left.
 
     Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
     """
     need(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
     need(name, str, "the name of a brush")
+    need_one_of(aim, AIMS, "aim")
+    if progress is not None and not callable(progress):
+        need(progress, Callable, "a callable, which progress is")
     if isinstance(measured, dict):
         folder, stem = "", "measured"
         found = read_measurements(_json(measured), ".json")
@@ -119,13 +145,27 @@ def calibrate(
                 "--paint needs painted marks: measured numbers say nothing of the order they were painted in",
                 code="options-contradict",
             )
+        if aim == "overlap":
+            raise Error(
+                "--aim overlap needs painted marks: measured numbers have no outlines that could overlap",
+                code="options-contradict",
+            )
         _read_pictures(found, read)
         return calibrate_measured(found, name, bool(absolute), bool(total))
     painted = read_painted(found.plan, found.marks, read)
     options = options_for(found.expected)
     ask_for(options, machine)
+    if paint and aim == "overlap":
+        raise Error(
+            "--paint is found by edges: with --aim overlap marks do not narrow along the way",
+            code="options-contradict",
+        )
     fit = calibrate_paint if paint else calibrate_marks
-    return fit(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
+    made = fit(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
+    if aim == "edges":
+        return made
+    say = progress or (lambda text: None)
+    return by_overlap(made, lambda now, most: say(f"looked at {now} of {most} overlaps"))
 
 
 def _json(measured: dict) -> bytes:

@@ -84,6 +84,13 @@ def add_calibrate(commands) -> None:
         help="with --plan: the brush that painted it, as it is known up to now",
     )
     fit.add_argument(
+        "--aim",
+        choices=("edges", "overlap"),
+        default="edges",
+        help="of painted marks: fit the edges of the usual mark, or go on from there to the largest overlap, which "
+        "predicts further marks best and has no intervals; default: edges",
+    )
+    fit.add_argument(
         "--norm",
         choices=("squares", "absolute"),
         default="squares",
@@ -161,7 +168,11 @@ def _check_calibrate(args) -> None:
         return
     if args.paint and args.brush is not None:
         args.parser.error("--paint finds a brush of its own: --brush must go")
+    if args.paint and args.aim != "edges":
+        args.parser.error("--paint is found by edges: --aim overlap must go")
     if args.photos:
+        if args.aim != "edges" and args.brush is not None:
+            args.parser.error("--aim overlap is not for a photograph with --brush, which keeps its outlines")
         _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
         return
     for flag, value in (
@@ -189,6 +200,8 @@ def _check_update(args) -> None:
             args.parser.error(f"--{flag} is not for a job (--plan)")
     if args.norm != "squares":
         args.parser.error("--norm is not for a job (--plan)")
+    if args.aim != "edges":
+        args.parser.error("--aim is not for a job (--plan): a brush is updated by edges")
     _refuse_heic(args, args.inputs)
     read = [*((path, PHOTOS) for path in args.inputs), (args.plan, (".json",)), (args.prior, None)]
     read.append((args.spread, (".json",)))

@@ -14,6 +14,7 @@ from .scan import read_photographs
 
 
 def calibrate_file(args) -> None:
+    from ...calibration.by_overlap import OverlapCalibration, by_overlap
     from ...calibration.from_file import calibrate
     from ...calibration.from_marks import MarkCalibration
     from ...calibration.law_report import report, report_picture
@@ -33,7 +34,12 @@ def calibrate_file(args) -> None:
         return
     with about(args.input):
         if read:
-            made, report, report_picture = _from_photo(read, name, args)
+            of_marks, report, report_picture = _from_photo(read, name, args)
+            made = of_marks
+            if args.aim == "overlap":
+                from ...calibration.by_overlap_report import report, report_picture
+
+                made = by_overlap(of_marks, lambda now, most: stage(f"looked at {now} of {most} overlaps"))
         else:
             made = calibrate(
                 args.input,
@@ -42,8 +48,14 @@ def calibrate_file(args) -> None:
                 total=args.total,
                 machine=args.machine,
                 paint=args.paint,
+                aim=args.aim,
+                progress=stage,
             )
-            if isinstance(made, MarkCalibration):
+            if isinstance(made, OverlapCalibration):
+                from ...calibration.by_overlap_report import report, report_picture
+
+                warn(args.input, doubts(made.by_edges.painted, made.by_edges.expected))
+            elif isinstance(made, MarkCalibration):
                 from ...calibration.mark_report import report, report_picture
 
                 warn(args.input, doubts(made.painted, made.expected))
@@ -58,10 +70,10 @@ def calibrate_file(args) -> None:
             from ...calibration.mark_report import strays_told
             from ...calibration.photo_report import read_picture
 
-            warn(args.photos[0], strays_told(made) + doubts(made.painted, made.expected))
+            warn(args.photos[0], strays_told(of_marks) + doubts(of_marks.painted, of_marks.expected))
             more = told(read)
             if args.picture:
-                files[args.picture] = read_picture(read, made)
+                files[args.picture] = read_picture(read, made.made if args.aim == "overlap" else made)
     warn(args.output, remarks(made.brush))
     write(args, files, more=more)
     tell(report(made))

@@ -1,0 +1,44 @@
+"""What the largest overlap made of a brush that edges told, in words and as a picture."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..brush.describe import LAWS, polynomial
+from ..brush.plot import brush_picture
+from .mark_report import TABLE_ROWS, overlaps
+
+
+def report(made) -> str:
+    """The text that `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration."""
+    brush, edges, found = made.brush, made.by_edges, made.found
+    lines = [
+        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
+        f"{len(edges.painted.marks)} painted marks, to the largest overlap",
+        "",
+        *(f"{name} = {polynomial(getattr(brush, name).coefficients)}" for name, _ in LAWS),
+        "",
+        "  depth" + "".join(f"{name} (edges)".rjust(24) for name, _ in LAWS),
+    ]
+    for depth in np.linspace(*brush.depth_range_mm, TABLE_ROWS):
+        cells = [
+            f"{getattr(brush, name)(depth):.2f} ({getattr(edges.brush, name)(depth):.2f})" for name, _ in LAWS
+        ]
+        lines.append(f"{depth:7.2f}" + "".join(cell.rjust(24) for cell in cells))
+    way = "higher" if found.height_mm >= 0 else "lower"
+    (lying, moved), (now_lying, now_moved) = overlaps(edges), overlaps(made.made)
+    lines += [
+        "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals",
+        "",
+        f"the paper lies {abs(found.height_mm):.2f} mm {way} than the plan took it to be "
+        f"({edges.fit.height_mm:+.2f} mm by edges)",
+        f"painted and predicted marks overlap by {now_lying:.3f} where they lie, by {now_moved:.3f} with the "
+        f"displacements of the edges' fit taken away; by edges {lying:.3f} and {moved:.3f}",
+        "no intervals: those of the edges' fit do not hold for these laws",
+    ]
+    return "\n".join([*lines, ""])
+
+
+def report_picture(made, suffix: str) -> bytes:
+    """The laws, without bands."""
+    return brush_picture(made.brush, suffix)
