@@ -620,7 +620,11 @@ def test_an_aim_that_there_is_not_is_refused(tmp_path):
 
 @pytest.mark.parametrize(
     "more",
-    [["--plan", "p.json", "--prior", "round-6"], ["--chart", "c.json", "--brush", "round-6"], ["--chart", "c.json", "--paint"]],
+    [
+        ["--plan", "p.json", "--prior", "round-6"],
+        ["--chart", "c.json", "--brush", "round-6"],
+        ["--chart", "c.json", "--paint"],
+    ],
 )
 def test_an_overlap_is_not_for_jobs_nor_for_outlines_that_are_known(more, tmp_path, capsys):
     out = str(tmp_path / "own.json")
