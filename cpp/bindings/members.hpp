@@ -93,8 +93,7 @@ inline constexpr auto members<brushsvg::PassMarks> =
     std::tuple(&brushsvg::PassMarks::stroke, &brushsvg::PassMarks::pose, &brushsvg::PassMarks::tcp_mm,
                &brushsvg::PassMarks::contact_mm, &brushsvg::PassMarks::heading_rad, &brushsvg::PassMarks::depth_mm,
                &brushsvg::PassMarks::taut, &brushsvg::PassMarks::pull, &brushsvg::PassMarks::lean_mm_per_mm,
-               &brushsvg::PassMarks::width_share,
-               &brushsvg::PassMarks::outline_mm);
+               &brushsvg::PassMarks::width_share, &brushsvg::PassMarks::outline_mm);
 
 template <>
 inline constexpr auto members<brushsvg::Marks> = std::tuple(&brushsvg::Marks::passes, &brushsvg::Marks::outline_mm);

@@ -46,8 +46,8 @@ struct Rows {
     PassMarks taken() {
         to.stroke = from.stroke;
         to.outline_mm = from.outline_mm;
-        for (auto [points, rows] : {std::pair{&to.tcp_mm, &tcp}, std::pair{&to.contact_mm, &contact},
-                                    std::pair{&to.lean_mm_per_mm, &lean}}) {
+        for (auto [points, rows] :
+             {std::pair{&to.tcp_mm, &tcp}, std::pair{&to.contact_mm, &contact}, std::pair{&to.lean_mm_per_mm, &lean}}) {
             points->resize(Eigen::Index(rows->size()), 2);
             for (std::size_t i = 0; i < rows->size(); ++i) points->row(Eigen::Index(i)) = (*rows)[i];
         }

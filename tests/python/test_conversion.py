@@ -242,7 +242,7 @@ def still_working() -> list[str]:
 @pytest.mark.slow
 def test_it_is_given_up_wherever_it_is(desk, word):
     Path("long.svg").write_text(
-        waves({"reading": 200, "finding": 40}.get(word, 10))
+        waves({"reading": 200, "finding": 40, "writing": 60}.get(word, 10))
         .replace("1200mm", "5000")
         .replace("1600mm", "5000")
     )
