@@ -2,6 +2,7 @@
 and does not make itself is made for it when it is first named: photographs by the camera of the package, of paint by
 tests/laws."""
 
+import json
 import os
 import re
 import shlex
@@ -21,6 +22,7 @@ from shown_code import HOUSE, PAGES, Block, blocks, why_not_run
 for place in ("tools", "tests/laws"):
     sys.path.insert(0, str(HOUSE / place))
 import test_flatbed  # noqa: E402
+import test_paint_found  # noqa: E402
 from walkthrough_pictures import photo_of  # noqa: E402
 
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
@@ -150,6 +152,12 @@ def _scan(desk: Desk) -> None:
     cv2.imwrite(str(desk.folder / "scan.png"), test_flatbed.scanned(300)[..., ::-1])
 
 
+def _one_load(desk: Desk) -> None:
+    _, sheet = test_paint_found.sheet(6, 0.8, True)
+    told = {"format": "brushsvg/measurements", "version": 1, **sheet}
+    (desk.folder / "one-load.json").write_text(json.dumps(told))
+
+
 # Name of a file -> its text, the command that makes it, or a function of the desk.
 MADE = {
     "word.svg": ROBOT,
@@ -179,6 +187,7 @@ MADE = {
     "IMG_2041.jpg": _chart_photo("IMG_2041.jpg"),
     "dabs.jpg": _chart_photo("dabs.jpg", "dabs.json"),
     "scan.png": _scan,
+    "one-load.json": _one_load,
 }
 
 
