@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -9,15 +10,8 @@ using namespace brushsvg;
 namespace {
 
 std::string refusal(const Brush& brush) {
-    try {
-        check(brush);
-    } catch (const Error& e) {
-        return e.where() + ": " + e.what();
-    }
-    return "";
+    return ::refusal([&] { check(brush); });
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

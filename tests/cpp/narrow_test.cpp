@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/simulate.hpp"
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -27,17 +27,6 @@ Pass line_at(double y, double depth) {
     pass.poses_mm << 0, y, 0, 0, y, -depth, 200, y, -depth, 200, y, 0;
     return pass;
 }
-
-std::string refusal(const std::function<void()>& does) {
-    try {
-        does();
-    } catch (const Error& e) {
-        return e.where() + ": " + e.what();
-    }
-    return "";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 double height_at(const Marks& marks, const Brush& brush, double x, double y) {
     const Coverage seen = coverage(marks, brush, {x, y - 6.0, 0.05, 12.0}, 20.0);

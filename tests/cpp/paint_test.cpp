@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
 
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -16,17 +16,6 @@ Paint paint_of(double narrows_per_m) {
     paint.narrows_per_m = narrows_per_m;
     return paint;
 }
-
-std::string refusal(const std::function<void()>& does) {
-    try {
-        does();
-    } catch (const Error& e) {
-        return e.where() + ": " + e.what();
-    }
-    return "";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

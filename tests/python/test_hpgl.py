@@ -194,6 +194,22 @@ def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
     assert call(capsys, "check", "air.hpgl")[0] == 0
 
 
+@pytest.mark.parametrize("cell", ["hpgl-plotter", "marlin-servo"])
+def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_path, capsys, cell):
+    """The pen is lifted and let down again, and no way leads to it."""
+    lines = '<path d="M20 20H50"/><path d="M50 20L80 40"/><path d="M80 40V50"/>'
+    drawing = tmp_path / "lines.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+        f'<g fill="none" stroke="#000" stroke-width="1">{lines}</g></svg>'
+    )
+    made = str(tmp_path / f"lines{POSTS[find_cell(cell).language].extensions[0]}")
+    flags = ("--cell", cell, "--brush", "rigid")
+    assert call(capsys, "convert", str(drawing), made, *flags)[0] == 0
+    status, said, _ = call(capsys, "check", made, str(drawing), *flags)
+    assert status == 0 and RUNNABLE in said
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

@@ -16,12 +16,12 @@ as for the edges: squares of what it is off, weighed against overlaps as if thos
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from scipy.optimize import minimize
 
 from .. import _core
 from ..array_values import ArrayValue
@@ -75,17 +75,22 @@ class OverlapCalibration(ArrayValue):
 
 
 def by_overlap(
-    made: MarkCalibration, progress: Callable[[int, int], object] = lambda now, most: None
+    made: MarkCalibration, progress: Callable[[str], object] = lambda text: None
 ) -> OverlapCalibration:
-    """made: what edges told of the marks. Those that are outliers as a whole have no say here, either."""
-    fit, options = made.fit, made.expected
+    """made: what edges told of the marks. Those that are outliers as a whole have no say here, either. progress: is
+    told in words how far it is."""
+    fit, options = made.fit, copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     targets = [
         _target(mark, miss, made)
         for mark, miss in zip(made.painted.marks, fit.marks, strict=True)
         if not miss.outlier
     ]
-    found = largest_overlap(targets, fit.laws, fit.height_mm, options, progress=progress)
+
+    def say(now: int, most: int) -> None:
+        progress(f"looked at {now} of {most} overlaps")
+
+    found = largest_overlap(targets, fit.laws, fit.height_mm, options, progress=say)
     brush = brush_of(found.laws, made.brush.name, made.brush.depth_range_mm)
     brush.max_speed_mm_s = made.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
@@ -271,6 +276,8 @@ class _Search:
 
 
 def _simplex(loss, x, steps, most: int):
+    from scipy.optimize import minimize
+
     simplex = np.vstack([x, *(x + d for d in np.diag(steps))])
     told = {"initial_simplex": simplex, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
     return minimize(loss, x, method="Nelder-Mead", options=told)

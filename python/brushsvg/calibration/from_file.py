@@ -162,10 +162,7 @@ def calibrate(
         )
     fit = calibrate_paint if paint else calibrate_marks
     made = fit(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
-    if aim == "edges":
-        return made
-    say = progress or (lambda text: None)
-    return by_overlap(made, lambda now, most: say(f"looked at {now} of {most} overlaps"))
+    return by_overlap(made, progress or (lambda text: None)) if aim == "overlap" else made
 
 
 def _json(measured: dict) -> bytes:

@@ -85,10 +85,8 @@ def _told(sections: Iterator[Section], half: np.ndarray, cell: Cell) -> Iterator
             moves, side = _as_told(move, here, side, half)
             steps += moves
             here = move.points_mm[-1]
-            if (
-                move.meaning == "travel" and (side != goes_on).any()
-            ):  # in the air, not where the brush touches
-                side = goes_on
+            if move.meaning == "travel" and (side != goes_on).any():
+                side = goes_on  # in the air, not where the brush touches
                 steps.append(replace(move, points_mm=_beside(here[None], side, half)))
         yield Section(section.title, tuple(steps))
 

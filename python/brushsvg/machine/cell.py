@@ -366,9 +366,9 @@ NEEDED_BY = {
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
 CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # how a language is told what ends a program
+OF_JOINTS = "joints of an arm have play of their own"
 NO_BACKLASH = dict.fromkeys(  # and why it is not undone
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"),
-    "joints of an arm have play of their own",
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), OF_JOINTS
 ) | {"ebb": "its motors share x and y, and have play of their own"}
 LEAST_BACKLASH_MM = 0.01
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
@@ -507,7 +507,7 @@ def why_no_waiting(cell: Cell) -> str:
 
 def why_no_backlash(cell: Cell) -> str:
     """Why backlash is not undone for this cell; "" where it is."""
-    return NO_BACKLASH["urscript"] if cell.arm else NO_BACKLASH.get(cell.language, "")
+    return OF_JOINTS if cell.arm else NO_BACKLASH.get(cell.language, "")
 
 
 ALONG_RAD = 0.1  # an axis that is turned by less goes along the paper's edge, as far as its play shows

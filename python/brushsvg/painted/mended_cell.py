@@ -9,11 +9,8 @@ from .fault_model import MACHINE, PAPER
 from .faults import Faults
 
 SURE = 1.0  # half intervals from 0, from where on a number goes into a cell
-
-
-Along = (
-    tuple[int, int] | None
-)  # which of the machine's axes go along x and y of the paper; None: backlash stays
+# Which of the machine's axes go along x and y of the paper; None: backlash stays.
+Along = tuple[int, int] | None
 
 
 def sure(faults: Faults, before: Machine | None, along: Along) -> dict[str, float]:

@@ -62,12 +62,14 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     meant, cut, lines, rests = [], [], [], []
     slack = slack_mm(cell)
     leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
+    here = None
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
         problems += [replace(each, where=name) for each in said]
         stroke = _stroke(section)
         track = _as_true(track, cell) if stroke else track
-        track = track if cell.servo else _with_ends_on_paper(track, slack)
+        track = track if cell.servo else _with_ends_on_paper(track, here, slack)
+        here = track.points[-1] if len(track.points) else here
         found = list(_touches(track, slack))
         if stroke and len(found) != 1:
             times = f"{len(found)} times, not once" if found else "never"
@@ -91,9 +93,8 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
     visited = _visits(read, cell)
     if brush.paint:
-        is_counted = cell.reload and len(visited) == len(
-            cut
-        )  # else each begins freshly dipped, as in predictions
+        # where visits belong to no stroke each begins freshly dipped, as in predictions
+        is_counted = cell.reload and len(visited) == len(cut)
         dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
         _core.narrow(marks, brush.paint, dips)
     problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
@@ -306,19 +307,24 @@ def _on_circle(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, i
     return np.array([x + radius * np.cos(angle), y + radius * np.sin(angle), (start[2] + end[2]) / 2])
 
 
-def _with_ends_on_paper(track: Track, slack: float) -> Track:
-    """The track with a point wherever a straight line goes through the paper: there a touch begins or ends, whether or
-    not the program names the place. A servo's heights go in steps, through no paper."""
-    heights = track.points[:, 2]
-    crosses = (heights[:-1] < -slack) & (heights[1:] > slack) | (heights[:-1] > slack) & (
-        heights[1:] < -slack
-    )
-    straight = np.array([track.centres[number] is None for number in track.step[1:]], dtype=bool)
+def _with_ends_on_paper(track: Track, here: np.ndarray | None, slack: float) -> Track:
+    """The track with a point wherever a straight line, that from the place before it included, goes through the paper:
+    there a touch begins or ends, whether or not the program names the place. A servo's heights go in steps, through no
+    paper."""
+    if here is None or not len(track.points):
+        ways, step = track.points, track.step
+    else:
+        ways, step = np.vstack([here, track.points]), np.r_[track.step[:1], track.step]
+    before, after = ways[:-1], ways[1:]
+    straight = np.array([track.centres[number] is None for number in step[1:]], dtype=bool)
+    crosses = np.minimum(before[:, 2], after[:, 2]) < -slack
+    crosses &= np.maximum(before[:, 2], after[:, 2]) > slack
     at = np.flatnonzero(crosses & straight)
-    before, after = track.points[at], track.points[at + 1]
+    before, after = before[at], after[at]
     part = before[:, 2:] / (before[:, 2:] - after[:, 2:])
-    points = np.insert(track.points, at + 1, before + part * (after - before), axis=0)
-    return Track(points, np.insert(track.step, at + 1, track.step[at + 1]), track.centres)
+    first = len(ways) - len(track.points)
+    points = np.insert(ways, at + 1, before + part * (after - before), axis=0)[first:]
+    return Track(points, np.insert(step, at + 1, step[at + 1])[first:], track.centres)
 
 
 def _touches(track: Track, slack: float) -> Iterator[slice]:
@@ -400,11 +406,9 @@ def _careless(
     for k in np.flatnonzero(careless | fast | travels):
         line = f"line {steps[k].line}"
         if careless[k]:
-            how = "while the brush touches" if touches[k] else f"at {low[k]:.2f} mm, below the safe height"
-            yield Notice("", f"{line}: a rapid move {how}", code="rapid-too-low")
+            yield _rapid(steps[k], "" if touches[k] else f"at {low[k]:.2f} mm, below the safe height")
         elif fast[k]:
-            sentence = f"{line}: speed {speed[k]:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
-            yield Notice("", sentence, code="speed-out-of-range")
+            yield _fast(steps[k], limit)
         else:
             sentence = f"{line}: the tool travels at {low[k]:.2f} mm, below the safe height {safe:g} mm"
             yield Notice("", sentence, code="travel-too-low")
@@ -413,6 +417,16 @@ def _careless(
         for on in map(slice, first, last):
             top = paper_mm + slack
             yield from _ahead(steps[on], before[on], track.points[on], cell, limit, top)
+
+
+def _rapid(step: Step, where: str = "") -> Notice:
+    sentence = f"line {step.line}: a rapid move {where or 'while the brush touches'}"
+    return Notice("", sentence, code="rapid-too-low")
+
+
+def _fast(step: Step, limit: float) -> Notice:
+    speed = f"speed {step.speed_mm_s:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+    return Notice("", f"line {step.line}: {speed}", code="speed-out-of-range")
 
 
 def _play_taken_up(
@@ -425,12 +439,9 @@ def _play_taken_up(
     heights = (true_mm(places, cell.machine) if _stroke(section) else places)[:, 2]
     for step, height_mm in zip(section.taking_up, heights, strict=True):
         if height_mm <= top_mm and step.rapid:
-            sentence = f"line {step.line}: a rapid move while the brush touches"
-            yield Notice("", sentence, code="rapid-too-low")
+            yield _rapid(step)
         elif height_mm <= top_mm and step.speed_mm_s > limit + 1e-6:
-            speeds = f"speed {step.speed_mm_s:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
-            sentence = f"line {step.line}: {speeds}"
-            yield Notice("", sentence, code="speed-out-of-range")
+            yield _fast(step, limit)
     lines = [section.steps[number].line for number in low.step[low.points[:, 2] <= top_mm]]
     for line in (each for each in lines if each in read.unsure):
         sentence = f"line {line}: the brush touches before the axes have taken up their backlash"

@@ -39,7 +39,7 @@ def calibrate_file(args) -> None:
             if args.aim == "overlap":
                 from ...calibration.by_overlap_report import report, report_picture
 
-                made = by_overlap(of_marks, lambda now, most: stage(f"looked at {now} of {most} overlaps"))
+                made = by_overlap(of_marks, stage)
         else:
             made = calibrate(
                 args.input,

@@ -146,6 +146,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     """What a program of the cell's language does, its places those where a machine with the cell's backlash goes. Error
     with the line for what brushsvg would not have written."""
     from ...machine.posts import POSTS
+    from .play import as_gone
 
     post = POSTS.get(cell.language)
     if post is None or suffix not in post.extensions:
@@ -165,13 +166,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
                 code="line-unread",
             )
-    return _as_gone(_READERS[cell.language](text, cell), cell)
-
-
-def _as_gone(read: Readback, cell: Cell) -> Readback:
-    from .play import as_gone
-
-    return as_gone(read, cell)
+    return as_gone(_READERS[cell.language](text, cell), cell)
 
 
 _HUGE = re.compile(
