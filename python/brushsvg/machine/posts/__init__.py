@@ -20,6 +20,7 @@ class Post(NamedTuple):
     line_end: as the controller's own files have it; has_tabs: so have they, too.
     parted: the texts of several files, by name, "" that of the one which is asked for; None: there is but that one.
     others: what writes files of other extensions in another way.
+    tilts: whether a program tells how the tool is held at each pose.
     """
 
     title: str
@@ -31,6 +32,7 @@ class Post(NamedTuple):
     has_tabs: bool = False
     parted: Callable[[str], dict[str, str]] | None = None
     others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
+    tilts: bool = False
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -166,9 +168,9 @@ POSTS = {  # by the language a cell names
     "klipper": Post("G-code for Klipper", GCODE, _dialect),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
     "marlin-servo": Post("G-code for Marlin, a pen on a servo", GCODE, _marlin_servo, circles_by=""),
-    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose", tilts=True),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
-    "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
+    "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n", tilts=True),
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
     "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),

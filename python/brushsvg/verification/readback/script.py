@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +25,9 @@ class Script:
         rise: straight up; wait: for seconds; most: an acceleration that holds for all moves; text: what else stands
         there, perhaps with a height that the tool rises to.
     again: texts that do nothing when they stand there twice; last: of the program, without blanks around them;
-    units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be; least: of `most`;
+    units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be, but where the header
+    says that the brush is tilted: there it is the tool's rotation, which `rotation` makes (3, 3) of, None where it is
+    none; least: of `most`;
     sets_after: the text before which nothing may be set; is_indented: whether blanks before a line mean something;
     any_case: whether large and small letters are the same; either_way: a text that may stand before `most` or after.
     """
@@ -40,6 +43,7 @@ class Script:
     is_indented: bool = False
     any_case: bool = False
     either_way: str = ""
+    rotation: Callable[[list[float]], np.ndarray | None] | None = None
 
 
 def place(names: str) -> str:
@@ -74,6 +78,7 @@ class _Reader:
         self.held: dict[str, float] = {}
         self.is_ready = not script.sets_after
         self.in_block = False  # which may not be run
+        self.turned: tuple = ()
 
     def line(self, number: int, line: str) -> None:
         if line.lstrip(" ").startswith(self.script.remark):
@@ -84,7 +89,7 @@ class _Reader:
             self.in_block = False
         for kind, pattern in self.script.lines:
             if found := pattern.fullmatch(line):
-                values = self._values(number, line, found)
+                values = self._values(number, "move" if kind == "blended" else kind, line, found)
                 if kind == "text" and found.groupdict().get("turned"):
                     line = line[: found.start("turned")]  # which was looked at
                 getattr(self, f"_{kind}")(number, line, values)
@@ -102,15 +107,29 @@ class _Reader:
     def spelled(self, line: str) -> str:
         return line.lower() if self.script.any_case else line
 
-    def _values(self, number: int, line: str, found: re.Match) -> dict[str, float]:
-        """The numbers of a line by name, in mm and s."""
+    def _values(self, number: int, kind: str, line: str, found: re.Match) -> dict[str, float]:
+        """The numbers of a line by name, in mm and s; how it turns the tool is kept aside."""
         said = {name: text for name, text in found.groupdict().items() if text is not None}
+        self.turned = ()
         if turned := said.pop("turned", ""):
-            self._stands(number, line, [float(value) for value in re.findall(N, turned)])
+            values = [float(value) for value in re.findall(N, turned)]
+            if kind == "move" and self.script.rotation and self.out.tilts:
+                self.turned = self._rotation(number, line, values)
+            else:
+                self._stands(number, line, values)
         return {name: float(text) * self.script.units_mm.get(name, 1.0) for name, text in said.items()}
+
+    def _rotation(self, number: int, line: str, values: list[float]) -> tuple:
+        turned = self.script.rotation(values)
+        if turned is None:
+            raise Error(f"line {number}: {line[:60]!r} tells no rotation of the tool", code="line-unread")
+        return tuple(turned.ravel().tolist())
 
     def _stands(self, number: int, line: str, found_deg: list[float]) -> None:
         """The brush stands on the paper: whole turns are none."""
+        if not self.script.turned_deg:
+            sentence = f"line {number}: {line[:60]!r} tilts the brush, and no line of its header says so"
+            raise Error(sentence, code="tool-turned")
         wanted_deg = np.round(self.script.turned_deg, 6) + 0.0
         off_deg = np.abs((np.array(found_deg) - wanted_deg + 180.0) % 360.0 - 180.0).max()
         if off_deg > LEANS_DEG:
@@ -134,8 +153,11 @@ class _Reader:
         if blend_mm < 0:
             raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
         self.out.joint_mm = max(self.out.joint_mm, blend_mm)
-        self.out.section().steps.append(Step(number, False, *end, at_most[0], blend_mm))
-        self.out.acts.append(Act(number, "move", "blends", end, at_most, (blend_mm,)))
+        axis = tuple(
+            -value for value in self.turned[2::3]
+        )  # the tool's z points from the brush into the paper
+        self.out.section().steps.append(Step(number, False, *end, at_most[0], blend_mm, axis=axis))
+        self.out.acts.append(Act(number, "move", "blends", end, at_most, (blend_mm,), self.turned))
 
     def _blended(self, number: int, line: str, values: dict) -> None:
         if "blend" not in self.held:

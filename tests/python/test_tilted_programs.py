@@ -1,0 +1,446 @@
+"""Programs that tilt the brush: where its tip and its axis are, judged by scipy's rotations; what check refuses."""
+
+import json
+import re
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from diagnostics import agrees, in_json, is_told, refused
+from scipy.spatial.transform import Rotation, Slerp
+from urscript_stub import run
+
+import brushsvg
+from brushsvg import _core
+from brushsvg.machine.cell import Machine, Paper, robot_from_paper
+from brushsvg.machine.cell_file import write_cell
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.program import walked
+from brushsvg.machine.tilt import in_steps
+from brushsvg.machine.writer import text_of
+
+BRUSH = brushsvg.find_brush("round-6")
+POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [75, 35, -1], [75, 35, 0]]
+SUFFIXES = {"ur5e": ".script", "irb120": ".mod"}
+TILTING = tuple(SUFFIXES)
+
+
+def axes(*tilts_deg, towards_deg=0.0):
+    """Unit vectors leaned towards a direction of the paper, or one each."""
+    tilts, towards = np.radians(tilts_deg), np.radians(towards_deg)
+    return np.column_stack([np.sin(tilts) * np.cos(towards), np.sin(tilts) * np.sin(towards), np.cos(tilts)])
+
+
+TILTED = axes(0, 8, 8, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))
+
+
+def plan(*tool_axes, poses=POSES, speed=20.0):
+    passes = [_core.Pass(f"s{k}", poses, speed, tool_axes=each) for k, each in enumerate(tool_axes)]
+    return _core.Plan("round-6", "", (100, 60), passes)
+
+
+def anyhow(name="ur5e"):
+    """A cell on which nothing is along an axis: paper that leans, a tool that is turned, a bent holder."""
+    cell = brushsvg.find_cell(name)
+    x, y, z = cell.paper.origin_mm
+    tool = replace(cell.tool, tcp_mm=(12.0, -7.0, 150.0), rotation_deg=(0.0, 10.0, 5.0), spin_deg=30.0)
+    return replace(cell, paper=Paper((x, y, z + 20.0), (2.0, -3.0, 25.0)), tool=tool, arm=None)
+
+
+def text_for(of, cell):
+    made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).allowed()
+    return "".join(text_of(POSTS[cell.language], made))
+
+
+# What a robot is told ---------------------------------------------------------------------------------------
+
+
+def told_ur(text, cell):
+    """(tips (n, 3) [mm], rotations) of each move in the robot's frame, and the line that led to it."""
+    rows = [(pose, name) for name, *rest in run(text).events for pose in rest[0] if name.startswith("move")]
+    tips = 1e3 * np.array([pose[:3] for pose, _ in rows])
+    return tips, Rotation.from_rotvec([pose[3:] for pose, _ in rows])
+
+
+N = r"(-?[\d.]+)"
+
+
+def in_paper(tips, turned, cell):
+    """The same in the robot's frame of what is told in that of the paper."""
+    frame = robot_from_paper(cell)
+    return tips @ frame[:3, :3].T + frame[:3, 3], Rotation.from_matrix(frame[:3, :3]) * turned
+
+
+def told_rapid(text, cell):
+    """As RAPID has it: quaternions begin with the part that is no axis."""
+    upright = re.search(rf"RETURN \[\[x, y, z\], \[{N}, {N}, {N}, {N}\]", text).groups()
+    moves = re.findall(rf"MoveL (?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N}, {N})?\)", text)
+    tips = np.array([move[:3] for move in moves], dtype=float)
+    turned = np.array([move[3:] if move[3] else upright for move in moves], dtype=float)
+    return in_paper(tips, Rotation.from_quat(turned[:, [1, 2, 3, 0]]), cell)
+
+
+TOLD = {"ur5e": told_ur, "irb120": told_rapid}
+
+
+def strokes(tips, cell):
+    """Slices of the moves between the places at safe height, and the tips in the paper's frame."""
+    frame = robot_from_paper(cell)
+    paper = (tips - frame[:3, 3]) @ frame[:3, :3]
+    high = np.flatnonzero(paper[:, 2] > cell.heights.safe_mm - 0.01)
+    return [slice(a + 1, b) for a, b in pairwise(high) if b > a + 1], paper
+
+
+@pytest.mark.parametrize("name", TILTING)
+def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
+    cell = anyhow(name)
+    tips, turned = TOLD[name](text_for(plan(TILTED), cell), cell)
+    (on,), paper = strokes(tips, cell)
+    wanted = in_steps(plan(TILTED).passes[0])
+    poses, leans = np.asarray(wanted.poses_mm), np.asarray(wanted.tool_axes)
+    # approach and landing before, lift behind
+    poses = np.vstack(
+        [poses[0] + (0, 0, cell.heights.clearance_mm), poses, poses[-1] + (0, 0, cell.heights.clearance_mm)]
+    )
+    leans = np.vstack([leans[:1], leans, leans[-1:]])
+    assert paper[on] == pytest.approx(poses, abs=1.5e-3)
+    frame = Rotation.from_matrix(robot_from_paper(cell)[:3, :3])
+    along = frame.inv().apply(turned[on].apply((0.0, 0.0, -1.0)))  # the tool's z points into the paper
+    assert along == pytest.approx(leans, abs=2e-5)
+    # the shortest turn from upright: no farther than the axes are apart
+    upright = frame * Rotation.from_euler("x", 180, degrees=True) * Rotation.from_euler("z", 30, degrees=True)
+    tilts_deg = np.degrees(np.arccos(np.clip(leans[:, 2], -1, 1)))
+    assert np.degrees((turned[on] * upright.inv()).magnitude()) == pytest.approx(tilts_deg, abs=2e-3)
+    assert np.degrees((turned[[0, -1]] * upright.inv()).magnitude()).max() < 1e-3  # upright where it travels
+
+
+def test_the_plan_s_own_poses_are_among_those_of_a_robot():
+    of = plan(TILTED)
+    steps = in_steps(of.passes[0])
+    for pose, axis in zip(of.passes[0].poses_mm, of.passes[0].tool_axes, strict=True):
+        away = np.linalg.norm(steps.poses_mm - pose, axis=1) + np.linalg.norm(steps.tool_axes - axis, axis=1)
+        assert away.min() < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
+    """Predicted: where the brush's axis meets the paper goes straight between the plan's poses, its lean changes
+    evenly. A robot leads the tip straight and turns the tool evenly about one axis."""
+    random = np.random.default_rng(seed)
+    poses = np.column_stack(
+        [np.cumsum(random.uniform(5, 15, 6)), random.uniform(10, 40, 6), -random.uniform(0, 6, 6)]
+    )
+    poses[[0, -1], 2] = 0.0
+    held = axes(*random.uniform(0, 25, 6), towards_deg=random.uniform(0, 360, 6))
+    one = _core.Pass("s", poses, 5.0, tool_axes=held)
+    steps = in_steps(one)
+    on = lambda tips, leans: tips[:, :2] - leans * tips[:, 2:]  # noqa: E731
+    leans = held[:, :2] / held[:, 2:]
+    places, row = on(poses, leans), 0
+    upright = Rotation.from_euler("x", 180, degrees=True)
+    down = np.asarray(steps.tool_axes)
+    turned = []
+    for axis in down:
+        across = np.cross((0, 0, 1), axis)
+        size = np.linalg.norm(across)
+        turned.append(Rotation.from_rotvec(across / max(size, 1e-12) * np.arctan2(size, axis[2])) * upright)
+    turned = Rotation.concatenate(turned)
+    for k in range(len(down) - 1):
+        if np.linalg.norm(steps.poses_mm[k] - poses[row + 1]) < 1e-9:
+            row += 1
+        middle = Slerp([0, 1], turned[[k, k + 1]])(0.5).apply((0, 0, -1.0))
+        tip = (steps.poses_mm[k] + steps.poses_mm[k + 1]) / 2
+        lean = middle[:2] / middle[2]
+        place = on(tip[None], lean[None])[0]
+        # beside the straight way of the axis on the paper, and off the lean that belongs to that place
+        way = places[row + 1] - places[row]
+        share = (place - places[row]) @ way / (way @ way)
+        assert np.linalg.norm(place - places[row] - share * way) < 0.006
+        wanted = leans[row] + share * (leans[row + 1] - leans[row])
+        assert np.degrees(np.linalg.norm(lean - wanted)) < 0.1
+
+
+@pytest.mark.parametrize("name", TILTING)
+def test_upright_rows_are_written_as_before(name):
+    cell = brushsvg.find_cell(name)
+    upright = axes(0, 0, 0, 0, 0)
+    none = np.zeros((0, 3))
+    assert text_for(plan(upright, none), cell) == text_for(plan(none, none), cell)
+    before, both = text_for(plan(none, none), cell), text_for(plan(none, TILTED), cell)
+    first = lambda text: text[text.index("stroke 1 of 2") : text.index("stroke 2 of 2")]  # noqa: E731
+    assert first(both) == first(before)
+    lines = both[both.index("stroke 2 of 2") :].splitlines()
+    asbefore = before[before.index("stroke 2 of 2") :].splitlines()
+    assert lines[1] == asbefore[1]  # the travel, and the landing of a first pose that is upright
+    assert lines[2:4] == asbefore[2:4]
+
+
+# Checked ----------------------------------------------------------------------------------------------------
+
+
+def written(folder, name, of, cell=None):
+    """A plan.json, its program, and words that name its cell."""
+    given, made = folder / "a.json", folder / f"a{SUFFIXES[name]}"
+    given.write_text(_core.write_plan(of))
+    words = ["--cell", name]
+    if cell is not None:
+        (folder / "cell.toml").write_text(write_cell(cell))
+        words = ["--cell", folder / "cell.toml"]
+    return given, made, words
+
+
+def read_leaning():
+    """Of the paper: leans, rises, has a map; and the tool gives way."""
+    machine = Machine(
+        lean_mm_per_mm=(0.1, -0.05),
+        height_mm=0.2,
+        tilt_mm_per_mm=(0.002, -0.001),
+        map_mm=((0, 0, 0.1), (100, 0, 0.0), (0, 60, -0.1), (100, 60, 0.2)),
+    )
+    return replace(anyhow(), machine=machine)
+
+
+@pytest.mark.parametrize("name", TILTING)
+@pytest.mark.parametrize("of_cell", [lambda name: None, anyhow])
+def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
+    given, made, words = written(tmp_path, name, plan(np.zeros((0, 3)), TILTED), of_cell(name))
+    assert in_json(capsys, "convert", given, made, *words)[0] == 0
+    assert in_json(capsys, "check", made, given, *words)[0] == 0
+    assert in_json(capsys, "check", made, *words)[0] == 0
+
+
+def test_on_paper_that_leans_has_a_map_and_gives_way(tmp_path, capsys):
+    given, made, words = written(tmp_path, "ur5e", plan(TILTED), read_leaning())
+    assert in_json(capsys, "convert", given, made, *words)[0] == 0
+    assert in_json(capsys, "check", made, given, *words)[0] == 0
+
+
+def test_check_plays_the_tilted_mark(tmp_path, capsys):
+    """The picture that check makes is that of predict, and not that of an upright brush."""
+    of = plan(axes(*[25] * 5), poses=[[20, 20, 0], [30, 20, -4], [60, 20, -4], [75, 35, -3], [75, 35, 0]])
+    given, made, words = written(tmp_path, "ur5e", of)
+    rings = {}
+    for name, tool_axes in (("tilted", of.passes[0].tool_axes), ("upright", np.zeros((0, 3)))):
+        marks = brushsvg.simulate(plan(tool_axes, poses=of.passes[0].poses_mm), BRUSH)
+        brushsvg.trace_outlines(marks, BRUSH)
+        rings[name] = marks.outline_mm
+    in_json(capsys, "convert", given, made, *words)
+    assert in_json(capsys, "check", made, given, *words, "--preview", tmp_path / "b.json")[0] in (0, 2)
+    from brushsvg.verification.readback import read_program
+    from brushsvg.verification.simulate_program import run as played
+
+    cell = brushsvg.find_cell("ur5e")
+    ran = played(read_program(made.read_text(), ".script", cell), BRUSH, cell, (100, 60))
+    _core.trace_outlines(ran.marks, BRUSH)
+    assert _core.overlap(ran.marks.outline_mm, rings["tilted"]) > 0.995
+    assert _core.overlap(ran.marks.outline_mm, rings["upright"]) < 0.97
+
+
+def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
+    given, made, words = written(tmp_path, "ur5e", plan(TILTED))
+    in_json(capsys, "convert", given, made, *words)
+    for other in (np.zeros((0, 3)), axes(0, 9, 9, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))):
+        given.write_text(_core.write_plan(plan(other)))
+        status, _, said = in_json(capsys, "check", made, given, *words)
+        assert status == 1
+        assert is_told(said, "held-otherwise") or is_told(said, "path-elsewhere")
+    given.write_text(
+        _core.write_plan(plan(axes(0, 8.3, 8.3, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))))
+    )
+    assert in_json(capsys, "check", made, given, *words)[0] == 0  # no mark shows it
+
+
+# where a language tells a place with how the tool is turned there, the numbers of that, and scipy's word for them
+TURNS = {
+    "ur5e": (r"(?<=\(tilted\()[^)]*", Rotation.from_rotvec, Rotation.as_rotvec),
+    "irb120": (
+        r"(?<=MoveL tilted\()[^)]*",
+        lambda wxyz: Rotation.from_quat([*wxyz[1:], wxyz[0]]),
+        lambda turned: np.roll(turned.as_quat(), 1),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TILTING)
+def test_damaged_directions_are_refused(name, tmp_path, capsys):
+    """A hundred programs with one direction changed by a degree or more, about any line, the tool's own axis included;
+    or exchanged, lost, negated."""
+    given, made, words = written(tmp_path, name, plan(np.zeros((0, 3)), TILTED))
+    in_json(capsys, "convert", given, made, *words)
+    text = made.read_text()
+    pattern, of, to = TURNS[name]
+    spots = [*re.finditer(pattern, text)]
+    random = np.random.default_rng(3)
+    allowed = []
+    for number in range(100):
+        spot = spots[random.integers(len(spots))]
+        values = [float(each) for each in spot[0].split(",")]
+        before, kind = of(values[3:]), number % 5
+        if kind == 0:
+            about = random.normal(size=3)
+            by = Rotation.from_rotvec(about / np.linalg.norm(about) * np.radians(random.uniform(1, 40)))
+            turn = list(to(before * by))
+        elif kind == 1:  # about the brush's own axis
+            turn = list(to(before * Rotation.from_euler("z", random.uniform(1, 90), degrees=True)))
+        elif kind == 2:
+            turn = values[3:]
+            turn[random.integers(len(turn))] += random.choice([-1, 1]) * random.uniform(0.04, 0.5)
+        elif kind == 3:
+            turn = [*values[3:-1], -values[-1]]
+        else:
+            turn = [*values[4:], values[3]]
+        if np.degrees((before.inv() * of(turn)).magnitude()) < 0.6:
+            continue
+        told = ", ".join(f"{value:.7f}" for value in [*values[:3], *turn])
+        made.write_text(text[: spot.start()] + told + text[spot.end() :])
+        with_plan = in_json(capsys, "check", made, given, *words)[0]
+        alone = in_json(capsys, "check", made, *words)[0]
+        if with_plan == 0 or (alone == 0 and kind in (1,)):
+            allowed.append((number, spot[0], told))
+    assert not allowed
+    made.write_text(text)
+    assert in_json(capsys, "check", made, given, *words)[0] == 0
+
+
+def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_path, capsys):
+    given, made, words = written(tmp_path, "ur5e", plan(TILTED))
+    in_json(capsys, "convert", given, made, *words)
+    text = made.read_text()
+    lines = text.splitlines(keepends=True)
+    tilted = [k for k, line in enumerate(lines) if "(tilted(" in line]
+    damaged, own = [], 0
+    for k in tilted:
+        upright = re.sub(r"tilted\((\S+, \S+, [^,]+), [^)]*\)", r"on_paper(\1)", lines[k])
+        damaged.append([*lines[:k], upright, *lines[k + 1 :]])
+        place = [1e3 * float(each) for each in re.search(r"tilted\((\S+), (\S+), (\S+),", lines[k]).groups()]
+        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:  # others lie on the way
+            damaged.append([*lines[:k], *lines[k + 1 :]])
+            own += 1
+        damaged += [[*lines[:k], lines[k], lines[k - 1], *lines[k + 1 :]]]
+    assert own == 3
+    damaged.append([line.replace("p[x, y, z, rx, ry, rz]", "p[x, y, z, ry, rx, rz]") for line in lines])
+    for each in damaged:
+        made.write_text("".join(each))
+        assert in_json(capsys, "check", made, given, *words)[0] == 1, set(each) ^ set(lines)
+
+
+# Limits -----------------------------------------------------------------------------------------------------
+
+
+def test_a_tilt_beyond_the_cells_limit_is_refused():
+    cell = brushsvg.find_cell("ur5e")
+    cell = replace(cell, tool=replace(cell.tool, tilt_limit_deg=15.0))
+    with refused("tilt-out-of-range 20 15 ur5e", "s0"):
+        text_for(plan(TILTED), cell)
+    text_for(plan(axes(0, 15, 15, 15, 15)), cell)
+
+
+def test_a_tool_that_would_turn_too_fast_is_refused():
+    """From 8 to 20 degrees over a way of 21 mm at 20 mm/s."""
+    cell = brushsvg.find_cell("ur5e")
+    text_for(plan(TILTED), cell)
+    cell = replace(cell, tool=replace(cell.tool, turn_deg_s=15.0))
+    with refused("tool-turns-too-fast 15 ur5e", "s0"):
+        text_for(plan(TILTED), cell)
+    text_for(plan(TILTED, speed=10.0), cell)
+
+
+def test_no_turn_on_the_spot():
+    poses = [[20, 20, 0], [30, 20, -2], [30, 20, -2], [60, 20, 0]]
+    with refused("tool-turns-too-fast", "s0"):
+        text_for(plan(axes(0, 0, 10, 10), poses=poses), brushsvg.find_cell("ur5e"))
+
+
+def test_in_the_air_it_turns_as_slowly():
+    cell = brushsvg.find_cell("ur5e")
+    robot = run(text_for(plan(axes(*[30] * 5)), cell))
+    turns = []
+    for (_, (before,), *_), (_, (after,), speed, _) in pairwise(robot.events):
+        turn = (Rotation.from_rotvec(before[3:]).inv() * Rotation.from_rotvec(after[3:])).magnitude()
+        way = np.linalg.norm(np.subtract(after[:3], before[:3]))
+        if np.degrees(turn) > 1e-3:
+            turns.append(np.degrees(turn) * speed / way)
+    assert len(turns) == 2  # on the way down to the clearance, and up from there
+    assert max(turns) <= cell.tool.turn_deg_s * 1.001
+    assert max(turns) > cell.tool.turn_deg_s * 0.9
+
+
+def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
+    """The joints of a tilted stroke are cut as those of an upright one, and refused where that moves the mark."""
+    cell = brushsvg.find_cell("ur5e")
+    wide = replace(cell, blending=replace(cell.blending, tolerance_mm=5.0, radius_mm=20.0))
+    poses = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [60, 50, -2], [60, 50, 0]]
+    from brushsvg.machine.preflight import look
+
+    of = plan(axes(*[20] * 5), poses=poses)
+    loads = in_loads(of, BRUSH, wide)
+    found = look(loads, BRUSH, brushsvg.simulate(of, BRUSH), wide, 0.05).problems
+    assert any(agrees(each, "shifted-by-blends", "s0") for each in found)
+    assert not look(loads, BRUSH, brushsvg.simulate(of, BRUSH), cell, 0.05).problems
+
+
+# Joints of an arm -------------------------------------------------------------------------------------------
+
+
+def arm_problems(of, cell):
+    from brushsvg.machine.program import out_of_arm
+
+    made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).made
+    return out_of_arm(made, (100, 60))
+
+
+@pytest.mark.arm
+def test_an_arm_is_followed_as_the_brush_is_held():
+    """At the edge of its reach a UR5e paints with the handle towards itself, and not with it leaned away."""
+    cell = brushsvg.find_cell("ur5e")
+    cell = replace(
+        cell, paper=Paper((-50.0, -870.0, 20.0)), workspace=replace(cell.workspace, box_mm=(), reach_mm=())
+    )
+    for far in np.arange(-870.0, -990.0, -10.0):
+        there = replace(cell, paper=Paper((-50.0, far, 20.0)))
+        if arm_problems(plan(axes(*[25] * 5, towards_deg=270)), there):
+            break
+    else:
+        pytest.fail("it reaches everywhere")
+    assert not arm_problems(plan(axes(*[25] * 5, towards_deg=90)), there)
+
+
+@pytest.mark.arm
+def test_a_joint_that_turns_too_fast_by_the_tilt_alone_is_refused():
+    cell = brushsvg.find_cell("ur5e")
+    slow = replace(
+        cell, arm=replace(cell.arm, speeds_deg_s=(9.0,) * 6), speeds=replace(cell.speeds, travel_mm_s=20.0)
+    )
+    upright, tilted = plan(np.zeros((0, 3))), plan(TILTED)
+    assert not arm_problems(upright, slow)
+    assert any(each.code == "joint-too-fast" for each in arm_problems(tilted, slow))
+
+
+# Told beforehand --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("words", [(), ("--cell", "ur5e")])
+def test_predict_warns_of_paint_off_the_sheet(words, tmp_path, capsys):
+    given = tmp_path / "a.json"
+    poses = np.add(POSES, (40, 0, 0))
+    given.write_text(_core.write_plan(plan(axes(*[20] * 5), poses=poses)))
+    status, _, said = in_json(capsys, "predict", given, tmp_path / "b.svg", *words)
+    assert status == 0
+    assert is_told(said, "mark-off-sheet right", "s0")
+
+
+def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
+    """Keys of [tool]."""
+    cell = brushsvg.find_cell("ur5e")
+    text = write_cell(replace(cell, tool=replace(cell.tool, tilt_limit_deg=12.0, turn_deg_s=20.0)))
+    assert "tilt_limit_deg = 12.0" in text.split("[tool]")[1]
+    (tmp_path / "cell.toml").write_text(text.replace("tilt_limit_deg = 12.0", "tilt_limit_deg = 31.0"))
+    given = tmp_path / "a.json"
+    given.write_text(json.dumps(json.loads(_core.write_plan(plan(TILTED)))))
+    status, _, said = in_json(
+        capsys, "convert", given, tmp_path / "a.script", "--cell", tmp_path / "cell.toml"
+    )
+    assert status == 1
+    assert is_told(said, "out-of-range 31 30")
