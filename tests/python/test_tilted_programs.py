@@ -23,7 +23,7 @@ from brushsvg.machine.writer import text_of
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [75, 35, -1], [75, 35, 0]]
-SUFFIXES = {"ur5e": ".script", "irb120": ".mod"}
+SUFFIXES = {"ur5e": ".script", "irb120": ".mod", "fr3": ".csv"}
 TILTING = tuple(SUFFIXES)
 
 
@@ -82,7 +82,17 @@ def told_rapid(text, cell):
     return in_paper(tips, Rotation.from_quat(turned[:, [1, 2, 3, 0]]), cell)
 
 
-TOLD = {"ur5e": told_ur, "irb120": told_rapid}
+def told_ros2(text, cell):
+    """The flange, that holds the tip: rows that are poses of the plan."""
+    rows = np.array(
+        [line.split(",")[:8] for line in text.splitlines() if line.endswith(",pose")], dtype=float
+    )
+    flange = Rotation.from_quat(rows[:, 4:])
+    bent = Rotation.from_euler("xyz", cell.tool.rotation_deg, degrees=True)
+    return 1e3 * rows[:, 1:4] + flange.apply(cell.tool.tcp_mm), flange * bent
+
+
+TOLD = {"ur5e": told_ur, "irb120": told_rapid, "fr3": told_ros2}
 
 
 def strokes(tips, cell):
@@ -260,6 +270,7 @@ TURNS = {
         lambda wxyz: Rotation.from_quat([*wxyz[1:], wxyz[0]]),
         lambda turned: np.roll(turned.as_quat(), 1),
     ),
+    "fr3": (r"(?<=\d,)[^,]*(?:,[^,]*){6}(?=,[^,]*,(?:pose|way)\n)", Rotation.from_quat, Rotation.as_quat),
 }
 
 
@@ -293,7 +304,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
             turn = [*values[4:], values[3]]
         if np.degrees((before.inv() * of(turn)).magnitude()) < 0.6:
             continue
-        told = ", ".join(f"{value:.7f}" for value in [*values[:3], *turn])
+        told = (", " if ", " in spot[0] else ",").join(f"{value:.9f}" for value in [*values[:3], *turn])
         made.write_text(text[: spot.start()] + told + text[spot.end() :])
         with_plan = in_json(capsys, "check", made, given, *words)[0]
         alone = in_json(capsys, "check", made, *words)[0]

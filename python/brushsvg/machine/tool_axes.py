@@ -30,6 +30,11 @@ def is_upright(axes: np.ndarray) -> np.ndarray:
     return np.hypot(axes[..., 0], axes[..., 1]) < UPRIGHT
 
 
+def is_upright_on(axes: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """(...) the same on paper with a normal (3,)."""
+    return between_deg(axes, normal) < np.degrees(UPRIGHT)
+
+
 def turned_to(axes: np.ndarray, upright: np.ndarray) -> np.ndarray:
     """(..., 3, 3) the tool, its z against axes (..., 3): turned from where it is upright (3, 3) the shortest way, about
     the line across both directions, so that it turns about its own axis no more than it must.
@@ -55,6 +60,14 @@ def across(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     found = np.cross(a, b)
     size = np.linalg.norm(found, axis=-1, keepdims=True)
     return np.divide(found, size, out=np.zeros_like(found), where=size > 0)
+
+
+def turned_on(a: np.ndarray, b: np.ndarray, part: float) -> np.ndarray:
+    """(3,) a unit vector that is turned by a part of the way to another one."""
+    whole = np.radians(between_deg(a, b))
+    if whole < 1e-9:
+        return b
+    return (np.sin((1 - part) * whole) * a + np.sin(part * whole) * b) / np.sin(whole)
 
 
 def tilts_deg(axes: np.ndarray) -> np.ndarray:

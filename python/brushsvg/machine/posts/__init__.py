@@ -182,6 +182,7 @@ POSTS = {  # by the language a cell names
         _ros2,
         circles_by="",
         others={".traj": _ros2_json, ".cdr": _ros2_message},
+        tilts=True,
     ),
     "ebb": Post("commands for EBB boards (AxiDraw, NextDraw)", (".ebb",), _ebb, circles_by=""),
     "hpgl": Post("HP-GL for pen plotters", (".hpgl",), _hpgl, circles_by=""),

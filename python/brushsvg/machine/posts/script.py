@@ -10,7 +10,7 @@ import numpy as np
 from ..cell import Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
-from ..tool_axes import UPRIGHT, between_deg, turned_to
+from ..tool_axes import is_upright_on, turned_to
 from .text import number
 
 RISE_MM_S = 50.0
@@ -79,7 +79,7 @@ def turned_at(move: Move, upright: np.ndarray) -> Iterator[np.ndarray | None]:
     if move.axes is None:
         yield from [None] * len(move.points_mm)
         return
-    stands = between_deg(move.axes, -upright[:, 2]) < np.degrees(UPRIGHT)
+    stands = is_upright_on(move.axes, -upright[:, 2])
     for turned, is_upright in zip(turned_to(move.axes, upright), stands.tolist(), strict=True):
         yield None if is_upright else turned
 
