@@ -23,7 +23,12 @@ from brushsvg.machine.writer import text_of
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [75, 35, -1], [75, 35, 0]]
-SUFFIXES = {"ur5e": ".script", "irb120": ".mod", "fr3": ".csv"}
+SUFFIXES = {"ur5e": ".script", "irb120": ".mod", "fr3": ".csv"} | {
+    "kr6-r900": ".src",
+    "cr5": ".lua",
+    "xarm6": ".py",
+    "jaka-zu3": ".jks",
+}
 TILTING = tuple(SUFFIXES)
 
 
@@ -92,7 +97,43 @@ def told_ros2(text, cell):
     return 1e3 * rows[:, 1:4] + flange.apply(cell.tool.tcp_mm), flange * bent
 
 
-TOLD = {"ur5e": told_ur, "irb120": told_rapid, "fr3": told_ros2}
+def told_krl(text, cell):
+    """A about z, B about the new y, C about the newest x."""
+    rows = re.findall(rf"LIN [{{]X {N}, Y {N}, Z {N}, A {N}, B {N}, C {N}[}}]", text)
+    rows = np.array(rows, dtype=float)
+    return in_paper(rows[:, :3], Rotation.from_euler("ZYX", rows[:, 3:], degrees=True), cell)
+
+
+def told_dobot(text, cell):
+    """About the fixed axes x, y, z."""
+    upright = re.search(rf"pose = [{{]x, y, z, {N}, {N}, {N}[}}]", text).groups()
+    moves = re.findall(rf"MovL\((?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N})?\)", text)
+    rows = np.array([move if move[3] else (*move[:3], *upright) for move in moves], dtype=float)
+    return in_paper(rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True), cell)
+
+
+def told_xarm(text, cell):
+    """Roll, pitch and yaw: about the fixed axes x, y, z of the robot."""
+    upright = re.search(rf"UPRIGHT = \({N}, {N}, {N}\)", text).groups()
+    moves = re.findall(rf"(?m)^(?:go|lean)\({N}, {N}, {N}(?:, {N}, {N}, {N})?, {N}, (?:None|{N})\)$", text)
+    rows = np.array([move[:6] if move[3] else (*move[:3], *upright) for move in moves], dtype=float)
+    return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
+
+
+def told_jaka(text, cell):
+    rows = np.array(re.findall(rf"to = \[{N}, {N}, {N}, {N}, {N}, {N}\]", text), dtype=float)
+    return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
+
+
+TOLD = {
+    "ur5e": told_ur,
+    "irb120": told_rapid,
+    "fr3": told_ros2,
+    "kr6-r900": told_krl,
+    "cr5": told_dobot,
+    "xarm6": told_xarm,
+    "jaka-zu3": told_jaka,
+}
 
 
 def strokes(tips, cell):
@@ -263,6 +304,10 @@ def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
 
 
 # where a language tells a place with how the tool is turned there, the numbers of that, and scipy's word for them
+IN_DEGREES = (
+    lambda xyz: Rotation.from_euler("xyz", xyz, degrees=True),
+    lambda turned: turned.as_euler("xyz", degrees=True),
+)
 TURNS = {
     "ur5e": (r"(?<=\(tilted\()[^)]*", Rotation.from_rotvec, Rotation.as_rotvec),
     "irb120": (
@@ -270,6 +315,14 @@ TURNS = {
         lambda wxyz: Rotation.from_quat([*wxyz[1:], wxyz[0]]),
         lambda turned: np.roll(turned.as_quat(), 1),
     ),
+    "kr6-r900": (
+        r"(?<=LIN \{)X [^}]*",
+        lambda abc: Rotation.from_euler("ZYX", abc, degrees=True),
+        lambda turned: turned.as_euler("ZYX", degrees=True),
+    ),
+    "cr5": (r"(?<=MovL\(tilted\()[^)]*", *IN_DEGREES),
+    "xarm6": (r"(?m)(?<=^lean\()(?:[^,]*, ){5}[^,]*", *IN_DEGREES),
+    "jaka-zu3": (r"(?<=to = \[)[^]]*", *IN_DEGREES),
     "fr3": (r"(?<=\d,)[^,]*(?:,[^,]*){6}(?=,[^,]*,(?:pose|way)\n)", Rotation.from_quat, Rotation.as_quat),
 }
 
@@ -287,7 +340,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
     allowed = []
     for number in range(100):
         spot = spots[random.integers(len(spots))]
-        values = [float(each) for each in spot[0].split(",")]
+        values = [float(each) for each in re.findall(N, spot[0])]
         before, kind = of(values[3:]), number % 5
         if kind == 0:
             about = random.normal(size=3)
@@ -297,14 +350,19 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
             turn = list(to(before * Rotation.from_euler("z", random.uniform(1, 90), degrees=True)))
         elif kind == 2:
             turn = values[3:]
-            turn[random.integers(len(turn))] += random.choice([-1, 1]) * random.uniform(0.04, 0.5)
+            turn[random.integers(len(turn))] += (
+                random.choice([-1, 1])
+                * random.uniform(0.04, 0.5)
+                * (60 if len(turn) == 3 and name != "ur5e" else 1)
+            )
         elif kind == 3:
             turn = [*values[3:-1], -values[-1]]
         else:
             turn = [*values[4:], values[3]]
         if np.degrees((before.inv() * of(turn)).magnitude()) < 0.6:
             continue
-        told = (", " if ", " in spot[0] else ",").join(f"{value:.9f}" for value in [*values[:3], *turn])
+        numbers = iter([*values[:3], *turn])
+        told = re.sub(N, lambda _, left=numbers: f"{next(left):.9f}", spot[0])
         made.write_text(text[: spot.start()] + told + text[spot.end() :])
         with_plan = in_json(capsys, "check", made, given, *words)[0]
         alone = in_json(capsys, "check", made, *words)[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ...machine.cell import Cell
-from ...machine.frames import rotation_deg
+from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.krl import KRL_END
 from ...machine.posts.script import down
 from . import Readback
@@ -53,5 +53,6 @@ def read_krl(text: str, cell: Cell) -> Readback:
         sets_after=_READY,
         turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg))[::-1].tolist()),
         any_case=True,
+        rotation=lambda abc: rotation(abc[::-1]),
     )
     return read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))

@@ -13,6 +13,7 @@ from . import Act, Readback, Step, circle
 
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 LEANS_DEG = 0.5  # what no brush shows
+ROUNDED_RAD = 3e-6  # what four decimals of degrees make of a rotation
 
 
 @dataclass(frozen=True)
@@ -110,10 +111,14 @@ class _Reader:
     def _values(self, number: int, kind: str, line: str, found: re.Match) -> dict[str, float]:
         """The numbers of a line by name, in mm and s; how it turns the tool is kept aside."""
         said = {name: text for name, text in found.groupdict().items() if text is not None}
-        self.turned = ()
+        if kind != "move" or "x" in said:
+            self.turned = ()
         if turned := said.pop("turned", ""):
             values = [float(value) for value in re.findall(N, turned)]
-            if kind == "move" and self.script.rotation and self.out.tilts:
+            is_end = kind == "move" or (
+                kind == "sets" and "x" in said
+            )  # of a move, which stands in another line
+            if is_end and self.script.rotation and self.out.tilts:
                 self.turned = self._rotation(number, line, values)
             else:
                 self._stands(number, line, values)
@@ -123,6 +128,10 @@ class _Reader:
         turned = self.script.rotation(values)
         if turned is None:
             raise Error(f"line {number}: {line[:60]!r} tells no rotation of the tool", code="line-unread")
+        if self.script.turned_deg:  # digits apart it is upright
+            off = np.abs(turned - self.script.rotation(list(self.script.turned_deg))).max()
+            if off < ROUNDED_RAD:
+                return ()
         return tuple(turned.ravel().tolist())
 
     def _stands(self, number: int, line: str, found_deg: list[float]) -> None:
@@ -168,6 +177,9 @@ class _Reader:
         self._move(number, line, {**values, "blend": self.held["blend"]})
 
     def _circle(self, number: int, line: str, values: dict) -> None:
+        if self.turned:
+            sentence = f"line {number}: {line[:60]!r} tilts the brush on a circle, which brushsvg does not"
+            raise Error(sentence, code="tool-turned")
         at_most = self._at_most(number, line, values)
         via, end = (self._place(number, line, values, names) for names in ("uvw", "xyz"))
         circle(self.out, number, np.array(via), np.array(end), at_most[0])
