@@ -210,7 +210,7 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
         share = (place - places[row]) @ way / (way @ way)
         assert np.linalg.norm(place - places[row] - share * way) < 0.006
         wanted = leans[row] + share * (leans[row + 1] - leans[row])
-        assert np.degrees(np.linalg.norm(lean - wanted)) < 0.1
+        assert np.degrees(np.linalg.norm(lean - wanted)) < 0.03
 
 
 @pytest.mark.parametrize("name", TILTING)
