@@ -15,11 +15,15 @@ import brushsvg
 from brushsvg import _core
 from brushsvg.machine.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cell_file import write_cell
+from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
-from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import walked
+from brushsvg.machine.posts import POSTS, ros2
+from brushsvg.machine.preflight import look
+from brushsvg.machine.program import out_of_arm, walked
 from brushsvg.machine.tilt import in_steps
 from brushsvg.machine.writer import text_of
+from brushsvg.verification.readback import read_program
+from brushsvg.verification.simulate_program import run as played
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [75, 35, -1], [75, 35, 0]]
@@ -278,10 +282,6 @@ def test_check_plays_the_tilted_mark(tmp_path, capsys):
         brushsvg.trace_outlines(marks, BRUSH)
         rings[name] = marks.outline_mm
     in_json(capsys, "convert", given, made, *words)
-    assert in_json(capsys, "check", made, given, *words, "--preview", tmp_path / "b.json")[0] in (0, 2)
-    from brushsvg.verification.readback import read_program
-    from brushsvg.verification.simulate_program import run as played
-
     cell = brushsvg.find_cell("ur5e")
     ran = played(read_program(made.read_text(), ".script", cell), BRUSH, cell, (100, 60))
     _core.trace_outlines(ran.marks, BRUSH)
@@ -373,6 +373,38 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
     assert in_json(capsys, "check", made, given, *words)[0] == 0
 
 
+@pytest.mark.parametrize("about", ["x", "y", "z"])
+def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
+    """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or aside, its tip in place."""
+    given, made, words = written(tmp_path, "fr3", plan(TILTED))
+    in_json(capsys, "convert", given, made, *words)
+    text = made.read_text()
+    ways = [*re.finditer(r"(?m)^(\d[^,]*,(?:[^,]*,){3})([^,]*,[^,]*,[^,]*,[^,]*)(,[^,]*,way)$", text)]
+    cell = brushsvg.find_cell("fr3")
+    way = ways[len(ways) // 2]
+    before = Rotation.from_quat([float(each) for each in way[2].split(",")])
+    turned = before * Rotation.from_euler(about, 3, degrees=True)
+    tip = np.array([float(each) for each in way[1].split(",")[1:4]]) + before.apply(cell.tool.tcp_mm) / 1e3
+    place = tip - turned.apply(cell.tool.tcp_mm) / 1e3  # about its tip
+    told = ",".join(f"{value:.9f}" for value in [*place, *turned.as_quat()])
+    made.write_text(text[: way.start()] + way[1].split(",")[0] + "," + told + way[3] + text[way.end() :])
+    status, _, said = in_json(capsys, "check", made, given, *words)
+    assert status == 1
+    assert is_told(said, "line-unread")
+
+
+def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
+    cell = brushsvg.find_cell("fr3")
+    made = walked(in_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
+    table, message = (made_of(in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
+    rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
+    data = b"".join(message)
+    points = np.frombuffer(data[-len(rows) * ros2.POINT.itemsize :], dtype=ros2.POINT)
+    told = np.array([[float(each) for each in row[1:8]] for row in rows])
+    assert np.hstack([points["place_m"], points["turn_xyzw"]]) == pytest.approx(told, abs=1e-9)
+    assert len(np.unique(points["turn_xyzw"], axis=0)) > 10
+
+
 def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED))
     in_json(capsys, "convert", given, made, *words)
@@ -441,8 +473,6 @@ def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
     cell = brushsvg.find_cell("ur5e")
     wide = replace(cell, blending=replace(cell.blending, tolerance_mm=5.0, radius_mm=20.0))
     poses = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [60, 50, -2], [60, 50, 0]]
-    from brushsvg.machine.preflight import look
-
     of = plan(axes(*[20] * 5), poses=poses)
     loads = in_loads(of, BRUSH, wide)
     found = look(loads, BRUSH, brushsvg.simulate(of, BRUSH), wide, 0.05).problems
@@ -450,12 +480,29 @@ def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
     assert not look(loads, BRUSH, brushsvg.simulate(of, BRUSH), cell, 0.05).problems
 
 
+@pytest.mark.parametrize(
+    ("poses", "held", "expected"),
+    [
+        (POSES, axes(0, 8, 8, 95, 20), "tool-axis-invalid s0 3 95 30"),
+        (POSES, axes(0, 8, 8, 20), "sizes-differ s0 4 5"),
+        (POSES, axes(0, 8, 8, 20, 20) * [[1], [1], [0], [1], [1]], "tool-axis-invalid s0 2 0"),
+        (POSES, axes(0, 8, 8, np.nan, 20), "tool-axis-invalid s0 3"),
+        (np.multiply(POSES, (1, np.inf, 1)), axes(0, 8, 8, 20, 20), "not-finite"),
+    ],
+)
+def test_what_is_no_tilt_is_refused_before_anything_is_made_of_it(poses, held, expected, tmp_path):
+    with np.errstate(all="ignore"), refused(expected):
+        brushsvg.write_program(
+            tmp_path / "a.script", plan(held, poses=poses), BRUSH, cell=brushsvg.find_cell("ur5e")
+        )
+    with np.errstate(all="ignore"):
+        in_loads(plan(held, poses=poses), BRUSH, brushsvg.find_cell("ur5e"))  # and this is no place to fail
+
+
 # Joints of an arm -------------------------------------------------------------------------------------------
 
 
 def arm_problems(of, cell):
-    from brushsvg.machine.program import out_of_arm
-
     made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).made
     return out_of_arm(made, (100, 60))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Notice
-from .cell import Cell
+from .cell import MOST_TILT_DEG, Cell
 from .pass_way import on_way
 from .posts import POSTS
 from .tool_axes import axes_of, between_deg, tilts_deg, unit
@@ -40,7 +40,7 @@ def in_steps(a_pass):
     keeps to what is predicted: the place where the brush's axis meets the paper goes straight, and its lean changes
     evenly. On the spot the tip stays where it is."""
     axes = axes_of(a_pass)
-    if axes is None:
+    if axes is None or not _are_sound(a_pass.poses_mm, axes):
         return a_pass
     poses, leans = np.asarray(a_pass.poses_mm, dtype=float), axes[:, :2] / axes[:, 2:]
     turns_deg = between_deg(axes[1:], axes[:-1])
@@ -61,6 +61,12 @@ def in_steps(a_pass):
         leaning.append(lean)
     lean = np.vstack(leaning)
     return on_way(a_pass, np.vstack(rows), (), unit(np.column_stack([lean, np.ones(len(lean))])))
+
+
+def _are_sound(poses: np.ndarray, axes: np.ndarray) -> bool:
+    """Whether poses and axes are none that simulate refuses."""
+    finite = np.isfinite(poses).all() and np.isfinite(axes).all()
+    return bool(finite and len(poses) == len(axes) and tilts_deg(axes).max() <= MOST_TILT_DEG + 1)
 
 
 def slow_enough(speed_mm_s: float, length_mm: float, turn_deg: float, cell: Cell) -> float:
