@@ -15,12 +15,14 @@ import brushsvg
 from brushsvg import _core
 from brushsvg.machine.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cell_file import write_cell
+from brushsvg.machine.frames import of_quaternion, of_rotation_vector
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import out_of_arm, walked
 from brushsvg.machine.tilt import in_steps
+from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
 from brushsvg.verification.readback import read_program
 from brushsvg.verification.simulate_program import run as played
@@ -215,6 +217,21 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
         assert np.linalg.norm(place - places[row] - share * way) < 0.006
         wanted = leans[row] + share * (leans[row + 1] - leans[row])
         assert np.degrees(np.linalg.norm(lean - wanted)) < 0.03
+
+
+def test_rotations_are_scipys():
+    random = np.random.default_rng(5)
+    for turned in Rotation.random(200, random_state=1):
+        assert of_quaternion(np.roll(turned.as_quat(), 1)) == pytest.approx(turned.as_matrix(), abs=1e-12)
+        assert of_rotation_vector(turned.as_rotvec()) == pytest.approx(turned.as_matrix(), abs=1e-12)
+        axis = random.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        held = turned_to(axis, turned.as_matrix())
+        assert -held[:, 2] == pytest.approx(axis, abs=1e-9)
+        turn = Rotation.from_matrix(held) * turned.inv()
+        apart = np.arccos(np.clip(-turned.as_matrix()[:, 2] @ axis, -1, 1))
+        assert turn.magnitude() == pytest.approx(apart, abs=1e-7)  # no shorter turn leads there
+    assert of_rotation_vector((0, 0, 0)) == pytest.approx(np.eye(3))
 
 
 @pytest.mark.parametrize("name", TILTING)

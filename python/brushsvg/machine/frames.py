@@ -125,16 +125,14 @@ def quaternion(turned: np.ndarray) -> np.ndarray:
 
 
 def of_quaternion(wxyz) -> np.ndarray:
-    """(3, 3) the rotation of a quaternion w, x, y, z of any length but 0."""
-    size = float(np.linalg.norm(wxyz))
-    w, x, y, z = np.asarray(wxyz, dtype=float) / (size if size > 0 else 1.0)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    """(..., 3, 3) the rotations of unit quaternions (..., 4): w, x, y, z."""
+    w, x, y, z = np.moveaxis(np.asarray(wxyz, dtype=float), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 def of_rotation_vector(vector_rad) -> np.ndarray:

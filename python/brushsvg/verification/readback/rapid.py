@@ -35,7 +35,8 @@ NOT_ONE = 1e-3  # off the length 1 the controller takes no quaternion
 
 
 def _rotation(wxyz: list[float]) -> np.ndarray | None:
-    return of_quaternion(wxyz) if abs(np.linalg.norm(wxyz) - 1) <= NOT_ONE else None
+    size = float(np.linalg.norm(wxyz))
+    return of_quaternion(np.array(wxyz) / size) if abs(size - 1) <= NOT_ONE else None
 
 
 _SCRIPT = Script(

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.frames import frame_of_pose, rotation
+from ...machine.frames import frame_of_pose, of_quaternion, rotation
 from ...machine.header_lines import TILT_LINE
 from ...machine.posts.ros2 import COLUMNS, ROS2_END, flange_from_tip
 from ...machine.posts.script import upright_deg
@@ -97,14 +97,7 @@ def _tips(rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool) -> 
     off = np.abs(sizes[:, 0] - 1) > NOT_ONE
     turns = rows[:, 4:8] / np.where(sizes > 0, sizes, 1.0)
     upright = rotation(upright_deg(cell)) @ flange_from_tip(cell)[:3, :3]
-    x, y, z, w = turns.T
-    turned = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    ).transpose(2, 0, 1)
+    turned = of_quaternion(turns[:, [3, 0, 1, 2]])
     leans_deg = np.degrees(
         2 * np.arcsin(np.clip(np.linalg.norm(turned - upright, axis=(1, 2)) / 8**0.5, 0, 1))
     )
