@@ -176,16 +176,18 @@ def places(made: Program) -> Iterator[Place]:
         if not moves:
             continue
         points = np.vstack([move.points_mm for move in moves])
-        axes = np.vstack(
-            [np.tile(UP, (len(move.points_mm), 1)) if move.axes is None else move.axes for move in moves]
-        )
+        axes = None
+        if made.tilts:
+            axes = np.vstack(
+                [np.tile(UP, (len(m.points_mm), 1)) if m.axes is None else m.axes for m in moves]
+            )
         speeds = np.concatenate([np.full(len(move.points_mm), move.speed_mm_s) for move in moves])
         ends = np.cumsum([len(move.points_mm) for move in moves])
         if here is not None:
             points, speeds, ends = np.vstack([here, points]), np.r_[speeds[:1], speeds], ends + 1
-            axes = np.vstack([held, axes])
+            axes = None if axes is None else np.vstack([held, axes])
         yield from _along(section.name, points, axes, speeds, ends - 1, made.robot_from_frame, here is None)
-        here, held = points[-1], axes[-1]
+        here, held = points[-1], None if axes is None else axes[-1]
 
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -197,12 +199,11 @@ def _along(name, points, axes, speeds, ends, frame, is_first: bool) -> Iterator[
     lengths = np.linalg.norm(steps, axis=1)
     along = np.r_[0.0, np.cumsum(lengths)]
     looked = np.unique(np.r_[0.0, along[ends], np.arange(STEP_MM, along[-1], STEP_MM)])
+    turns = np.zeros_like(steps)
+    if axes is not None:
+        about = across(axes[:-1], axes[1:]) @ frame[:3, :3].T
+        turns = np.radians(between_deg(axes[1:], axes[:-1]))[:, None] * about
     with np.errstate(invalid="ignore", divide="ignore"):
-        turns = (
-            np.radians(between_deg(axes[1:], axes[:-1]))[:, None]
-            * across(axes[:-1], axes[1:])
-            @ frame[:3, :3].T
-        )
         ways = np.hstack([steps, turns])
         velocities = np.where(lengths[:, None] > 0, ways / lengths[:, None] * speeds[1:, None], 0.0)
     around = np.r_[looked[:1], looked, looked[-1:]]
@@ -214,7 +215,7 @@ def _along(name, points, axes, speeds, ends, frame, is_first: bool) -> Iterator[
         paper_mm, robot_mm = (
             np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot)
         )
-        axis = unit(np.array([np.interp(at, along, each) for each in axes.T]))
+        axis = UP if axes is None else unit(np.array([np.interp(at, along, each) for each in axes.T]))
         yield Place(name, paper_mm, robot_mm, velocities[first[k] : last[k]], axis)
 
 

@@ -27,6 +27,8 @@ def krl(program: Program) -> Iterator[str]:
     yield "".join(map(comment, program.header))
     yield "DECL E6POS here\nBAS(#INITMOV, 0)\n"
     yield f"$TOOL = {_frame(tool, decimals)}\n$BASE = {_frame(program.robot_from_frame, decimals)}\n"
+    if program.tilts:
+        yield "$ORI_TYPE = #VAR\n"  # #CONSTANT, of a program before, would hold the tool as it was
     yield f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
     upright = down(cell.tool.spin_deg)
     turned = _angles(rotation_deg(upright))

@@ -36,7 +36,7 @@ _LINES = tuple(  # in small letters
             "text",
             rf"def brushsvg\(\)|decl e6pos here|end|\$(?:tool|base) = {_FRAME}",
         ),
-        ("text", r"bas\(#initmov, 0\)|ptp \$axis_act"),
+        ("text", r"bas\(#initmov, 0\)|ptp \$axis_act|\$ori_type = #var"),
     )
 )
 _READY = "bas(#initmov, 0)"  # which sets all of them
