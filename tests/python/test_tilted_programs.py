@@ -1,9 +1,14 @@
 """Programs that tilt the brush: where its tip and its axis are, judged by scipy's rotations; what check refuses."""
 
+import inspect
 import json
 import re
+import subprocess
+import sys
 from dataclasses import replace
+from importlib.util import find_spec
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -171,6 +176,48 @@ def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
     tilts_deg = np.degrees(np.arccos(np.clip(leans[:, 2], -1, 1)))
     assert np.degrees((turned[on] * upright.inv()).magnitude()) == pytest.approx(tilts_deg, abs=2e-3)
     assert np.degrees((turned[[0, -1]] * upright.inv()).magnitude()).max() < 1e-3  # upright where it travels
+
+
+@pytest.mark.skipif(not find_spec("rapidchecker"), reason="rapidchecker is not installed")
+@pytest.mark.parametrize("broken", [None, (", num q4)", ", q4)")])
+def test_rapidchecker_knows_the_grammar_of_a_tilt(tmp_path, broken):
+    text = text_for(plan(TILTED), brushsvg.find_cell("irb120"))
+    (tmp_path / "p.mod").write_text(text.replace(*broken, 1) if broken else text, newline="")
+    (tmp_path / "rapidchecker.toml").write_text("indentation_check = false\n")
+    done = subprocess.run([sys.executable, "-m", "rapidchecker", "p.mod"], cwd=tmp_path, capture_output=True)
+    assert (done.returncode == 0) == (broken is None), done.stdout
+
+
+@pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
+def test_an_xarm_is_told_what_stands_in_the_lines():
+    """The program run, every call bound to the signature of the vendor's SDK."""
+    from xarm.wrapper import XArmAPI
+
+    told = []
+
+    class Arm:
+        def __init__(self, address):
+            assert address == "here"
+
+        def __getattr__(self, name):
+            def call(*given, **named):
+                bound = inspect.signature(getattr(XArmAPI, name)).bind(self, *given, **named).arguments
+                told.append((name, bound))
+                return (0, [0.0, 0.0, 300.0, 180.0, 0.0, 0.0]) if name == "get_position" else 0
+
+            return call
+
+    cell = anyhow("xarm6")
+    text = text_for(plan(TILTED), cell)
+    modules = {"sys": SimpleNamespace(argv=["p.py", "here"]), "xarm.wrapper": SimpleNamespace(XArmAPI=Arm)}
+    exec(text, {"__builtins__": {"__import__": lambda name, *_: modules[name]}})
+    moves = [given for name, given in told if name == "set_position" and "x" in given]
+    rows = [[move[key] for key in ("x", "y", "z", "roll", "pitch", "yaw")] for move in moves]
+    tips, turned = TOLD["xarm6"](text, cell)
+    assert np.array(rows)[:, :3] == pytest.approx(tips)
+    again = Rotation.from_euler("xyz", np.array(rows)[:, 3:], degrees=True)
+    assert (again.inv() * turned).magnitude().max() < 1e-9
+    assert len(rows) > 15
 
 
 def test_the_plan_s_own_poses_are_among_those_of_a_robot():
