@@ -143,7 +143,7 @@ CORRECTION = Correction("tilted", (20.0, 20.0), (40.0, 20.0), (1.0, 0.0), 0.0)
 READERS = {
     "thin_out": lambda of: _core.thin_out(of.passes[1], BRUSH, 0.5),
     "interrupted": lambda of: _core.interrupted(of.passes[1], BRUSH, 20, 20),
-    "in_loads": lambda of: in_loads(of, BRUSH, brushsvg.find_cell("m0609")),
+    "in_loads": lambda of: in_loads(of, BRUSH, brushsvg.find_cell("lrmate200id")),
     "on_way": lambda of: on_way(of.passes[1], POSES, ()),
     "as_run": lambda of: as_run(of.passes, Machine()),
     "expected_marks": lambda of: expected_marks(of, BRUSH),

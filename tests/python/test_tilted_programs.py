@@ -39,6 +39,7 @@ SUFFIXES = {"ur5e": ".script", "irb120": ".mod", "fr3": ".csv"} | {
     "cr5": ".lua",
     "xarm6": ".py",
     "jaka-zu3": ".jks",
+    "m0609": ".drl",
 }
 TILTING = tuple(SUFFIXES)
 
@@ -131,6 +132,14 @@ def told_xarm(text, cell):
     return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
 
 
+def told_doosan(text, cell):
+    """A about z, B about the new y, C about the newest z."""
+    upright = re.search(rf"return posx\(x, y, z, {N}, {N}, {N}\)", text).groups()
+    moves = re.findall(rf"movel\((?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N})?\)", text)
+    rows = np.array([move if move[3] else (*move[:3], *upright) for move in moves], dtype=float)
+    return in_paper(rows[:, :3], Rotation.from_euler("ZYZ", rows[:, 3:], degrees=True), cell)
+
+
 def told_jaka(text, cell):
     rows = np.array(re.findall(rf"to = \[{N}, {N}, {N}, {N}, {N}, {N}\]", text), dtype=float)
     return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
@@ -144,6 +153,7 @@ TOLD = {
     "cr5": told_dobot,
     "xarm6": told_xarm,
     "jaka-zu3": told_jaka,
+    "m0609": told_doosan,
 }
 
 
@@ -414,6 +424,11 @@ TURNS = {
         lambda turned: turned.as_euler("ZYX", degrees=True),
     ),
     "cr5": (r"(?<=MovL\(tilted\()[^)]*", *IN_DEGREES),
+    "m0609": (
+        r"(?<=movel\(tilted\()[^)]*",
+        lambda abc: Rotation.from_euler("ZYZ", abc, degrees=True),
+        lambda turned: turned.as_euler("ZYZ", degrees=True),
+    ),
     "xarm6": (r"(?m)(?<=^lean\()(?:[^,]*, ){5}[^,]*", *IN_DEGREES),
     "jaka-zu3": (r"(?<=to = \[)[^]]*", *IN_DEGREES),
     "fr3": (r"(?<=\d,)[^,]*(?:,[^,]*){6}(?=,[^,]*,(?:pose|way)\n)", Rotation.from_quat, Rotation.as_quat),

@@ -175,7 +175,7 @@ POSTS = {  # by the language a cell names
     "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n", tilts=True),
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose", tilts=True),
     "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
-    "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose"),
+    "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose", tilts=True),
     "ros2": Post(
         "poses with times for ROS 2",
         (".csv", ".traj", ".cdr"),
