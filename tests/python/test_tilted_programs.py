@@ -26,7 +26,7 @@ from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import out_of_arm, walked
-from brushsvg.machine.tilt import in_steps
+from brushsvg.machine.tilt import broken_limits, in_steps
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
 from brushsvg.verification.readback import read_program
@@ -567,6 +567,26 @@ def test_a_tool_that_would_turn_too_fast_is_refused():
     with refused("tool-turns-too-fast 15 ur5e", "s0"):
         text_for(plan(TILTED), cell)
     text_for(plan(TILTED, speed=10.0), cell)
+
+
+@pytest.mark.parametrize("name", TILTING)
+def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, tmp_path, capsys):
+    """Rounded places make some ways shorter, rounded directions some tilts greater."""
+    poses = [[20, 20, 0], [22, 21, -2], [25, 20, -2.5], [29, 20.5, -1.5], [33, 20, 0]]
+    of = plan(axes(0, 12, 20, 30, 30, towards_deg=np.array([0, 10, 50, 60, 90])), poses=poses, speed=10.0)
+    cell = replace(brushsvg.find_cell(name), arm=None)
+    (a_pass,) = in_loads(of, BRUSH, cell).loads
+    least, most = 1.0, 360.0
+    for _ in range(40):
+        middle = (least + most) / 2
+        is_too_fast = broken_limits(a_pass, replace(cell, tool=replace(cell.tool, turn_deg_s=middle)))
+        least, most = (middle, most) if is_too_fast else (least, middle)
+    assert 20 < most < 300
+    cell = replace(cell, tool=replace(cell.tool, turn_deg_s=most))
+    given, made, words = written(tmp_path, name, of, cell)
+    assert in_json(capsys, "convert", given, made, *words)[0] == 0
+    assert in_json(capsys, "check", made, given, *words)[0] == 0
+    assert in_json(capsys, "check", made, *words)[0] == 0
 
 
 def test_no_turn_on_the_spot():

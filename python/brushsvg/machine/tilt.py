@@ -24,7 +24,7 @@ def refuse_where_upright(passes, cell: Cell) -> None:
     """Error for a tilted brush where the cell cannot tilt it, or its language is not told to."""
     post = POSTS.get(cell.language)
     if cell.tool is None:
-        why = f"cell {cell.name} has three axes, which hold the brush upright"
+        why = f"cell {cell.name} has no axes to tilt the brush with"
     elif cell.arm is not None and len(cell.arm.dh) < LEAST_AXES:
         why = f"the arm of cell {cell.name} has {len(cell.arm.dh)} joints, too few to tilt the brush"
     elif post is None or not post.tilts:

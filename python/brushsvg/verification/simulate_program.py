@@ -32,6 +32,8 @@ from .readback import Readback, ReadSection, Step
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
+ROUNDED_DEG = 0.01  # of a tilt
+TURNS = 0.05  # by which rounded places may make a tool's turn on a short way faster
 LARGE_RAD = 3.0  # poses of a circle are less than half a turn apart
 Problems = list[Notice]
 
@@ -165,7 +167,8 @@ def _rounded(cell: Cell) -> Cell:
     """The cell with limits that what was rounded keeps, too."""
     heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack_mm(cell))
     servo = cell.servo and replace(cell.servo, step_mm=cell.servo.step_mm + value_mm(cell))
-    return replace(cell, heights=heights, servo=servo)
+    tool = cell.tool and replace(cell.tool, turn_deg_s=cell.tool.turn_deg_s * (1 + TURNS))
+    return replace(cell, heights=heights, servo=servo, tool=tool)
 
 
 def _astray(
@@ -379,7 +382,7 @@ def _axes(section: ReadSection, track: Track, on: slice, frame: np.ndarray) -> n
     normal = tuple(frame[:3, 2].tolist())
     axes = np.array([step.axis or normal for step in steps]) @ frame[:3, :3]
     most_deg = tilts_deg(axes)
-    if most_deg[worst := int(most_deg.argmax())] > MOST_TILT_DEG:
+    if most_deg[worst := int(most_deg.argmax())] > MOST_TILT_DEG + ROUNDED_DEG:
         raise Error(
             f"line {steps[worst].line}: the brush is tilted by {most_deg[worst]:.4g} degrees, outside the range "
             f"[0, {MOST_TILT_DEG:g}] degrees from upright",
