@@ -22,6 +22,7 @@ TAPER = 0.27
 # A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
 # of its own: a flick.
 FLICK, FLICK_SHARE = 7.0, 0.6
+FLICK_WIDER = 1.15  # nor is what is so much wider than that: the stem of a bold 4
 
 # Which comes first.
 UPPER_LEFT_FIRST = np.array([1.0, -1.0])
@@ -115,6 +116,8 @@ def _flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j: int)
     if len(chains[short]) > 1 or None not in chains[short][0].ends:
         return None
     widest = chains[short][0].line[:, 2].max()
+    if widest > FLICK_WIDER * max(piece.line[:, 2].max() for piece in chains[long]):
+        return None
     return short if lengths[short] < min(FLICK * widest, FLICK_SHARE * lengths[long]) else None
 
 
