@@ -19,6 +19,9 @@ using Eigen::Vector2d;
 constexpr Index kMostEdges = 2000;
 /// Of its rectangle, what a dot with corners fills: a disc fills 0.785, an octagon 0.83.
 constexpr double kFilled = 0.92;
+/// Where on its first side the way begins, of half its length from the middle: into a corner it would turn by more than
+/// 90 degrees, and swing out of it.
+constexpr double kOnSide = 0.4;
 
 /// A rectangle by its middle, the direction of one side, and half of both sides.
 struct Box {
@@ -70,17 +73,17 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
     const auto narrow = half_along_cut_mm(brush, std::min(box->half_mm[0], box->half_mm[1]));
     if (!narrow) return {};
     const Vector2d left(-box->along.y(), box->along.x()), at = dot->to_mm;
-    const auto corner = [&](int a, int b) -> Vector2d {
+    const auto place = [&](double a, double b) -> Vector2d {
         return box->middle_mm + a * (box->half_mm[0] - *narrow) * box->along + b * (box->half_mm[1] - *narrow) * left;
     };
-    std::vector<Vector2d> corners{corner(1, 1), corner(-1, 1), corner(-1, -1), corner(1, -1)};
+    const std::vector<Vector2d> places{place(1.0, kOnSide),  place(1.0, 1.0),  place(-1.0, 1.0),
+                                       place(-1.0, -1.0), place(1.0, -1.0), place(1.0, kOnSide)};
     const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));
-    SquaredDot out{*dot, stroke, lever, (corners[0] - at).normalized(), 0.0};
-    if (!((corners[0] - at).norm() > lever)) return {};
+    SquaredDot out{*dot, stroke, lever, (places[0] - at).normalized(), 0.0};
+    if (!((places[0] - at).norm() > lever)) return {};
     out.way.middle_mm.resize(0, 8);
     Vector2d here = at;
-    corners.push_back(corners[0]);
-    for (const Vector2d& to : corners) {
+    for (const Vector2d& to : places) {
         Cubics& way = out.way.middle_mm;
         way.conservativeResize(way.rows() + 1, Eigen::NoChange);
         for (int i = 0; i < 4; ++i) way.row(way.rows() - 1).segment<2>(2 * i) = here + i / 3.0 * (to - here);

@@ -8,7 +8,7 @@
 namespace brushsvg {
 
 /// A dot with corners, as of the i of a sans: turned round on the spot, lifted until it hardly touches, and led on in
-/// the same place as a narrow mark, into one corner and round the sides.
+/// the same place as a narrow mark, out to one side and round all of them.
 struct SquaredDot {
     Dot dot;
     Stroke way;         ///< of the narrow mark, from where P rests
