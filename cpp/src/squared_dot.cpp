@@ -76,8 +76,8 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
     const auto place = [&](double a, double b) -> Vector2d {
         return box->middle_mm + a * (box->half_mm[0] - *narrow) * box->along + b * (box->half_mm[1] - *narrow) * left;
     };
-    const std::vector<Vector2d> places{place(1.0, kOnSide),  place(1.0, 1.0),  place(-1.0, 1.0),
-                                       place(-1.0, -1.0), place(1.0, -1.0), place(1.0, kOnSide)};
+    const std::vector<Vector2d> places{place(1.0, kOnSide), place(1.0, 1.0),  place(-1.0, 1.0),
+                                       place(-1.0, -1.0),   place(1.0, -1.0), place(1.0, kOnSide)};
     const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));
     SquaredDot out{*dot, stroke, lever, (places[0] - at).normalized(), 0.0};
     if (!((places[0] - at).norm() > lever)) return {};

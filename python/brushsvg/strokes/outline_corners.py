@@ -47,9 +47,7 @@ def squared_at_corners(strokes: list, brush) -> list:
         return own > greatest and widest[stroke.origin.element] > HARDLY_WIDER * greatest
 
     return [
-        part
-        for stroke in strokes
-        for part in ([stroke] if may_be_filled(stroke) else _parts(stroke, brush))
+        part for stroke in strokes for part in ([stroke] if may_be_filled(stroke) else _parts(stroke, brush))
     ]
 
 
