@@ -79,7 +79,9 @@ class Follower {
         const bool bends = ways_.turn_rad.rows() > 0;
         if (bends && i > 0) bad |= int(!(ways_.turn_rad.row(i - 1).abs() <= kMostTurn).all());
         if (bends && i > 0)
-            bad |= int((ways_.turn_rad.row(i - 1) != 0.0 && ways_.depth_mm.row(i - 1) != ways_.depth_mm.row(i)).any());
+            bad |= int((ways_.turn_rad.row(i - 1) != 0.0 &&
+                        (ways_.depth_mm.row(i - 1) - ways_.depth_mm.row(i)).abs() > kRounded)
+                           .any());
         if (!bad) return;
         if (i > 0) refuse_row(ways_, lags_, i - 1);  // its turn
         refuse_row(ways_, lags_, i);
@@ -273,7 +275,7 @@ void refuse_row(const ManyWays& ways, const std::vector<LagLaw<double>>& lags, I
                     std::array<double, 2>{-most, most});
     }
     if (i < ways.turn_rad.rows() &&
-        (ways.turn_rad.row(i) != 0.0 && ways.depth_mm.row(i) != ways.depth_mm.row(i + 1)).any())
+        (ways.turn_rad.row(i) != 0.0 && (ways.depth_mm.row(i) - ways.depth_mm.row(i + 1)).abs() > kRounded).any())
         throw Error("arc-invalid", "the depth changes on an arc after row " + std::to_string(i) + " of many ways");
     for (std::size_t k = 0; k < lags.size(); ++k) {
         const bool one = lags.size() == 1;

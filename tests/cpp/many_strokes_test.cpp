@@ -47,7 +47,7 @@ struct OneByOne {
             double turn(const Arc&, Index i) const { return rows[std::size_t(i)].turn; }
         } way{rows, {}};
         for (std::size_t i = 0; i < rows.size(); ++i)
-            if (rows[i].turn != 0.0) way.arcs.push_back({Index(i), Index(i) + 1, {0.0, 0.0}, false});
+            if (rows[i].turn != 0.0) way.arcs.push_back({Index(i), Index(i) + 1, {0.0, 0.0}, 1});
         if (rows[0].depth < 0.0) at[0].contact = way.tcp(0);
         walk_pass<double>(way, false, *this);
         // a walk that ends below is lifted on the spot, which is no row
