@@ -19,17 +19,17 @@ using namespace brushsvg;
 
 namespace {
 
-constexpr int kRows = 1001, kRounds = 21;
+constexpr int kRounds = 21;
 
 /// Wandering lines of 0.5 mm moves; depth slowly up and down between 2 and 8 mm.
-ManyWays wander(Eigen::Index lanes) {
+ManyWays wander(Eigen::Index lanes, Eigen::Index moves) {
     std::mt19937 random(3);
     std::normal_distribution<double> turn(0.0, 0.05);
     ManyWays ways;
-    for (Lanes* numbers : {&ways.x_mm, &ways.y_mm, &ways.depth_mm}) numbers->resize(kRows, lanes);
+    for (Lanes* numbers : {&ways.x_mm, &ways.y_mm, &ways.depth_mm}) numbers->resize(moves + 1, lanes);
     for (Eigen::Index lane = 0; lane < lanes; ++lane) {
         double x = 0.0, y = 0.0, heading = 0.01 * double(lane);
-        for (Eigen::Index i = 0; i < kRows; ++i) {
+        for (Eigen::Index i = 0; i <= moves; ++i) {
             ways.x_mm(i, lane) = x;
             ways.y_mm(i, lane) = y;
             ways.depth_mm(i, lane) = 5.0 + 3.0 * std::sin(0.02 * double(i + lane));
@@ -62,45 +62,42 @@ void compare(const char* title, const ManyWays& ways, const std::vector<LagLaw<d
     ManyStates out, by_floor;
     follow_many(ways, lags, out);
     by_floor = out;
-    const Eigen::Index lanes = out.taut.cols(), moves = (kRows - 1) * lanes;
+    const Eigen::Index lanes = out.taut.cols(), rows = out.taut.rows(), moves = (rows - 1) * lanes;
 
     std::vector<Timed> all;
     all.push_back({"floor: moving the bytes", [&] {
-                       const auto size = std::size_t(kRows * lanes);
-                       const double* from[] = {reads ? ways.x_mm.data() : out.heading_x.data(),
-                                               reads ? ways.y_mm.data() : out.heading_y.data(),
-                                               reads ? ways.depth_mm.data() : out.heading_x.data()};
+                       const auto size = std::size_t(rows * lanes);
+                       const double *x = ways.x_mm.data(), *y = ways.y_mm.data(), *d = ways.depth_mm.data();
                        double *px = by_floor.contact_x_mm.data(), *py = by_floor.contact_y_mm.data(),
                               *ux = by_floor.heading_x.data(), *uy = by_floor.heading_y.data();
                        for (std::size_t k = 0; k < size; ++k) {
-                           const double x = reads ? from[0][k] : 1.0, y = reads ? from[1][k] : 2.0;
-                           const double d = reads ? from[2][k] : 3.0;
-                           px[k] = x;
-                           py[k] = y;
-                           ux[k] = d;
-                           uy[k] = d;
+                           px[k] = reads ? x[k] : 1.0;
+                           py[k] = reads ? y[k] : 2.0;
+                           ux[k] = uy[k] = reads ? d[k] : 3.0;
                        }
                        std::memset(by_floor.taut.data(), 1, size);
                    }});
-    all.push_back(
-        {"one stroke after the other", [&] {
-             const bool one = ways.x_mm.cols() == 1;
-             for (Eigen::Index lane = 0; lane < lanes; ++lane) {
-                 const Eigen::Index w = one ? 0 : lane;
-                 const LagLaw<double>& law = lags[lags.size() == 1 ? 0 : std::size_t(lane)];
-                 const auto at = [&](Eigen::Index i) { return Vec2<double>(ways.x_mm(i, w), ways.y_mm(i, w)); };
-                 auto state = touch_down(at(0));
-                 advance(law, Move<double>(at(0), at(0), 0.0, ways.depth_mm(0, w)), state);
-                 for (Eigen::Index i = 1; i < kRows; ++i) {
-                     advance(law, Move<double>(at(i - 1), at(i), ways.depth_mm(i - 1, w), ways.depth_mm(i, w)), state);
-                     out.contact_x_mm(i, lane) = state.contact.x();
-                     out.contact_y_mm(i, lane) = state.contact.y();
-                     out.heading_x(i, lane) = state.heading.x();
-                     out.heading_y(i, lane) = state.heading.y();
-                     out.taut(i, lane) = state.taut;
-                 }
-             }
-         }});
+    // of one stroke numbers lie beside each other
+    const auto alone = [](const Lanes& numbers) { return Lanes(numbers.transpose()); };
+    const Lanes x = alone(ways.x_mm), y = alone(ways.y_mm), d = alone(ways.depth_mm);
+    Lanes ux = alone(out.heading_x), uy = ux, px = ux, py = ux;
+    const auto one_by_one = [&] {
+        for (Eigen::Index lane = 0; lane < lanes; ++lane) {
+            const Eigen::Index w = ways.x_mm.cols() == 1 ? 0 : lane;
+            const LagLaw<double>& law = lags[lags.size() == 1 ? 0 : std::size_t(lane)];
+            const auto at = [&](Eigen::Index i) { return Vec2<double>(x(w, i), y(w, i)); };
+            auto state = touch_down(at(0));
+            advance(law, Move<double>(at(0), at(0), 0.0, d(w, 0)), state);
+            for (Eigen::Index i = 1; i < rows; ++i) {
+                advance(law, Move<double>(at(i - 1), at(i), d(w, i - 1), d(w, i)), state);
+                px(lane, i) = state.contact.x();
+                py(lane, i) = state.contact.y();
+                ux(lane, i) = state.heading.x();
+                uy(lane, i) = state.heading.y();
+            }
+        }
+    };
+    all.push_back({"one stroke after the other", one_by_one});
 #ifdef BRUSHSVG_HIGHWAY
     hwy::SetSupportedTargetsForTest(0);
     for (const int64_t target : hwy::SupportedAndGeneratedTargets())
@@ -122,7 +119,7 @@ void compare(const char* title, const ManyWays& ways, const std::vector<LagLaw<d
             one.ns.push_back(ns(one.work, moves));
             one.to_floor.push_back(one.ns.back() / all[0].ns.back());
         }
-    std::printf("%s, %ld lanes of %d moves\n", title, long(lanes), kRows - 1);
+    std::printf("%s, %ld lanes of %ld moves\n", title, long(lanes), long(rows - 1));
     for (const Timed& one : all)
         std::printf("  %-40s %7.2f ns/move %6.2f x floor\n", one.name.c_str(), median(one.ns), median(one.to_floor));
 }
@@ -138,10 +135,13 @@ int main() {
     };
     std::printf("many strokes through the law, 0.5 mm moves, quartic lag, linear depth, median of %d rounds\n",
                 kRounds);
-    compare("many ways, one lag", wander(1024), {law(1.0)}, true);
-    std::vector<LagLaw<double>> lags;
-    for (int i = 0; i < 1024; ++i) lags.push_back(law(1.0 + 0.0002 * i));
-    compare("one way, many lags", wander(1), lags, false);
-    lags.resize(10);
-    compare("one way, few lags", wander(1), lags, false);
+    const auto laws = [&](int count) {
+        std::vector<LagLaw<double>> out;
+        for (int i = 0; i < count; ++i) out.push_back(law(1.0 + 0.0002 * i));
+        return out;
+    };
+    compare("many ways, one lag", wander(64, 16000), {law(1.0)}, true);
+    compare("the same, set down more often", wander(1024, 1000), {law(1.0)}, true);
+    compare("one way, many lags", wander(1, 16000), laws(64), false);
+    compare("one way, few lags", wander(1, 16000), laws(10), false);
 }

@@ -35,7 +35,8 @@ class Follower {
         out.taut.resize(rows_, lanes_);
         does_.assign(std::size_t(lanes_) + many::kWidest, 0.0);
         known_.assign(std::size_t(lanes_), 0);
-        heads_from_.assign(std::size_t(lanes_), -1);
+        waits_from_.assign(std::size_t(lanes_), 0);
+        headed_.assign(std::size_t(lanes_), 0);
         left_.resize(std::size_t(lanes_));
         prepare_laws();
     }
@@ -54,7 +55,6 @@ class Follower {
             const std::size_t left = quiet(i);
             for (std::size_t k = 0; k < left; ++k) step(i, left_[k]);
         }
-        for (Index lane = 0; lane < lanes_; ++lane) head_from_the_start(lane);
     }
 
  private:
@@ -161,7 +161,14 @@ class Follower {
         const auto k = std::size_t(lane);
         const bool down = depth(i, lane) >= 0.0;
         does_[k] = at.taut ? many::kTaut : down && at.heading_known ? many::kResting : 0.0;
-        if (heads_from_[k] < 0 && (at.heading_known || (at.taut && !law(lane).rigid))) heads_from_[k] = i;
+        if (waits_from_[k] >= 0 && (at.heading_known || (at.taut && !law(lane).rigid))) {
+            for (Index row = waits_from_[k]; row < i; ++row) {
+                out_.heading_x(row, lane) = at.heading.x();
+                out_.heading_y(row, lane) = at.heading.y();
+            }
+            waits_from_[k] = -1;
+            headed_[k] = 1;
+        }
         known_[k] = at.heading_known ? 1 : 0;
         load_piece(lane, std::max(0.0, depth(i, lane)));
     }
@@ -206,6 +213,7 @@ class Follower {
             const Vec2<double> c = a + crossing * (b - a);
             if (db >= 0.0) {
                 at = set_down(c, at);
+                if (headed_[std::size_t(lane)]) waits_from_[std::size_t(lane)] = i;
                 if (db > 0.0) advance(law(lane), Move<double>(c, b, 0.0, db), at);
             } else {
                 if (crossing > 0.0) advance(law(lane), Move<double>(a, c, da, 0.0), at);
@@ -217,14 +225,6 @@ class Follower {
         put(i, lane, at);
     }
 
-    void head_from_the_start(Index lane) {
-        const Index from = heads_from_[std::size_t(lane)];
-        for (Index i = 0; i < from; ++i) {
-            out_.heading_x(i, lane) = out_.heading_x(from, lane);
-            out_.heading_y(i, lane) = out_.heading_y(from, lane);
-        }
-    }
-
     const ManyWays& ways_;
     const std::vector<LagLaw<double>>& lags_;
     ManyStates& out_;
@@ -234,7 +234,8 @@ class Follower {
     std::vector<const LawPiece<double>*> piece_;  ///< of each law, as it stands in laws_
     std::vector<double> does_;                    ///< as carry_quiet asks
     std::vector<unsigned char> known_;            ///< heading_known of each lane
-    std::vector<Index> heads_from_;               ///< the first row with a heading, -1: none yet
+    std::vector<Index> waits_from_;               ///< the first row that waits for a heading, -1: none does
+    std::vector<unsigned char> headed_;
     std::vector<int> left_;
 };
 

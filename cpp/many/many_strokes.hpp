@@ -20,8 +20,9 @@ struct ManyWays {
     Lanes turn_rad;
 };
 
-/// What the patches do at each row. In the air p is q, and the heading the last there was. Rows before the first motion
-/// on the paper take the first heading there is; (1, 0) where there is none.
+/// What the patches do at each row. In the air p is q, and the heading the last there was. Rows from where a brush is
+/// set down to its first motion take the heading of that, as those before it where there was none yet; (1, 0) if none
+/// comes.
 struct ManyStates {
     Lanes contact_x_mm, contact_y_mm;  ///< p
     Lanes heading_x, heading_y;        ///< u, a unit vector

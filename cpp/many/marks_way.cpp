@@ -27,8 +27,7 @@ ManyWays way_of(const Pass& pass, const PassMarks& marks) {
             throw Error("not-ascending", "rows of marks do not follow the poses of the pass", marks.stroke, to);
         const Index pose = std::min(Index(from), poses - 2);
         while (arc != pass.arcs.end() && arc->last <= pose) ++arc;
-        if (arc == pass.arcs.end()) break;
-        if (arc->first > pose || from == to || marks.depth_mm[std::size_t(i)] < 0.0) continue;
+        if (arc == pass.arcs.end() || arc->first > pose || from == to || marks.depth_mm[std::size_t(i)] < 0.0) continue;
         const Eigen::Vector2d a = pass.poses_mm.row(pose).head<2>(), b = pass.poses_mm.row(pose + 1).head<2>();
         way.turn_rad(i, 0) = (to - from) * turn_between(*arc, a, b);
     }

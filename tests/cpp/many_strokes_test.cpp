@@ -118,12 +118,13 @@ void hold_against(const std::vector<Rows>& strokes, const std::vector<LagLaw<dou
         const LagLaw<double>& law = lags[lags.size() == 1 ? 0 : std::size_t(lane)];
         const OneByOne alone(law, rows);
         CAPTURE(lane);
-        bool headed = false;
+        bool headed = false;  // since it was set down
         for (Index i = 0; i < many.taut.rows(); ++i) {
             CAPTURE(i);
             const LagState<double>& one = alone.at[std::size_t(i)];
             REQUIRE((V(many.contact_x_mm(i, lane), many.contact_y_mm(i, lane)) - one.contact).norm() <= kSame);
             REQUIRE(bool(many.taut(i, lane)) == one.taut);
+            if (rows[std::size_t(i)].depth < 0.0) headed = false;
             headed = headed || one.heading_known || (one.taut && !law.rigid);
             if (headed) REQUIRE((V(many.heading_x(i, lane), many.heading_y(i, lane)) - one.heading).norm() <= kSame);
         }
@@ -225,6 +226,12 @@ TEST_CASE("rows before the first motion take the first heading") {
     const ManyStates many = follow_many(ways_of({rows}), {law_of({3.0})});
     CHECK((many.heading_x.abs() < 1e-15).all());
     CHECK((many.heading_y - 1.0).abs().maxCoeff() < 1e-15);
+    Rows twice = rows;
+    for (const Row& row : {Row{0.0, 9.0, -1.0}, {3.0, 9.0, -1.0}, {3.0, 9.0, 0.0}, {3.0, 9.0, 2.0}, {9.0, 9.0, 2.0}})
+        twice.push_back(row);
+    const ManyStates again = follow_many(ways_of({twice}), {law_of({3.0})});
+    CHECK(again.heading_y.topRows(6).minCoeff() > 1.0 - 1e-15);
+    CHECK(again.heading_x.bottomRows(3).minCoeff() > 1.0 - 1e-15);
 }
 
 TEST_CASE("memory of an earlier call changes nothing") {
