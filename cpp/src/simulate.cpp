@@ -248,39 +248,40 @@ class Tracer {
         // a chord of the motion says nothing of a wide turn
         const bool turned = a.state.heading.dot(b.state.heading) < 0.8;
         const bool pressed = std::abs(a.depth - b.depth) > 0.5;  // nor of laws that bend twice
-        if (bend <= tolerance_ && !((turned || pressed) && level < 24) && !(level < 12 && shows_gap(a, b, c))) return;
+        if (bend <= tolerance_ && !((turned || pressed) && level < 24) &&
+            !(level < 12 && shape_gap(a, b, c) > tolerance_))
+            return;
         split(piece, m, start, begin, ta, a, tm, c, level + 1);
         row(m.tcp(tm), m.depth(tm), c.state, tm);
         split(piece, m, start, begin, tm, c, tb, b, level + 1);
     }
 
-    /// Whether the outline half way is farther than the tolerance from the mean of the outlines at both ends, as
-    /// support functions h(n) = max n.v (Hausdorff distance of convex shapes): the hull of both ends is what they sweep
-    /// only where it is not.
-    bool shows_gap(const Instant& a, const Instant& b, const Instant& c) const {
-        if (!for_outlines_) return false;
+    /// How far the outline half way is from the mean of the outlines at both ends, as support functions h(n) = max n.v
+    /// (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only where this is small.
+    double shape_gap(const Instant& a, const Instant& b, const Instant& c) const {
+        if (!for_outlines_) return 0.0;
         const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05 ||
                            (a.stretch - b.stretch).cwiseAbs().maxCoeff() > 0.01;
         // turning about a point of its flank a footprint leaves a waist that no hull has; while it is dragged forwards
         // the widest section has painted there before
         const bool turns_in_place = !a.state.taut && a.state.heading.dot(b.state.heading) < 1.0 - 1e-8;
-        if (!grows && !turns_in_place) return false;
+        if (!grows && !turns_in_place) return 0.0;
         // along the normals of the middle outline's edges: long flanks show it, and only there
         using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;  // read along x and y, once for each normal
         const Columns from = outline_of(a), to = outline_of(b), between = outline_of(c);
         const auto reach = [](const Columns& outline, const Vec2<double>& normal) {
             return (outline.col(0) * normal.x() + outline.col(1) * normal.y()).maxCoeff();
         };
+        double gap = 0.0;
         for (Eigen::Index k = 0, n = between.rows(); k < n; ++k) {
             const Eigen::Index j = k + 1 == n ? 0 : k + 1;
             const Vec2<double> edge = (between.row(j) - between.row(k)).matrix().transpose();
             const double length = edge.norm();
             if (length < 4.0 * tolerance_) continue;  // too short to open a gap of the tolerance
             const Vec2<double> normal(edge.y() / length, -edge.x() / length);
-            if (std::abs(reach(between, normal) - 0.5 * (reach(from, normal) + reach(to, normal))) > tolerance_)
-                return true;
+            gap = std::max(gap, std::abs(reach(between, normal) - 0.5 * (reach(from, normal) + reach(to, normal))));
         }
-        return false;
+        return gap;
     }
     Ring outline_of(const Instant& now) const {
         const Vec2<double> u = now.state.heading, tip = tip_of(now);
