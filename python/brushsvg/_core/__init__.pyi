@@ -60,6 +60,7 @@ __all__: list[str] = [
     "deviations_of_95",
     "excess_turning",
     "fill",
+    "first_crossings",
     "fit_curve",
     "fit_law",
     "fit_marks",
@@ -1492,6 +1493,15 @@ def fill(
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
     Rings of the shape that closed outlines fill; they may cross and turn either way.
+    """
+
+def first_crossings(
+    rings: collections.abc.Sequence[numpy.typing.ArrayLike],
+    places: numpy.typing.ArrayLike,
+    way: tuple[float, float],
+) -> list[float]:
+    """
+    How far ahead [mm] of each place (n, 2), along a unit vector, the outline of rings is first crossed; infinite where it is not.
     """
 
 def fit_curve(

@@ -68,7 +68,9 @@ def look(
         marks = prediction.marks_of(plan, brush, outlines, stage, whole, cell)
         walk = None
         if not held_upright and (work.plan.passes or not work.refused):
-            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
+            walk = preflight.look(
+                loads, brush, marks, cell, work.options.tolerance_mm, known=work.walked
+            )
         forbidden = walk.problems if walk else []
         warnings = [*work.notices, *forbidden, *held_upright]
         warnings += too_long(loads, brush, cell) if at_loads else []
