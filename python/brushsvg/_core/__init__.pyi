@@ -66,6 +66,7 @@ __all__: list[str] = [
     "fit_marks",
     "fit_tracks",
     "flatten",
+    "follow_lags",
     "footprint_at",
     "from_angles",
     "interrupted",
@@ -1554,6 +1555,22 @@ def flatten(
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
     Middle line as (n, 4): x, y, arc length, half width [mm].
+    """
+
+def follow_lags(
+    passes: collections.abc.Sequence[Pass],
+    marks: collections.abc.Sequence[PassMarks],
+    lags: collections.abc.Sequence[Profile],
+    depth_range_mm: collections.abc.Sequence[float],
+) -> list:
+    """
+    What patches of K other lags do on the ways of these passes, at the rows of their marks.
+
+    marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
+    each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
+
+    Exact at each row, by the closed form; vector instructions carry several lags at once where the library was built with
+    Highway.
     """
 
 def footprint_at(
