@@ -11,6 +11,7 @@ from ..steps.prepared import prepare
 
 def simulate_photo_file(args) -> None:
     from ...painted.job_page import job_page
+    from ...pipeline.prediction import fetched_mm
     from ...simulated.painting import painted
     from ...simulated.photo import simulated_photo
     from ...simulated.studio import random_studio, read_studio, write_studio
@@ -26,7 +27,14 @@ def simulate_photo_file(args) -> None:
     brush = brush_of(args.true_brush) or work.brush
     with about(args.input):
         stage("painting")
-        strokes = painted(work.plan, brush, studio, work.options.cell.machine, args.seed)
+        strokes = painted(
+            work.plan,
+            brush,
+            studio,
+            work.options.cell.machine,
+            args.seed,
+            fetched_mm(work.plan, brush, work.options.cell),
+        )
         stage("photographing")
         made = simulated_photo(job_page(work.plan, work.title), strokes, studio, args.seed)
     write(args, {args.output: made}, len(strokes), more="simulated")
