@@ -206,6 +206,14 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
     return found
 
 
+def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[list[float]]:
+    """The same of a plan's passes, with a cell or without."""
+    if cell:
+        with suppress(Error):  # a colour that no station serves is told where a program is made
+            return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
+    return dips_without_cell(plan.passes)
+
+
 def dips_without_cell(passes) -> list[list[float]]:
     """The same where nobody fetches paint by a program."""
     return [[] if k and each.settings.reload is False else [0.0] for k, each in enumerate(passes)]

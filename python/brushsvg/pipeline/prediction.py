@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from contextlib import suppress
 
 from .. import _core
-from ..errors import Error
 from ..machine.cell import Cell
-from ..machine.paint_reload import dips_mm, dips_without_cell, in_loads
+from ..machine.paint_reload import fetched_mm
 from .preparation import Work
 
 
@@ -36,14 +34,6 @@ def marks_of(
     if not outlines:
         return marks
     return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
-
-
-def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[list[float]]:
-    """For each pass the ways [mm] along it at which paint was just fetched, as `narrow` takes them."""
-    if cell:
-        with suppress(Error):  # a colour that no station serves is told where a program is made
-            return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
-    return dips_without_cell(plan.passes)
 
 
 def outlined(

@@ -10,8 +10,8 @@ from ..steps.prepared import prepare
 
 
 def simulate_photo_file(args) -> None:
+    from ...machine.paint_reload import fetched_mm
     from ...painted.job_page import job_page
-    from ...pipeline.prediction import fetched_mm
     from ...simulated.painting import painted
     from ...simulated.photo import simulated_photo
     from ...simulated.studio import random_studio, read_studio, write_studio
