@@ -206,10 +206,11 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
 def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
     """For each pass the ways [mm] of the TCP along it at which paint was just fetched, as `narrow` takes them.
 
-    passes: of the plan, or the loads themselves. Where no cell fetches paint every pass begins freshly dipped.
+    passes: of the plan, or the loads themselves. Where no cell fetches paint every pass begins freshly dipped but those
+    that are to be painted without: with what the pass before them left.
     """
     if not cell.reload:
-        return [[0.0] for _ in passes]
+        return dips_without_cell(passes)
     asked, found, k = visits(loads, cell), [], 0
     for a_pass in passes:
         dips = [0.0] if asked[k] else []
@@ -219,6 +220,19 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
             k += 1
         found.append(dips)
     return found
+
+
+def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[list[float]]:
+    """The same of a plan's passes, with a cell or without."""
+    if cell:
+        with suppress(Error):  # a colour that no station serves is told where a program is made
+            return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
+    return dips_without_cell(plan.passes)
+
+
+def dips_without_cell(passes) -> list[list[float]]:
+    """The same where nobody fetches paint by a program."""
+    return [[] if k and each.settings.reload is False else [0.0] for k, each in enumerate(passes)]
 
 
 def _begins_at_mm(stroke, part, after_mm: float) -> float:
