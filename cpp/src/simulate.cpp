@@ -250,17 +250,15 @@ class Tracer {
         // a chord of the motion says nothing of a wide turn
         const bool turned = a.state.heading.dot(b.state.heading) < 0.8;
         const bool pressed = std::abs(a.depth - b.depth) > 0.5;  // nor of laws that bend twice
-        if (bend <= tolerance_ && !((turned || pressed) && level < 24) &&
-            !(level < 12 && shape_bends(a, b, c)))
-            return;
+        if (bend <= tolerance_ && !((turned || pressed) && level < 24) && !(level < 12 && shape_bends(a, b, c))) return;
         split(piece, m, start, begin, ta, a, tm, c, level + 1);
         row(m.tcp(tm), m.depth(tm), c.state, tm);
         split(piece, m, start, begin, tm, c, tb, b, level + 1);
     }
 
-    /// Whether the outline half way is farther than the tolerance from the mean of the outlines at both ends, as support
-    /// functions h(n) = max n.v (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only
-    /// where it is not.
+    /// Whether the outline half way is farther than the tolerance from the mean of the outlines at both ends, as
+    /// support functions h(n) = max n.v (Hausdorff distance of convex shapes): the hull of both ends is what they sweep
+    /// only where it is not.
     bool shape_bends(const Instant& a, const Instant& b, const Instant& c) const {
         if (!for_outlines_) return false;
         const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05 ||
